@@ -9,7 +9,7 @@ use searoom::frame::{Pose, Vector, direction, heading_of};
 use searoom::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use searoom::obstacle::contact::line_contact;
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
 /// A regular polygon whose edges are not parallel to those of another phase.
@@ -256,14 +256,13 @@ fn largest_risk(criterion: &mut Criterion) {
 
 /// A ship that may turn: ten sets, one after another.
 fn slabs(criterion: &mut Criterion) {
-    let spells = (1..=10)
-        .map(|k| VelocitySpell {
-            until: 10.0 * f64::from(k),
-            velocities: polygon(8, 0.1 * f64::from(k), Vector::new(1.0, 0.0), 0.3),
-        })
-        .collect();
-    let o = SlabObstacle::new("slabs", polygon(8, 20.0, Vector::zeros(), 0.1), spells)
-        .expect("increasing");
+    let timed = (1..=10).map(f64::from).map(|k| {
+        let velocities = polygon(8, 0.1 * k, Vector::new(1.0, 0.0), 0.3);
+        TimedVelocitySet::new(10.0 * k, velocities)
+    });
+    let initial = polygon(8, 20.0, Vector::zeros(), 0.1);
+    let sets = Uncertainty::new(initial, timed.collect());
+    let o = SlabObstacle::new("slabs", sets).expect("increasing");
     let x = Vector::new(60.0, 36.0);
     assert!(o.contains(x, 60.0) && o.risk(x, 60.0) > 0.0);
     criterion.bench_function("slabs, 10 of 8 + 8/membership", |b| {

@@ -1,8 +1,12 @@
 //! A target: a tracked ship or explicit sets, with its possible positions at t = 0 and its possible
 //! velocities.
 
+mod uncertainty;
+
+pub use uncertainty::{TimedVelocitySet, Uncertainty};
+
 use crate::frame::{Pose, Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
+use crate::geometry::{ConvexPolygon, DISC_SIDES};
 use crate::vessel::Hull;
 
 /// Half the angle between two tangents of the outer arc, radians: 5°.
@@ -14,9 +18,6 @@ const TURN_PER_INTERVAL: f64 = std::f64::consts::PI / 36.0;
 /// Sides of a turned hull's outer polygon shorter than this fraction of the half-diagonal are
 /// omitted.
 const SHORT_SIDE: f64 = 1e-3;
-
-/// Number of sides of the polygon around an ellipse in figures: at most 0.12 % too large.
-const SET_SIDES: usize = 64;
 
 /// Kind of ship domain around a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,15 +39,6 @@ pub enum DomainKind {
         /// To starboard.
         starboard: f64,
     },
-}
-
-/// A velocity set that holds until some time, one of a sequence.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VelocitySpell {
-    /// Seconds from the scenario's start; infinite for the last.
-    pub until: f64,
-    /// Every possible velocity until then, m/s.
-    pub velocities: ConvexPolygon,
 }
 
 /// A tracked ship: nominal motion and its uncertainty.
@@ -157,11 +149,9 @@ impl ShipTrack {
     /// most until 5° of turn, so a half-width is at most 5° too wide. All courses are possible from
     /// `horizon` seconds on, or earlier where they are. A rate of 0 gives one set; a rate that is
     /// not finite gives every course at once.
-    pub fn outer_velocity_spells(&self, turn_rate: f64, horizon: f64) -> Vec<VelocitySpell> {
-        let timed = |until, spread| VelocitySpell {
-            until,
-            velocities: self.outer_velocities_within(spread),
-        };
+    pub fn outer_velocity_sets(&self, turn_rate: f64, horizon: f64) -> Vec<TimedVelocitySet> {
+        let timed =
+            |until, spread| TimedVelocitySet::new(until, self.outer_velocities_within(spread));
         let rate = turn_rate.abs();
         if rate == 0.0 {
             return vec![timed(f64::INFINITY, self.course_spread)];
@@ -223,27 +213,8 @@ fn everything() -> ConvexPolygon {
 pub enum Motion {
     /// A tracked ship.
     Ship(ShipTrack),
-    /// Two explicit polygons. Own ship is a point, and nothing is added.
-    Sets {
-        /// Possible positions at t = 0, metres.
-        initial: ConvexPolygon,
-        /// Possible velocities, m/s.
-        velocity: ConvexPolygon,
-    },
-    /// Two explicit ellipses, used like [`Self::Sets`].
-    Ellipses {
-        /// Possible positions at t = 0, metres.
-        initial: Ellipse,
-        /// Possible velocities, m/s.
-        velocity: Ellipse,
-    },
-    /// An explicit polygon with consecutive velocity sets, used like [`Self::Sets`].
-    Spells {
-        /// Possible positions at t = 0, metres.
-        initial: ConvexPolygon,
-        /// In order of time: the ends increase, and the last one is infinite.
-        spells: Vec<VelocitySpell>,
-    },
+    /// Explicit sets, all polygons or all ellipses. Own ship is a point, and nothing is added.
+    Sets(Uncertainty),
 }
 
 /// Kind of a target's sets.
@@ -262,70 +233,46 @@ pub struct Target {
     pub name: String,
     /// Its motion, as far as it is known.
     pub motion: Motion,
-    /// Kind of its sets; unused where ellipses or several velocity sets are given.
+    /// Kind of its sets; unused where ellipses are given.
     pub representation: Representation,
 }
 
 impl Target {
-    /// Nominal position at `time`: the estimate, or the centroids of the sets.
+    /// Nominal position at `time`: the estimate, or that of the centres of the sets.
     pub fn position_at(&self, time: f64) -> Vector {
         match &self.motion {
             Motion::Ship(ship) => ship.pose_at(time).position,
-            Motion::Sets { initial, velocity } => initial.centroid() + velocity.centroid() * time,
-            Motion::Ellipses { initial, velocity } => initial.center() + velocity.center() * time,
-            Motion::Spells { initial, spells } => durations(spells, time)
-                .fold(initial.centroid(), |at, (duration, velocities)| {
-                    at + velocities.centroid() * duration
-                }),
+            Motion::Sets(sets) => sets.center_at(time),
         }
     }
 
-    /// Possible positions at `time >= 0` of a target with explicit sets, metres; `None` for a
-    /// tracked ship.
-    ///
-    /// The Minkowski sum of its sets; for ellipses an outer set from their circumscribed 64-gons.
+    /// Polygon around the possible positions at `time >= 0` of a target with explicit sets, metres;
+    /// `None` for a tracked ship.
     pub fn outer_set_at(&self, time: f64) -> Option<ConvexPolygon> {
+        self.sets().map(|sets| sets.outer_section(time))
+    }
+
+    /// The explicit sets, if it has them.
+    pub fn sets(&self) -> Option<&Uncertainty> {
         match &self.motion {
             Motion::Ship(_) => None,
-            Motion::Sets { initial, velocity } => {
-                Some(initial.minkowski_sum(&velocity.scaled(time)))
-            }
-            Motion::Ellipses { initial, velocity } => {
-                let [initial, velocity] = [initial, velocity].map(|e| e.outer_polygon(SET_SIDES));
-                Some(initial.minkowski_sum(&velocity.scaled(time)))
-            }
-            Motion::Spells { initial, spells } => Some(
-                durations(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
-                    set.minkowski_sum(&velocities.scaled(duration))
-                }),
-            ),
+            Motion::Sets(sets) => Some(sets),
         }
     }
 
-    /// The times at which its velocity set changes, seconds.
+    /// The times at which its velocity set changes, seconds; the last one is infinite.
     pub fn changes(&self) -> Vec<f64> {
-        match &self.motion {
-            Motion::Spells { spells, .. } => spells.iter().map(|s| s.until).collect(),
-            Motion::Ship(_) | Motion::Sets { .. } | Motion::Ellipses { .. } => Vec::new(),
-        }
+        let sets = self.sets().map_or(&[][..], |sets| &sets.velocities);
+        sets.iter().map(|set| set.until).collect()
     }
 
     /// The tracked ship, if it is one.
     pub fn ship(&self) -> Option<&ShipTrack> {
         match &self.motion {
             Motion::Ship(ship) => Some(ship),
-            Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => None,
+            Motion::Sets(_) => None,
         }
     }
-}
-
-/// Duration of each velocity set until `time`, seconds.
-fn durations(sets: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
-    let starts = std::iter::once(0.0).chain(sets.iter().map(|s| s.until));
-    starts
-        .zip(sets)
-        .map(move |(start, s)| (s.until.min(time) - start, &s.velocities))
-        .filter(|(duration, _)| *duration > 0.0)
 }
 
 #[cfg(test)]

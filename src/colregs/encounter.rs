@@ -120,7 +120,7 @@ pub fn encounter(
                 })
             }
             // convex between two changes of the velocities
-            Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => {
+            Motion::Sets(sets) => {
                 let mut ends: Vec<f64> = target.changes();
                 ends.retain(|&end| end > from && end < until);
                 ends.push(until);
@@ -128,9 +128,7 @@ pub fn encounter(
                 let mut best: Option<Closest> = None;
                 for end in ends {
                     let here = least(start, end, |time| {
-                        target
-                            .outer_set_at(time)
-                            .map_or(f64::INFINITY, |set| set.signed_distance(position(time)))
+                        sets.outer_section(time).signed_distance(position(time))
                     });
                     if best.as_ref().is_none_or(|b| here.distance < b.distance) {
                         best = Some(here);
@@ -208,7 +206,7 @@ mod tests {
     use super::super::role::tests::{fixtures, ship};
     use super::*;
     use crate::geometry::ConvexPolygon;
-    use crate::target::{DomainKind, Representation};
+    use crate::target::{DomainKind, Representation, Uncertainty};
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -358,10 +356,10 @@ mod tests {
         };
         let target = Target {
             name: "box".to_owned(),
-            motion: Motion::Sets {
-                initial: square(10.0).translated(Vector::new(300.0, 100.0)),
-                velocity: square(0.5),
-            },
+            motion: Motion::Sets(Uncertainty::constant(
+                square(10.0).translated(Vector::new(300.0, 100.0)),
+                square(0.5),
+            )),
             representation: Representation::Polytope,
         };
         let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);

@@ -42,7 +42,7 @@ pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,
 };
-pub use targets::{ShipDocument, SpellDocument, TargetDocument};
+pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};
 
 /// The JSON text of a document, indented, with a line end.

@@ -6,19 +6,18 @@ use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
 use super::encounter::{EncounterDocument, encounters};
 use super::parts::{
-    CostDocument, EscapeDocument, InitialSetDocument, MissionDocument, NodeDocument,
-    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
-    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
-    TurnDocument, VelocitySetDocument, ViolationDocument,
+    CostDocument, EscapeDocument, MissionDocument, NodeDocument, ObstacleDocument, OwnShipDocument,
+    PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
+    StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
-use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use super::targets::{TargetDocument, initial_set, target, velocity_set};
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
+use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
 use crate::scenario::Scenario;
@@ -385,38 +384,22 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
     let left = horizon - from;
-    let entry = |valid_s, initial_set, velocity_set| ObstacleDocument {
-        name: set.name().to_owned(),
-        valid_s,
-        initial_set,
-        velocity_set,
-    };
-    let polytope = |o: &PolytopeObstacle, valid_s| {
-        entry(
-            valid_s,
-            InitialSetDocument::Polygon {
-                vertices_m: vertices(o.initial()),
-            },
-            VelocitySetDocument::Polygon {
-                vertices_mps: vertices(o.velocity()),
-            },
-        )
+    let entry = |set: &Obstacle, times: [f64; 2]| {
+        let sets = set.sets();
+        ObstacleDocument {
+            name: set.name().to_owned(),
+            valid_s: times.map(|time| from + time),
+            initial_set: initial_set(&sets.initial),
+            velocity_set: velocity_set(&sets.velocities[0].velocities),
+        }
     };
     match set {
-        Obstacle::Polytope(o) => vec![polytope(o, [from, horizon])],
-        Obstacle::Ellipsoid(o) => vec![entry(
-            [from, horizon],
-            ellipse(o.initial()),
-            velocity_ellipse(o.velocity()),
-        )],
+        Obstacle::Polytope(_) | Obstacle::Ellipsoid(_) => vec![entry(set, [0.0, left])],
         Obstacle::Slabs(o) => o
             .slabs()
             .iter()
             .filter(|slab| slab.start() < left || slab.start() == 0.0)
-            .map(|slab| {
-                let times = [slab.start(), slab.end().min(left)];
-                polytope(slab.obstacle(), times.map(|time| from + time))
-            })
+            .map(|slab| entry(slab.obstacle(), [slab.start(), slab.end().min(left)]))
             .collect(),
     }
 }

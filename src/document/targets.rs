@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::parts::{InitialSetDocument, PositionDocument, VelocitySetDocument};
 use super::plan::{plain, rows, vertices};
 use crate::frame::{course_deg_from_heading, deg_from_radians};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{Motion, Representation, ShipTrack, Target};
+use crate::geometry::ConvexSet;
+use crate::target::{Representation, ShipTrack, Target, TimedVelocitySet};
 
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,7 +23,7 @@ pub struct TargetDocument {
     pub initial_set: Option<InitialSetDocument>,
     /// Consecutive velocity sets; absent for a ship.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub velocity_sets: Vec<SpellDocument>,
+    pub velocity_sets: Vec<TimedSetDocument>,
 }
 
 /// Tracked ship, with the keys of the scenario file.
@@ -42,7 +42,7 @@ pub struct ShipDocument {
 
 /// Velocity set with the end of its time interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SpellDocument {
+pub struct TimedSetDocument {
     /// End of the time interval; null for the last.
     pub until_s: Option<f64>,
     /// Velocity set.
@@ -52,37 +52,11 @@ pub struct SpellDocument {
 
 /// Builds the document of a target.
 pub(super) fn target(target: &Target) -> TargetDocument {
-    let polygon = |set: &ConvexPolygon| InitialSetDocument::Polygon {
-        vertices_m: vertices(set),
+    let timed = |timed: &TimedVelocitySet| TimedSetDocument {
+        until_s: timed.until.is_finite().then_some(timed.until),
+        set: velocity_set(&timed.velocities),
     };
-    let velocities = |set: &ConvexPolygon| VelocitySetDocument::Polygon {
-        vertices_mps: vertices(set),
-    };
-    let whole = |set| SpellDocument { until_s: None, set };
-    let (ship, initial_set, velocity_sets) = match &target.motion {
-        Motion::Ship(track) => (Some(ship(track)), None, Vec::new()),
-        Motion::Sets { initial, velocity } => (
-            None,
-            Some(polygon(initial)),
-            vec![whole(velocities(velocity))],
-        ),
-        Motion::Ellipses { initial, velocity } => (
-            None,
-            Some(ellipse(initial)),
-            vec![whole(velocity_ellipse(velocity))],
-        ),
-        Motion::Spells { initial, spells } => (
-            None,
-            Some(polygon(initial)),
-            spells
-                .iter()
-                .map(|spell| SpellDocument {
-                    until_s: spell.until.is_finite().then_some(spell.until),
-                    set: velocities(&spell.velocities),
-                })
-                .collect(),
-        ),
-    };
+    let sets = target.sets();
     TargetDocument {
         name: target.name.clone(),
         representation: match target.representation {
@@ -90,9 +64,10 @@ pub(super) fn target(target: &Target) -> TargetDocument {
             Representation::Ellipsoid => "ellipsoid",
         }
         .to_owned(),
-        ship,
-        initial_set,
-        velocity_sets,
+        ship: target.ship().map(ship),
+        initial_set: sets.map(|sets| initial_set(&sets.initial)),
+        velocity_sets: sets
+            .map_or_else(Vec::new, |sets| sets.velocities.iter().map(timed).collect()),
     }
 }
 
@@ -111,16 +86,26 @@ fn ship(track: &ShipTrack) -> ShipDocument {
     }
 }
 
-pub(super) fn ellipse(set: &Ellipse) -> InitialSetDocument {
-    InitialSetDocument::Ellipse {
-        center_m: plain(set.center()),
-        shape_m2: rows(set),
+pub(super) fn initial_set(set: &ConvexSet) -> InitialSetDocument {
+    match set {
+        ConvexSet::Polygon(set) => InitialSetDocument::Polygon {
+            vertices_m: vertices(set),
+        },
+        ConvexSet::Ellipse(set) => InitialSetDocument::Ellipse {
+            center_m: plain(set.center()),
+            shape_m2: rows(set),
+        },
     }
 }
 
-pub(super) fn velocity_ellipse(set: &Ellipse) -> VelocitySetDocument {
-    VelocitySetDocument::Ellipse {
-        center_mps: plain(set.center()),
-        shape_m2_per_s2: rows(set),
+pub(super) fn velocity_set(set: &ConvexSet) -> VelocitySetDocument {
+    match set {
+        ConvexSet::Polygon(set) => VelocitySetDocument::Polygon {
+            vertices_mps: vertices(set),
+        },
+        ConvexSet::Ellipse(set) => VelocitySetDocument::Ellipse {
+            center_mps: plain(set.center()),
+            shape_m2_per_s2: rows(set),
+        },
     }
 }

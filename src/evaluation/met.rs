@@ -1,38 +1,34 @@
 //! Clearances and safety of own ship with respect to one target.
 
-use super::safety::{Claim, EDGE};
+use super::safety::Claim;
 use super::{Passage, Request, Safety, TurnedHull};
-use crate::evaluation::distance::clearance::{Body, least_distance};
+use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::{Piece, at_rest};
 use crate::evaluation::distance::turn::{Turn, least_while_turning};
-use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
-use crate::evaluation::sets::space_time_set::{MovingSet, since};
+use crate::evaluation::sets::space_time_set::since;
 use crate::frame::{Side, cross, direction};
-use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
-use crate::target::{Motion, Representation, Target, VelocitySpell};
+use crate::geometry::{ConvexPolygon, ConvexSet, outer_disc, outer_enclosing_ellipse};
+use crate::target::{Motion, Representation, Target, TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 
 /// Scales a ship's velocities by `1 - risk` about their centre. The centre is the centroid of the
 /// polygon, or the centre of the smallest enclosing ellipse, according to the target's
 /// representation.
-fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
-    let scaled = |spell: &VelocitySpell| {
-        let set = &spell.velocities;
-        let center = match target.representation {
-            Representation::Polytope => set.centroid(),
-            Representation::Ellipsoid => outer_enclosing_ellipse(set).center(),
+fn at_risk(sets: &[TimedVelocitySet], target: &Target, risk: f64) -> Vec<TimedVelocitySet> {
+    let scaled = |timed: &TimedVelocitySet| {
+        let scaled = match (&timed.velocities, target.representation) {
+            (ConvexSet::Polygon(set), Representation::Ellipsoid) => {
+                let center = outer_enclosing_ellipse(set).center();
+                let about = set.translated(-center).scaled(1.0 - risk);
+                about.translated(center).into()
+            }
+            (set, _) => set.scaled_about_center(1.0 - risk),
         };
-        VelocitySpell {
-            until: spell.until,
-            velocities: set
-                .translated(-center)
-                .scaled(1.0 - risk)
-                .translated(center),
-        }
+        TimedVelocitySet::new(timed.until, scaled)
     };
-    spells.iter().map(scaled).collect()
+    sets.iter().map(scaled).collect()
 }
 
 /// Returns the encounter with a target, the least clearance that is judged, and the safety.
@@ -51,7 +47,6 @@ pub(super) fn passage<P: Piece>(
     let (closest, worst, kept, hold, safety) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
-            let hull = ship.hull.polygon(&ship.pose);
             let along = |slabs: &MovingSlabs, pieces: &[P], turns: &[Turn]| {
                 let mut least = slabs.least_distance(pieces, body);
                 let turning = least_while_turning(turns, body, slabs);
@@ -59,11 +54,9 @@ pub(super) fn passage<P: Piece>(
                 least.certified &= turning.certified;
                 least
             };
-            let held = VelocitySpell {
-                until: f64::INFINITY,
-                velocities: ConvexPolygon::point(ship.velocity()),
-            };
-            let nominal = MovingSlabs::new(&hull, &[held]);
+            let hull = ship.hull.polygon(&ship.pose);
+            let held = Uncertainty::constant(hull, ConvexPolygon::point(ship.velocity()));
+            let nominal = MovingSlabs::new(&held);
             let unknown = outer_disc(
                 tolerance::POSITION_SIGMAS * ship.position_std,
                 ship.pose.heading,
@@ -72,15 +65,15 @@ pub(super) fn passage<P: Piece>(
                 let hull = TurnedHull::of(ship, until).outer_polygon();
                 hull.minkowski_sum(&unknown)
             };
-            let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let whole = MovingSlabs::growing(turned, &spells);
+            let velocities = ship.outer_velocity_sets(ship.turn_rate, request.horizon);
+            let whole = MovingSlabs::growing(turned, &velocities);
             let worst = along(&whole, pieces, turns);
             let hold = whole.least_distance(&lying, body);
             let kept = if from > 0.0 || request.max_risk > 0.0 {
-                let spells = at_risk(&spells, target, request.max_risk);
+                let velocities = at_risk(&velocities, target, request.max_risk);
                 let later = turns.iter().filter(|turn| turn.time >= from).copied();
                 let later: Vec<Turn> = later.collect();
-                let slabs = MovingSlabs::growing(turned, &spells);
+                let slabs = MovingSlabs::growing(turned, &velocities);
                 along(&slabs, &since(pieces, from, 0.0), &later)
             } else {
                 worst
@@ -91,25 +84,11 @@ pub(super) fn passage<P: Piece>(
             });
             (closest, worst, kept, hold, safety)
         }
-        Motion::Sets { initial, velocity } => {
-            let set = MovingSet::new(initial, velocity);
-            let least = least_distance(pieces, Body::POINT, &set);
-            let hold = least_distance(&lying, Body::POINT, &set);
-            let safety = claim.of_set(request, &least, EDGE.filter(|_| set.has_interior()));
-            (least, least, least, hold, safety)
-        }
-        Motion::Ellipses { initial, velocity } => {
-            let set = MovingEllipse::new(initial, velocity);
-            let least = set.least_distance(pieces);
-            let hold = set.least_distance(&lying);
-            let safety = claim.of_set(request, &least, set.edge(least.time));
-            (least, least, least, hold, safety)
-        }
-        Motion::Spells { initial, spells } => {
-            let slabs = MovingSlabs::new(initial, spells);
+        Motion::Sets(sets) => {
+            let slabs = MovingSlabs::new(sets);
             let least = slabs.least_distance(pieces, Body::POINT);
             let hold = slabs.least_distance(&lying, Body::POINT);
-            let safety = claim.of_set(request, &least, EDGE.filter(|_| slabs.has_interior()));
+            let safety = claim.of_set(request, &least, slabs.edge(least.time));
             (least, least, least, hold, safety)
         }
     };

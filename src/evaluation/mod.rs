@@ -18,17 +18,17 @@ mod words;
 
 pub use cost::counted::{Counted, counted_error};
 pub(crate) use cost::stage_cost::{StageWeights, stage_costs};
+pub(crate) use distance::clearance::Body;
 pub(crate) use distance::turned_hull::TurnedHull;
 pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
-pub(crate) use sets::moving_ellipse::MovingEllipse;
-pub use sets::space_time_set::{SetShape, SpaceTimeSet};
+pub(crate) use sets::moving_slabs::MovingSlabs;
+pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use words::risk_figure;
 pub use words::{facts, outcome_word};
 
-use distance::clearance::Body;
 use distance::least::Least;
 use distance::piece::Piece;
 use distance::turn::{Turn, turns};
@@ -238,7 +238,7 @@ fn meetings<P: Piece>(
         .map(|set| {
             let least = set.least_distance(pieces);
             let label = format!("set of '{}'", set.name);
-            let edge = set.shape.edge(least.time - set.from);
+            let edge = set.edge(least.time - set.from);
             let entered = collision(&label, &least, edge);
             let kept = entered.is_none();
             violations.extend(entered.filter(|_| judged));

@@ -1,12 +1,10 @@
 //! Closest approach of the nominal motions: own ship and target both follow their plans unchanged.
 
-use crate::evaluation::distance::clearance::{Body, least_distance};
-use crate::evaluation::distance::least::Least;
+use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
-use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::frame::{Pose, heading_of};
 use crate::geometry::ConvexPolygon;
-use crate::target::{Motion, Target, VelocitySpell};
+use crate::target::{Motion, Target, Uncertainty};
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
 
@@ -29,22 +27,16 @@ pub(crate) fn nominal_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec<Seg
 /// For explicit sets: distance from own position to the set. Turns between legs are not evaluated.
 /// `None` for ellipses.
 pub(crate) fn nominal_distance(own: &OwnShip, legs: &[Segment], target: &Target) -> Option<f64> {
-    let least: Least = match &target.motion {
+    let least = match &target.motion {
         Motion::Ship(ship) => {
-            let held = VelocitySpell {
-                until: f64::INFINITY,
-                velocities: ConvexPolygon::point(ship.velocity()),
-            };
-            let nominal = MovingSlabs::new(&ship.hull.polygon(&ship.pose), &[held]);
-            nominal.least_distance(legs, Body::hull(&own.hull))
+            let hull = ship.hull.polygon(&ship.pose);
+            let held = Uncertainty::constant(hull, ConvexPolygon::point(ship.velocity()));
+            MovingSlabs::new(&held).least_distance(legs, Body::hull(&own.hull))
         }
-        Motion::Sets { initial, velocity } => {
-            least_distance(legs, Body::POINT, &MovingSet::new(initial, velocity))
+        Motion::Sets(sets) if sets.initial.as_polygon().is_some() => {
+            MovingSlabs::new(sets).least_distance(legs, Body::POINT)
         }
-        Motion::Spells { initial, spells } => {
-            MovingSlabs::new(initial, spells).least_distance(legs, Body::POINT)
-        }
-        Motion::Ellipses { .. } => return None,
+        Motion::Sets(_) => return None,
     };
     Some(least.value)
 }

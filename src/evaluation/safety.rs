@@ -162,7 +162,7 @@ mod tests {
     use crate::frame::Vector;
     use crate::geometry::{ConvexPolygon, Polygon};
     use crate::scenario::Scenario;
-    use crate::target::Motion;
+    use crate::target::{Motion, Uncertainty};
     use crate::trajectory::Segment;
 
     /// Scenario in which own ship moves 1500 m along the path and passes a target at rest half-way.
@@ -259,7 +259,7 @@ mod tests {
         ] {
             let sets = [SpaceTimeSet {
                 from,
-                ..SpaceTimeSet::polytope("t", set.clone(), still.clone())
+                ..SpaceTimeSet::constant("t", set.clone(), still.clone())
             }];
             let found = judged(&scene, &sets, max_risk, &[], 0.0);
             assert_eq!(found.safety, expected, "{max_risk}, {from}");
@@ -271,10 +271,9 @@ mod tests {
     fn a_set_that_is_given_is_entered_or_not() {
         for (half, expected) in [(59.0, Safety::Safe), (61.0, Safety::Unsafe)] {
             let mut scene = scene(60.0, 0.0);
-            scene.scenario.targets[0].motion = Motion::Sets {
-                initial: box_around(half),
-                velocity: ConvexPolygon::point(Vector::zeros()),
-            };
+            let still = ConvexPolygon::point(Vector::zeros());
+            let sets = Uncertainty::constant(box_around(half), still);
+            scene.scenario.targets[0].motion = Motion::Sets(sets);
             assert_eq!(
                 judged(&scene, &[], 0.0, &[], 0.0).safety,
                 expected,

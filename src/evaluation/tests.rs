@@ -4,7 +4,9 @@ use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::target::{
+    DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
+};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
 use crate::vessel::OwnShip;
@@ -82,7 +84,7 @@ fn below(upper: f64) -> SpaceTimeSet {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         ConvexPolygon::hull(&points).expect("finite")
     };
-    SpaceTimeSet::polytope("below", set(&corners), set(&speeds))
+    SpaceTimeSet::constant("below", set(&corners), set(&speeds))
 }
 
 fn ship(y: f64, speed: f64) -> Target {
@@ -302,7 +304,7 @@ fn a_set_crossed_between_any_two_samples_is_found() {
             at + Vector::new(-half, -30.0),
         ])
         .expect("finite");
-        SpaceTimeSet::polytope("needle", initial, ConvexPolygon::point(Vector::zeros()))
+        SpaceTimeSet::constant("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
         assert_eq!(
@@ -388,11 +390,7 @@ fn line(from: Vector, heading: f64, duration: f64) -> Segment {
 }
 
 fn round(initial: Ellipse, velocity: Ellipse) -> SpaceTimeSet {
-    SpaceTimeSet {
-        from: 0.0,
-        name: "round".to_owned(),
-        shape: SetShape::Ellipses { initial, velocity },
-    }
+    SpaceTimeSet::constant("round", initial, velocity)
 }
 
 fn disc(center: Vector, radius: f64) -> Ellipse {
@@ -429,7 +427,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
             Ellipse::from_axes(center, [a, b])
         };
         let set = (ellipse(30.0, case % 3 == 0), ellipse(1.0, case % 4 == 0));
-        let moving = MovingEllipse::new(&set.0, &set.1);
+        let moving = MovingEllipse::new(&[(set.0, 1.0)], &set.1);
         let s = Segment {
             start: Pose::new(
                 Vector::new(rng.random_range(-80.0..80.0), rng.random_range(-80.0..80.0)),
@@ -449,7 +447,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
             let section = Ellipse::new(center, q).expect("a shape");
             section.signed_distance(s.pose_at(time).position).distance
         };
-        let found = moving.least_distance(&[s]);
+        let found = moving.least_distance_below(Least::new(), &[s]);
         let scan = (0..=2000)
             .map(|i| at(s.start_time + s.duration * f64::from(i) / 2000.0))
             .fold(f64::INFINITY, f64::min);
@@ -477,17 +475,15 @@ fn slabs_are_judged_within_their_time() {
         Vector::new(280.0, 10.0),
     ])
     .expect("finite");
-    let spell = |until, north| VelocitySpell {
-        until,
-        velocities: ConvexPolygon::point(Vector::new(0.0, north)),
-    };
+    let timed =
+        |until, north| TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, north)));
     let judged = |until: f64| {
         let set = SpaceTimeSet {
             from: 0.0,
             name: "slabs".to_owned(),
-            shape: SetShape::Polygons {
-                initial: square.clone(),
-                spells: vec![spell(until, 0.0), spell(f64::INFINITY, 5.0)],
+            sets: Uncertainty {
+                initial: square.clone().into(),
+                velocities: vec![timed(until, 0.0), timed(f64::INFINITY, 5.0)],
             },
         };
         let found = judge(&[line(Vector::zeros(), 0.0, 300.0)], &[set], &[]);

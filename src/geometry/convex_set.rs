@@ -28,4 +28,52 @@ impl ConvexSet {
             Self::Ellipse(ellipse) => ellipse.outer_polygon(sides),
         }
     }
+
+    /// The polygon, if it is one.
+    pub fn as_polygon(&self) -> Option<&ConvexPolygon> {
+        match self {
+            Self::Polygon(polygon) => Some(polygon),
+            Self::Ellipse(_) => None,
+        }
+    }
+
+    /// The ellipse, if it is one.
+    pub fn as_ellipse(&self) -> Option<&Ellipse> {
+        match self {
+            Self::Polygon(_) => None,
+            Self::Ellipse(ellipse) => Some(ellipse),
+        }
+    }
+
+    /// The centroid of the polygon, or the centre of the ellipse.
+    pub fn center(&self) -> Vector {
+        match self {
+            Self::Polygon(polygon) => polygon.centroid(),
+            Self::Ellipse(ellipse) => ellipse.center(),
+        }
+    }
+
+    /// `c + factor (x - c)` for every `x` of the set, with its centre `c`.
+    pub fn scaled_about_center(&self, factor: f64) -> Self {
+        match self {
+            Self::Polygon(polygon) => {
+                let center = polygon.centroid();
+                let about = polygon.translated(-center).scaled(factor);
+                Self::Polygon(about.translated(center))
+            }
+            Self::Ellipse(ellipse) => Self::Ellipse(ellipse.scaled_about_center(factor)),
+        }
+    }
+}
+
+impl From<ConvexPolygon> for ConvexSet {
+    fn from(polygon: ConvexPolygon) -> Self {
+        Self::Polygon(polygon)
+    }
+}
+
+impl From<Ellipse> for ConvexSet {
+    fn from(ellipse: Ellipse) -> Self {
+        Self::Ellipse(ellipse)
+    }
 }

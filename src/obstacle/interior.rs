@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 
-use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
+use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse, outer_disc};
+use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
 
 impl Obstacle {
@@ -14,12 +14,16 @@ impl Obstacle {
     pub(crate) fn outer_with_interior(&self) -> Self {
         match self {
             Self::Polytope(o) => widened(o).into(),
-            Self::Slabs(o) => outer_grown(o.initial())
-                .and_then(|grown| {
-                    SlabObstacle::new(o.name(), grown, o.velocity_sets().to_vec()).ok()
-                })
-                .unwrap_or_else(|| o.clone())
-                .into(),
+            Self::Slabs(o) => {
+                let grown = match &o.sets().initial {
+                    ConvexSet::Polygon(initial) => outer_grown(initial).map(ConvexSet::from),
+                    ConvexSet::Ellipse(initial) => outer_widened(initial).map(ConvexSet::from),
+                };
+                match grown {
+                    Some(grown) => o.with_initial(grown).into(),
+                    None => o.clone().into(),
+                }
+            }
             Self::Ellipsoid(o) => match o.flat() {
                 Some(flat) => widened(flat).into(),
                 None if o.is_thin() => widened_needle(o).into(),
@@ -53,7 +57,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
-            Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
+            Self::Slabs(o) => o.slabs()[0].obstacle().is_flat_for_a_while(),
             Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }
@@ -88,18 +92,23 @@ fn widened_needle(obstacle: &EllipsoidObstacle) -> PolytopeObstacle {
 }
 
 fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
-    let [_, b] = obstacle.initial().semi_axes();
-    if b.norm() < HALF_WIDTH_M {
+    match outer_widened(obstacle.initial()) {
+        Some(grown) => EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity()),
+        None => obstacle.clone(),
+    }
+}
+
+/// [`outer_grown`] for an ellipse.
+fn outer_widened(initial: &Ellipse) -> Option<Ellipse> {
+    let [_, b] = initial.semi_axes();
+    (b.norm() < HALF_WIDTH_M).then(|| {
         let axes = [
             Vector::new(HALF_WIDTH_M, 0.0),
             Vector::new(0.0, HALF_WIDTH_M),
         ];
         let disc = Ellipse::from_axes(Vector::zeros(), axes);
-        let grown = EllipsoidObstacle::new("", *obstacle.initial(), disc).outer_section(1.0);
-        EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity())
-    } else {
-        obstacle.clone()
-    }
+        EllipsoidObstacle::new("", *initial, disc).outer_section(1.0)
+    })
 }
 
 #[cfg(test)]

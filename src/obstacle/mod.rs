@@ -1,7 +1,7 @@
 //! Space-time obstacles: sets that contain every position a target may reach, at every time.
 //!
-//! [`PolytopeObstacle`] is exact for its sets. [`SlabObstacle`] is a sequence of polytopes: its
-//! velocity set changes with time. [`EllipsoidObstacle`] is an outer set. All three implement
+//! [`PolytopeObstacle`] is exact for its sets. [`EllipsoidObstacle`] is an outer set.
+//! [`SlabObstacle`] is a sequence of these: its velocity set changes with time. All three implement
 //! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`LandObstacle`] is land: many static convex
 //! sets.
 
@@ -14,6 +14,7 @@ mod polytope;
 mod projection;
 mod representation;
 mod risk;
+mod slabs;
 mod space_time_obstacle;
 mod velocity_obstacle;
 
@@ -22,7 +23,6 @@ pub use ellipsoid::EllipsoidObstacle;
 pub use ellipsoid::velocity_obstacle::EllipsoidVelocityObstacle;
 pub(crate) use land::window_of;
 pub use land::{LAND, LandObstacle};
-pub use polytope::slabs::{Slab, SlabError, SlabObstacle};
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{
     OUTER_EXCESS_M, PathTime, Track, along_path, along_track_from, ellipsoid_along_track_from,
@@ -30,5 +30,6 @@ pub use projection::{
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use representation::Obstacle;
 pub use risk::{PeakRisk, level_sets};
+pub use slabs::{Slab, SlabError, SlabObstacle};
 pub use space_time_obstacle::{SpaceTimeObstacle, Support};
 pub use velocity_obstacle::{HalfPlane, VelocityObstacle};

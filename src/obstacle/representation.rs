@@ -1,14 +1,14 @@
 //! An obstacle of any kind.
 
 use super::closest_approach::ClosestApproach;
-use super::polytope::slabs::Slab;
 use super::risk::PeakRisk;
+use super::slabs::SlabError;
 use super::{
     EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support, VelocityObstacle,
 };
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, SignedDistance};
-use crate::target::VelocitySpell;
+use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::trajectory::{Segment, Trajectory};
 
 /// Sides of the polygon around an elliptic section.
@@ -27,6 +27,42 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
+    /// From the sets of a target: a polytope, an ellipsoid where both sets are ellipses, or slabs
+    /// where the velocity set changes.
+    pub fn new(name: impl Into<String>, sets: Uncertainty) -> Result<Self, SlabError> {
+        use ConvexSet::{Ellipse, Polygon};
+        Ok(match (&sets.initial, &sets.velocities[..]) {
+            (
+                Polygon(initial),
+                [
+                    TimedVelocitySet {
+                        velocities: Polygon(velocity),
+                        ..
+                    },
+                ],
+            ) => PolytopeObstacle::new(name, initial.clone(), velocity.clone()).into(),
+            (
+                Ellipse(initial),
+                [
+                    TimedVelocitySet {
+                        velocities: Ellipse(velocity),
+                        ..
+                    },
+                ],
+            ) => EllipsoidObstacle::new(name, *initial, *velocity).into(),
+            _ => SlabObstacle::new(name, sets)?.into(),
+        })
+    }
+
+    /// The set at t = 0 and the velocity sets.
+    pub fn sets(&self) -> Uncertainty {
+        match self {
+            Self::Polytope(o) => Uncertainty::constant(o.initial().clone(), o.velocity().clone()),
+            Self::Ellipsoid(o) => Uncertainty::constant(*o.initial(), *o.velocity()),
+            Self::Slabs(o) => o.sets().clone(),
+        }
+    }
+
     fn object(&self) -> &dyn SpaceTimeObstacle {
         match self {
             Self::Polytope(o) => o,
@@ -46,8 +82,12 @@ impl Obstacle {
     /// Kind of the sections: `"polytope"` or `"ellipsoid"`.
     pub fn representation(&self) -> &'static str {
         match self {
-            Self::Polytope(_) | Self::Slabs(_) => "polytope",
+            Self::Polytope(_) => "polytope",
             Self::Ellipsoid(_) => "ellipsoid",
+            Self::Slabs(o) => match o.sets().initial {
+                ConvexSet::Polygon(_) => "polytope",
+                ConvexSet::Ellipse(_) => "ellipsoid",
+            },
         }
     }
 
@@ -56,7 +96,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => ConvexSet::Polygon(o.section(time)),
             Self::Ellipsoid(o) => ConvexSet::Ellipse(o.outer_section(time)),
-            Self::Slabs(o) => ConvexSet::Polygon(o.section(time)),
+            Self::Slabs(o) => o.section(time),
         }
     }
 
@@ -75,27 +115,16 @@ impl Obstacle {
         if !(time > 0.0) {
             return self.clone();
         }
-        match self {
-            Self::Polytope(o) => {
-                PolytopeObstacle::new(o.name(), o.section(time), o.velocity().clone()).into()
-            }
-            Self::Ellipsoid(o) => {
-                EllipsoidObstacle::new(o.name(), o.outer_section(time), *o.velocity()).into()
-            }
-            Self::Slabs(o) => {
-                let ends = o.slabs().iter().map(Slab::end).zip(o.velocity_sets());
-                let later = ends.filter(|(end, _)| *end > time);
-                let sets = later.map(|(end, set)| VelocitySpell {
-                    until: end - time,
-                    velocities: set.velocities.clone(),
-                });
-                // the last slab never ends, so one remains, and the ends increase
-                match SlabObstacle::new(o.name(), o.section(time), sets.collect()) {
-                    Ok(rest) => rest.into(),
-                    Err(_) => self.clone(),
-                }
-            }
-        }
+        let later = self.sets().velocities.into_iter();
+        let later = later
+            .filter(|set| set.until > time)
+            .map(|set| TimedVelocitySet::new(set.until - time, set.velocities));
+        let sets = Uncertainty {
+            initial: self.section(time),
+            velocities: later.collect(),
+        };
+        // the last set never ends, so one remains, and the ends increase
+        Self::new(self.name(), sets).unwrap_or_else(|_| self.clone())
     }
 
     /// The velocity obstacle as a union of convex regions.
@@ -109,7 +138,7 @@ impl Obstacle {
     ) -> Option<Vec<VelocityObstacle>> {
         match self {
             Self::Polytope(o) => Some(vec![o.velocity_obstacle(position, horizon)]),
-            Self::Slabs(o) => Some(o.velocity_obstacles(position, horizon)),
+            Self::Slabs(o) => Some(o.outer_velocity_obstacles(position, horizon)),
             // for parallel segments and points the sixteen sides of the outer polygon coincide
             Self::Ellipsoid(o) if o.is_flat() => Some(vec![
                 o.sum_outer_polytope().velocity_obstacle(position, horizon),

@@ -1,7 +1,7 @@
 //! The velocity obstacle of polytopes as a set of half-planes: paper eq. (26), docs/theory.md
 //! section 5.3.
 
-use super::{HalfSpace, PolytopeObstacle, SlabObstacle};
+use super::{HalfSpace, PolytopeObstacle, Slab, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::ConvexPolygon;
 
@@ -166,9 +166,13 @@ impl SlabObstacle {
     ///
     /// The vertices of `(O_t - x) / t` move in straight lines with `1 / t`. So the region of a slab
     /// that starts after t = 0 is the convex hull of the sets at its two ends. Exact for a finite
-    /// horizon, the closure for an infinite one. Contains every velocity where the position is in
-    /// `O_0` or NaN.
-    pub fn velocity_obstacles(&self, position: Vector, horizon: f64) -> Vec<VelocityObstacle> {
+    /// horizon and polygons, the closure for an infinite one. For ellipses it is that of
+    /// [`Slab::outer_polytope`]. Contains every velocity where the position is in `O_0` or NaN.
+    pub fn outer_velocity_obstacles(
+        &self,
+        position: Vector,
+        horizon: f64,
+    ) -> Vec<VelocityObstacle> {
         let horizon = if horizon.is_nan() {
             f64::INFINITY
         } else {
@@ -176,9 +180,11 @@ impl SlabObstacle {
         };
         let within = self.slabs().iter().filter(|slab| slab.start() <= horizon);
         within
-            .map(|slab| {
+            .map(|slab: &Slab| {
                 let (start, end) = (slab.start(), slab.end().min(horizon));
-                let obstacle = slab.obstacle();
+                let Some(obstacle) = slab.outer_polytope(end - start) else {
+                    return VelocityObstacle::of(Vec::new());
+                };
                 if start == 0.0 {
                     return obstacle.velocity_obstacle(position, end);
                 }

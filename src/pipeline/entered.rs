@@ -107,8 +107,8 @@ fn greatest_speed(set: &Obstacle) -> f64 {
     match set {
         Obstacle::Polytope(o) => o.velocity().reach(),
         Obstacle::Slabs(o) => {
-            let reaches = o.velocity_sets().iter().map(|set| set.velocities.reach());
-            reaches.fold(0.0, f64::max)
+            let speeds = o.slabs().iter().map(|slab| greatest_speed(slab.obstacle()));
+            speeds.fold(0.0, f64::max)
         }
         Obstacle::Ellipsoid(_) => f64::INFINITY,
     }

@@ -2,11 +2,10 @@
 
 use super::relaxation::Attempt;
 use crate::evaluation::{
-    Evaluation, Freedom, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
+    Evaluation, Freedom, Request, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::scenario::Scenario;
-use crate::target::VelocitySpell;
 use crate::trajectory::Trajectory;
 
 /// Evaluates a trajectory against the obstacles that it was planned against.
@@ -81,23 +80,6 @@ fn judged(
     trajectory: &Trajectory,
     freedom: Freedom,
 ) -> Evaluation {
-    let shape = |o: &Obstacle| match o {
-        Obstacle::Polytope(o) => SetShape::Polygons {
-            initial: o.initial().clone(),
-            spells: vec![VelocitySpell {
-                until: f64::INFINITY,
-                velocities: o.velocity().clone(),
-            }],
-        },
-        Obstacle::Ellipsoid(o) => SetShape::Ellipses {
-            initial: *o.initial(),
-            velocity: *o.velocity(),
-        },
-        Obstacle::Slabs(o) => SetShape::Polygons {
-            initial: o.initial().clone(),
-            spells: o.velocity_sets().to_vec(),
-        },
-    };
     let released = claims
         .released
         .iter()
@@ -110,7 +92,7 @@ fn judged(
             SpaceTimeSet {
                 name: o.name().to_owned(),
                 from,
-                shape: shape(&o.remainder(from)),
+                sets: o.remainder(from).sets(),
             }
         })
         .collect();

@@ -489,8 +489,8 @@ impl Relaxer<'_> {
 
     /// The sets with domains of these scale factors, and metres by which each domain is reduced.
     fn scaled(&self, scales: &[f64]) -> (Vec<Obstacle>, Vec<f64>) {
-        let all = self.sets.iter().zip(&self.scenario.targets).zip(scales);
-        let scaled = all.map(|((sets, target), scale)| sets.scaled(self.scenario, target, *scale));
+        let all = self.sets.iter().zip(scales);
+        let scaled = all.map(|(sets, scale)| sets.scaled(*scale));
         scaled.map(|s| (s.obstacle, s.reduction)).unzip()
     }
 
@@ -511,10 +511,10 @@ impl Relaxer<'_> {
 
     /// Scale factor of each domain that a motion is clear of, from below, by bisection.
     fn retained_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
-        let all = self.sets.iter().zip(&self.scenario.targets);
-        all.map(|(sets, target)| {
+        let all = self.sets.iter();
+        all.map(|sets| {
             let clear = |scale: f64| {
-                let set = sets.scaled(self.scenario, target, scale).obstacle;
+                let set = sets.scaled(scale).obstacle;
                 let set = if risk > 0.0 { set.at_risk(risk) } else { set };
                 let enters = |s| set.first_contact(s, crate::tolerance::TOUCH_M).is_some();
                 !trajectory.segments().iter().any(enters)

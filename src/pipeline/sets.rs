@@ -2,12 +2,10 @@
 
 use super::rules::without_domains_of_give_way_targets;
 use crate::colregs::{self, Encounter, Shapes};
-use crate::geometry::ConvexPolygon;
-use crate::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
-};
+use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::scenario::Scenario;
-use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::target::{Motion, Representation, Target, Uncertainty};
 
 /// The obstacles of one target, grown by own ship's footprint.
 #[derive(Debug, Clone)]
@@ -54,16 +52,16 @@ impl TargetSets {
 
     /// The set with a domain scale factor from 0, the hard set, to 1, the largest domain that own
     /// ship's start permits.
-    pub(super) fn scaled(&self, scenario: &Scenario, target: &Target, scale: f64) -> ScaledDomain {
-        match (&self.shapes, &target.motion) {
-            (Some(shapes), Motion::Ship(ship)) if scale > 0.0 && scale < 1.0 => {
+    pub(super) fn scaled(&self, scale: f64) -> ScaledDomain {
+        match &self.shapes {
+            Some(shapes) if scale > 0.0 && scale < 1.0 => {
                 let initial = shapes.scaled(scale);
                 ScaledDomain {
                     reduction: shapes.cut(&initial),
-                    obstacle: with_initial(target, ship, &self.hard, initial, scenario.horizon),
+                    obstacle: with_initial(&self.hard, initial),
                 }
             }
-            (Some(_), _) if scale < 1.0 => ScaledDomain {
+            Some(_) if scale < 1.0 => ScaledDomain {
                 obstacle: self.hard.clone(),
                 reduction: self.shape_reach,
             },
@@ -98,11 +96,15 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
         Motion::Ship(ship) => {
             let risk = colregs::first_risk(own, desired, ship, horizon);
             let shapes = colregs::shapes(own, ship, risk.as_ref(), horizon);
-            let hard = ship_obstacle(target, ship, shapes.hard.clone(), horizon);
+            let sets = Uncertainty {
+                initial: shapes.hard.clone().into(),
+                velocities: ship.outer_velocity_sets(ship.turn_rate, horizon),
+            };
+            let hard = obstacle(target, sets);
             let shaped = if shapes.shaped == shapes.hard {
                 hard.clone()
             } else {
-                with_initial(target, ship, &hard, shapes.shaped.clone(), horizon)
+                with_initial(&hard, shapes.shaped.clone())
             };
             // the ellipse around a reduced domain may contain own ship again
             let start = own.pose.position;
@@ -122,69 +124,39 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
                 shapes: (shapes.shaped != shapes.hard).then_some(shapes),
             }
         }
-        Motion::Sets { initial, velocity } => explicit(represented(
-            target.representation,
-            PolytopeObstacle::new(target.name.clone(), initial.clone(), velocity.clone()),
-        )),
-        Motion::Ellipses { initial, velocity } => {
-            explicit(EllipsoidObstacle::new(target.name.clone(), *initial, *velocity).into())
-        }
-        Motion::Spells { initial, spells } => {
-            explicit(time_varying(target, initial.clone(), spells.clone()))
-        }
+        Motion::Sets(sets) => explicit(obstacle(target, sets.clone())),
     }
 }
 
-fn represented(representation: Representation, polytope: PolytopeObstacle) -> Obstacle {
-    match representation {
-        Representation::Polytope => polytope.into(),
-        Representation::Ellipsoid => EllipsoidObstacle::outer_of(&polytope).into(),
+/// The obstacle of a target's sets. An ellipsoid around polygons that do not change where the
+/// target's representation asks for one.
+fn obstacle(target: &Target, sets: Uncertainty) -> Obstacle {
+    // should the ends not increase: one polytope with all velocities contains the slabs
+    let whole = |sets: &Uncertainty| {
+        let initial = sets.initial.outer_polygon(DISC_SIDES);
+        let velocity = sets.outer_velocities_after(f64::NEG_INFINITY);
+        PolytopeObstacle::new(target.name.clone(), initial, velocity)
+    };
+    let found = match Obstacle::new(target.name.clone(), sets.clone()) {
+        Ok(obstacle) => obstacle,
+        Err(_) => whole(&sets).into(),
+    };
+    match (target.representation, found.as_polytope()) {
+        (Representation::Ellipsoid, Some(polytope)) => EllipsoidObstacle::outer_of(polytope).into(),
+        _ => found,
     }
 }
 
-fn ship_obstacle(
-    target: &Target,
-    ship: &ShipTrack,
-    initial: ConvexPolygon,
-    horizon: f64,
-) -> Obstacle {
-    if ship.turn_rate > 0.0 {
-        let spells = ship.outer_velocity_spells(ship.turn_rate, horizon);
-        return time_varying(target, initial, spells);
-    }
-    let polytope = PolytopeObstacle::new(target.name.clone(), initial, ship.outer_velocity_set());
-    represented(target.representation, polytope)
-}
-
-/// [`ship_obstacle`] with the velocities of a known obstacle.
-fn with_initial(
-    target: &Target,
-    ship: &ShipTrack,
-    known: &Obstacle,
-    initial: ConvexPolygon,
-    horizon: f64,
-) -> Obstacle {
+/// The obstacle with another set at t = 0, metres.
+fn with_initial(known: &Obstacle, initial: ConvexPolygon) -> Obstacle {
     match known {
         Obstacle::Slabs(o) => o.with_initial(initial).into(),
         Obstacle::Polytope(o) => {
-            PolytopeObstacle::new(target.name.clone(), initial, o.velocity().clone()).into()
+            PolytopeObstacle::new(o.name(), initial, o.velocity().clone()).into()
         }
-        Obstacle::Ellipsoid(_) => ship_obstacle(target, ship, initial, horizon),
-    }
-}
-
-fn time_varying(target: &Target, initial: ConvexPolygon, spells: Vec<VelocitySpell>) -> Obstacle {
-    // should the ends not increase: one polytope with all velocities contains the slabs
-    let all: Vec<_> = spells
-        .iter()
-        .flat_map(|s| s.velocities.vertices().iter().copied())
-        .collect();
-    match SlabObstacle::new(target.name.clone(), initial.clone(), spells) {
-        Ok(slabs) => slabs.into(),
-        Err(_) => {
-            let velocity = ConvexPolygon::hull(&all)
-                .unwrap_or_else(|_| ConvexPolygon::point(crate::frame::Vector::zeros()));
-            PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
+        Obstacle::Ellipsoid(o) => {
+            let initial = outer_enclosing_ellipse(&initial);
+            EllipsoidObstacle::new(o.name(), initial, *o.velocity()).into()
         }
     }
 }

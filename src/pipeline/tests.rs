@@ -7,7 +7,7 @@ use crate::obstacle::PolytopeObstacle;
 use crate::planner::path_time::PathTimePlanner;
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::scenario::Compliance;
-use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
@@ -174,27 +174,21 @@ fn in_a_channel(spread: f64) -> Scenario {
     for (name, y) in [("north", 60.0), ("south", -3160.0)] {
         scenario.targets.push(Target {
             name: name.to_owned(),
-            motion: Motion::Sets {
-                initial: wide(-400.0, y),
-                velocity: at_rest.clone(),
-            },
+            motion: Motion::Sets(Uncertainty::constant(wide(-400.0, y), at_rest.clone())),
             representation: Representation::Polytope,
         });
     }
     let lateral = |v: f64| Vector::new(-5.0, v);
-    scenario.targets[0].motion = Motion::Sets {
-        initial: ConvexPolygon::hull(
-            &[
-                (1480.0, 20.0),
-                (1520.0, 20.0),
-                (1520.0, 60.0),
-                (1480.0, 60.0),
-            ]
-            .map(|(x, y)| Vector::new(x, y)),
-        )
-        .expect("a box"),
-        velocity: ConvexPolygon::hull(&[lateral(spread), lateral(-spread)]).expect("a segment"),
-    };
+    let ahead = [
+        (1480.0, 20.0),
+        (1520.0, 20.0),
+        (1520.0, 60.0),
+        (1480.0, 60.0),
+    ];
+    scenario.targets[0].motion = Motion::Sets(Uncertainty::constant(
+        ConvexPolygon::hull(&ahead.map(|(x, y)| Vector::new(x, y))).expect("a box"),
+        ConvexPolygon::hull(&[lateral(spread), lateral(-spread)]).expect("a segment"),
+    ));
     scenario
 }
 
@@ -364,10 +358,11 @@ fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
         (900.0, 900.0),
         (-900.0, 900.0),
     ];
-    scenario.targets[0].motion = Motion::Sets {
-        initial: ConvexPolygon::hull(&around.map(|(x, y)| Vector::new(x, y))).expect("a box"),
-        velocity: ConvexPolygon::point(Vector::new(5.0, 0.0)),
-    };
+    let around = around.map(|(x, y)| Vector::new(x, y));
+    scenario.targets[0].motion = Motion::Sets(Uncertainty::constant(
+        ConvexPolygon::hull(&around).expect("a box"),
+        ConvexPolygon::point(Vector::new(5.0, 0.0)),
+    ));
     let off_paths = run(scenario.clone());
     assert_eq!(off_paths.level, RelaxationLevel::Inside);
     let plan = off_paths.planned.outcome.plan().expect("a plan");

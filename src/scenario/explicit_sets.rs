@@ -1,12 +1,12 @@
-//! Explicit sets of a target: polygons, ellipses, and timed velocity sets.
+//! Explicit sets of a target: polygons or ellipses, with one velocity set or several over time.
 
 use nalgebra::Matrix2;
 
 use super::limits;
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Ellipse, GeometryError};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, GeometryError};
 use crate::input::{Field, Range, Table};
-use crate::target::{Motion, VelocitySpell};
+use crate::target::{TimedVelocitySet, Uncertainty};
 
 /// Allowed values of the keys of a tracked ship beside explicit sets.
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
@@ -32,6 +32,18 @@ struct SetKeys {
     areas: Range,
 }
 
+impl SetKeys {
+    fn allowed(&self) -> String {
+        let Self {
+            vertices,
+            center,
+            shape,
+            ..
+        } = self;
+        format!("a table {{ {vertices} }} or {{ {center}, {shape} }}")
+    }
+}
+
 const INITIAL: SetKeys = SetKeys {
     vertices: "vertices_m",
     center: "center_m",
@@ -48,23 +60,8 @@ const VELOCITY: SetKeys = SetKeys {
     areas: limits::VELOCITY_AREA,
 };
 
-/// A set as given; a faulty one keeps its kind, so that the other set is still compared with it.
-enum Given {
-    Polygon(Option<ConvexPolygon>),
-    Ellipse(Option<Ellipse>),
-}
-
-impl Given {
-    fn kind(&self) -> &'static str {
-        match self {
-            Self::Polygon(_) => "a polygon",
-            Self::Ellipse(_) => "an ellipse",
-        }
-    }
-}
-
-/// The motion of a target that has at least one of the keys of explicit sets.
-pub(super) fn motion(table: &mut Table) -> Option<Motion> {
+/// The sets of a target that has at least one of the keys of explicit sets.
+pub(super) fn sets(table: &mut Table) -> Option<Uncertainty> {
     for key in SHIP_KEYS {
         table.forbid(key, BESIDE_SETS);
     }
@@ -76,115 +73,93 @@ pub(super) fn motion(table: &mut Table) -> Option<Motion> {
     ] {
         table.forbid(key, BESIDE_SETS);
     }
-    let shapes = "a table { vertices_m } or { center_m, shape_m2 }";
     let initial = table
-        .require("initial_set", shapes)
+        .require("initial_set", INITIAL.allowed())
         .and_then(|field| set(&field, &INITIAL));
-    if let Some(several) = table.take("velocity_sets") {
-        if let Some(one) = table.take("velocity_set") {
-            one.fault(
-                "velocity_set beside velocity_sets",
-                "one of the two, not both",
-            );
+    let velocities = match table.take("velocity_sets") {
+        Some(several) => {
+            if let Some(one) = table.take("velocity_set") {
+                one.fault(
+                    "velocity_set beside velocity_sets",
+                    "one of the two, not both",
+                );
+            }
+            timed_velocity_sets(&several, initial.as_ref())
         }
-        let velocities = timed_velocity_sets(&several);
-        if let Some(Given::Ellipse(_)) = initial {
-            several.fault(
-                "several velocity sets for an initial set that is an ellipse",
-                "one velocity_set { center_mps, shape_m2_per_s2 }, or an initial set of vertices",
-            );
+        None => {
+            let field = table.require("velocity_set", VELOCITY.allowed())?;
+            let velocities = set(&field, &VELOCITY);
+            let velocities = velocities.and_then(|set| like(&field, set, initial.as_ref()));
+            velocities.map(|set| vec![TimedVelocitySet::new(f64::INFINITY, set)])
         }
-        return match (initial?, velocities?) {
-            (Given::Polygon(initial), spells) => Some(Motion::Spells {
-                initial: initial?,
-                spells,
-            }),
-            (Given::Ellipse(_), _) => None,
-        };
-    }
-    let field = table.require(
-        "velocity_set",
-        "a table { vertices_mps } or { center_mps, shape_m2_per_s2 }",
-    )?;
-    let velocity = set(&field, &VELOCITY);
-    match (initial?, velocity?) {
-        (Given::Polygon(initial), Given::Polygon(velocity)) => Some(Motion::Sets {
-            initial: initial?,
-            velocity: velocity?,
-        }),
-        (Given::Ellipse(initial), Given::Ellipse(velocity)) => Some(Motion::Ellipses {
-            initial: initial?,
-            velocity: velocity?,
-        }),
-        (initial, velocity) => {
-            field.fault(
-                format_args!(
-                    "{} for an initial set that is {}",
-                    velocity.kind(),
-                    initial.kind()
-                ),
-                "two sets of one kind",
-            );
-            None
+    };
+    Some(Uncertainty {
+        initial: initial?,
+        velocities: velocities?,
+    })
+}
+
+/// A velocity set, if it is of the kind of the initial set.
+fn like(field: &Field, velocities: ConvexSet, initial: Option<&ConvexSet>) -> Option<ConvexSet> {
+    let found = match (initial, &velocities) {
+        (Some(ConvexSet::Polygon(_)), ConvexSet::Ellipse(_)) => {
+            "an ellipse for an initial set that is a polygon"
         }
-    }
+        (Some(ConvexSet::Ellipse(_)), ConvexSet::Polygon(_)) => {
+            "a polygon for an initial set that is an ellipse"
+        }
+        _ => return Some(velocities),
+    };
+    field.fault(found, "sets of one kind");
+    None
 }
 
 /// Timed velocity sets: all but the last one end, each after the one before.
-fn timed_velocity_sets(list: &Field) -> Option<Vec<VelocitySpell>> {
+fn timed_velocity_sets(list: &Field, initial: Option<&ConvexSet>) -> Option<Vec<TimedVelocitySet>> {
     let fields = list.list(1..=limits::VELOCITY_SETS, "velocity sets")?;
     let mut sets = Vec::with_capacity(fields.len());
     let mut after = 0.0;
     for (index, field) in fields.iter().enumerate() {
         let last = index + 1 == fields.len();
-        let set = field
-            .table("a table { until_s, vertices_mps }")
-            .map(|mut table| {
-                let until = if last {
-                    table.forbid("until_s", "nothing: the last velocity set holds for ever");
-                    Some(f64::INFINITY)
-                } else {
-                    let end = table.require("until_s", limits::DURATION);
-                    let until = end.as_ref().and_then(|e| e.number(limits::DURATION));
-                    match (end, until) {
-                        (Some(end), Some(until)) if until <= after => {
-                            end.refuse(format_args!("a time after {after} s, when it starts"))
-                        }
-                        _ => until,
+        let timed = field.table(&VELOCITY.allowed()).map(|mut table| {
+            let until = if last {
+                table.forbid("until_s", "nothing: the last velocity set holds for ever");
+                Some(f64::INFINITY)
+            } else {
+                let end = table.require("until_s", limits::DURATION);
+                let until = end.as_ref().and_then(|e| e.number(limits::DURATION));
+                match (end, until) {
+                    (Some(end), Some(until)) if until <= after => {
+                        end.refuse(format_args!("a time after {after} s, when it starts"))
                     }
-                };
-                let list = table.require(VELOCITY.vertices, "a list of at least 1 [east, north]");
-                for key in [VELOCITY.center, VELOCITY.shape] {
-                    table.forbid(key, "nothing: velocity sets one after another are polygons");
+                    _ => until,
                 }
-                table.finish();
-                (until, list.and_then(|list| polygon(&list, VELOCITY.range)))
-            });
-        let set = set.and_then(|(until, velocities)| {
-            after = until.unwrap_or(after);
-            Some(VelocitySpell {
-                until: until?,
-                velocities: velocities?,
-            })
+            };
+            let set = set_of(&mut table, &VELOCITY);
+            table.finish();
+            (until, set.and_then(|set| like(field, set, initial)))
         });
-        sets.push(set);
+        sets.push(timed.and_then(|(until, velocities)| {
+            after = until.unwrap_or(after);
+            Some(TimedVelocitySet::new(until?, velocities?))
+        }));
     }
     sets.into_iter().collect()
 }
 
-/// A convex set from its vertices, or an ellipse from its centre and shape matrix.
-fn set(field: &Field, keys: &SetKeys) -> Option<Given> {
-    let allowed = format!(
-        "a table {{ {} }} or {{ {}, {} }}",
-        keys.vertices, keys.center, keys.shape
-    );
-    let mut table = field.table(&allowed)?;
+fn set(field: &Field, keys: &SetKeys) -> Option<ConvexSet> {
+    let mut table = field.table(&keys.allowed())?;
+    let set = set_of(&mut table, keys);
+    table.finish();
+    set
+}
+
+/// A polygon from its vertices, or an ellipse from its centre and shape matrix.
+fn set_of(table: &mut Table, keys: &SetKeys) -> Option<ConvexSet> {
     let round = table.has(keys.center) | table.has(keys.shape);
     if !round {
-        let list = table.require(keys.vertices, "a list of at least 1 [east, north]");
-        table.finish();
-        let polygon = list.and_then(|list| polygon(&list, keys.range));
-        return Some(Given::Polygon(polygon));
+        let list = table.require(keys.vertices, "a list of at least 1 [east, north]")?;
+        return polygon(&list, keys.range).map(ConvexSet::Polygon);
     }
     table.forbid(
         keys.vertices,
@@ -193,22 +168,15 @@ fn set(field: &Field, keys: &SetKeys) -> Option<Given> {
     let center = table
         .require(keys.center, "[east, north]")
         .and_then(|field| field.pair(keys.range));
-    let matrix = table.require(keys.shape, "[[a, b], [b, c]], symmetric");
-    table.finish();
-    let shape = matrix
-        .as_ref()
-        .and_then(|field| matrix_of(field, keys.areas));
-    let ellipse = || {
-        let (field, center) = (matrix.as_ref()?, center?);
-        match Ellipse::new(center, shape?) {
-            Ok(ellipse) => Some(ellipse),
-            Err(error) => {
-                field.fault(error, SHAPES);
-                None
-            }
+    let matrix = table.require(keys.shape, "[[a, b], [b, c]], symmetric")?;
+    let shape = matrix_of(&matrix, keys.areas);
+    match Ellipse::new(center?, shape?) {
+        Ok(ellipse) => Some(ellipse.into()),
+        Err(error) => {
+            matrix.fault(error, SHAPES);
+            None
         }
-    };
-    Some(Given::Ellipse(ellipse()))
+    }
 }
 
 /// Allowed shape matrices.

@@ -62,7 +62,7 @@ fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
     });
     let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| table.has(key));
     let motion = if explicit.contains(&true) {
-        explicit_sets::motion(table)
+        explicit_sets::sets(table).map(Motion::Sets)
     } else {
         ship(table, plane).map(Motion::Ship)
     };
@@ -72,11 +72,13 @@ fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
     };
     let motion = motion?;
     let refused = match (&motion, representation) {
-        (Motion::Ellipses { .. }, Representation::Polytope) => {
+        (Motion::Sets(sets), Representation::Polytope) if sets.initial.as_ellipse().is_some() => {
             "\"ellipsoid\", or nothing: the sets are ellipses"
         }
-        (Motion::Spells { .. }, Representation::Ellipsoid) => {
-            "\"polytope\": velocity sets one after another have no ellipsoid"
+        (Motion::Sets(sets), Representation::Ellipsoid)
+            if sets.initial.as_polygon().is_some() && sets.velocities.len() > 1 =>
+        {
+            "\"polytope\": polygons of velocities one after another have no ellipsoid"
         }
         (Motion::Ship(ship), Representation::Ellipsoid) if ship.turn_rate > 0.0 => {
             "\"polytope\": a ship that may turn has velocity sets one after another, \

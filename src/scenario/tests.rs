@@ -4,9 +4,9 @@ use nalgebra::Matrix2;
 
 use super::*;
 use crate::frame::mps_from_knots;
-use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::planner::ControlSettings;
-use crate::target::{DomainKind, Motion, Representation};
+use crate::target::{DomainKind, Motion, Representation, Uncertainty};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 const SCENARIO: &str = r#"
@@ -82,11 +82,11 @@ fn explicit_sets_are_taken_as_they_are() {
          velocity_set = {{ vertices_mps = [[1, 0]] }}"
     );
     let scenario = Scenario::parse(&text).expect("valid");
-    let Motion::Sets { initial, velocity } = &scenario.targets[0].motion else {
-        panic!("sets");
-    };
-    assert_eq!(initial.vertices().len(), 4);
-    assert_eq!(velocity.vertices(), [Vector::new(1.0, 0.0)]);
+    let sets = scenario.targets[0].sets().expect("sets");
+    let vertices = |set: &ConvexSet| set.as_polygon().expect("a polygon").vertices().to_vec();
+    assert_eq!(vertices(&sets.initial).len(), 4);
+    let velocities = vertices(&sets.velocities[0].velocities);
+    assert_eq!(velocities, [Vector::new(1.0, 0.0)]);
     let dent = text.replace("[10, 0]", "[9, 0]");
     assert_eq!(paths(&dent), ["targets[0].initial_set.vertices_m[4]"]);
     let hull = text.replace("velocity_set", "length_m = 3\nvelocity_set");
@@ -231,10 +231,10 @@ fn with_sets(sets: &[&str]) -> Result<Scenario, Vec<String>> {
 #[test]
 fn every_kind_is_read() {
     let ellipses = with_sets(&[ELLIPSE, ROUND]).expect("valid");
-    let Motion::Ellipses { initial, velocity } = &ellipses.targets[0].motion else {
-        panic!("ellipses");
-    };
-    assert!((initial.shape()[(0, 1)] - 1.0).abs() < 1e-12 && velocity.center().y == 1.0);
+    let sets = ellipses.targets[0].sets().expect("sets");
+    let initial = sets.initial.as_ellipse().expect("an ellipse");
+    assert!((initial.shape()[(0, 1)] - 1.0).abs() < 1e-12);
+    assert!(sets.velocities[0].velocities.center().y == 1.0);
     assert!(with_sets(&[ELLIPSE, ROUND, "representation = \"ellipsoid\""]).is_ok());
     let around = with_sets(&[POLYGON, VELOCITIES, "representation = \"ellipsoid\""]);
     assert_eq!(
@@ -244,11 +244,7 @@ fn every_kind_is_read() {
     let several =
         "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { vertices_mps = [[0, 0]] }]";
     let several = with_sets(&[POLYGON, several]).expect("valid");
-    let Motion::Spells { spells, .. } = &several.targets[0].motion else {
-        panic!("spells");
-    };
-    assert_eq!(spells[0].until, 60.0);
-    assert_eq!(several.targets[0].changes()[0], 60.0);
+    assert_eq!(several.targets[0].changes(), [60.0, f64::INFINITY]);
     let at = several.targets[0].position_at(100.0);
     assert!((at.x - (700.0 + 10.0 / 3.0 + 60.0)).abs() < 1e-9);
 }
@@ -303,7 +299,7 @@ fn every_mistake_is_one_fault_with_its_place() {
         (vec![POLYGON, "velocity_sets = []"], vec!["velocity_sets"]),
         (
             vec![ELLIPSE, "velocity_sets = [{ vertices_mps = [[1, 0]] }]"],
-            vec!["velocity_sets"],
+            vec!["velocity_sets[0]"],
         ),
         (
             vec![
@@ -320,7 +316,7 @@ fn every_mistake_is_one_fault_with_its_place() {
         (
             vec![
                 POLYGON,
-                "velocity_sets = [{ vertices_mps = [[1, 0]] }]\n",
+                "velocity_sets = [{ until_s = 9, vertices_mps = [[1, 0]] }, { vertices_mps = [[1, 0]] }]\n",
                 "representation = \"ellipsoid\"",
             ],
             vec!["representation"],
@@ -366,22 +362,26 @@ fn the_scenes_of_the_paper_have_its_numbers() {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         ConvexPolygon::from_vertices(&points).expect("convex")
     };
-    let polytope = Motion::Sets {
-        initial: polygon(&[(-10.0, -5.0), (-10.0, 5.0), (10.0, 5.0), (10.0, -5.0)]),
-        velocity: polygon(&[(0.8, 0.0), (1.0, -0.25), (1.2, 0.0), (1.0, 0.25)]),
-    };
+    let polytope = Motion::Sets(Uncertainty::constant(
+        polygon(&[(-10.0, -5.0), (-10.0, 5.0), (10.0, 5.0), (10.0, -5.0)]),
+        polygon(&[(0.8, 0.0), (1.0, -0.25), (1.2, 0.0), (1.0, 0.25)]),
+    ));
     let ellipse = |x: f64, [a, b]: [f64; 2]| {
         let shape = Matrix2::new(a * a, 0.0, 0.0, b * b);
         Ellipse::new(Vector::new(x, 0.0), shape).expect("positive definite")
     };
-    let same = |a: &Ellipse, b: &Ellipse| {
+    let same = |a: &ConvexSet, b: &Ellipse| {
+        let Some(a) = a.as_ellipse() else {
+            return false;
+        };
         (a.center() - b.center()).norm() < 1e-12 && (a.shape() - b.shape()).amax() < 1e-12
     };
     let is_ellipsoid = |motion: &Motion| match motion {
-        Motion::Ellipses { initial, velocity } => {
-            same(initial, &ellipse(0.0, [10.0, 5.0])) && same(velocity, &ellipse(1.0, [0.2, 0.25]))
+        Motion::Sets(sets) => {
+            same(&sets.initial, &ellipse(0.0, [10.0, 5.0]))
+                && same(&sets.velocities[0].velocities, &ellipse(1.0, [0.2, 0.25]))
         }
-        _ => false,
+        Motion::Ship(_) => false,
     };
     for name in ["figure_1", "figure_4", "figure_5"] {
         assert_eq!(read(name).targets[0].motion, polytope, "{name}");

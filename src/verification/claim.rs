@@ -8,7 +8,9 @@ use crate::document::planner_names;
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
-use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::target::{
+    DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
+};
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
@@ -402,27 +404,27 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
 
 fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion, ClaimError> {
     let initial = plane_set(&format!("{path}.initial_set"), initial)?;
-    let mut spells = Vec::new();
-    let mut ellipse = None;
-    for (index, spell) in target.velocity_sets.iter().enumerate() {
+    let mut velocities = Vec::new();
+    for (index, timed) in target.velocity_sets.iter().enumerate() {
         let field = format!("{path}.velocity_sets[{index}]");
         let last = index + 1 == target.velocity_sets.len();
-        if spell.until_s.is_none() != last {
+        if timed.until_s.is_none() != last {
             return Err(fault(
                 &format!("{field}.until_s"),
                 if last { "a time" } else { "null" },
                 "a time, and null for the last",
             ));
         }
-        match plane_set(&field, &spell.set)? {
-            ConvexSet::Polygon(velocities) => spells.push(VelocitySpell {
-                until: spell.until_s.unwrap_or(f64::INFINITY),
-                velocities,
-            }),
-            ConvexSet::Ellipse(velocity) => ellipse = Some(velocity),
+        let set = plane_set(&field, &timed.set)?;
+        if set.as_polygon().is_some() != initial.as_polygon().is_some() {
+            return Err(fault(path, "a polygon with an ellipse", "sets of one kind"));
         }
+        velocities.push(TimedVelocitySet::new(
+            timed.until_s.unwrap_or(f64::INFINITY),
+            set,
+        ));
     }
-    let ends = std::iter::once(0.0).chain(spells.iter().map(|spell| spell.until));
+    let ends = std::iter::once(0.0).chain(velocities.iter().map(|timed| timed.until));
     if !ends.is_sorted_by(|before, after| before < after) {
         return Err(fault(
             &format!("{path}.velocity_sets"),
@@ -430,15 +432,8 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             "one set after another",
         ));
     }
-    match (initial, ellipse, spells.as_slice()) {
-        (ConvexSet::Ellipse(initial), Some(velocity), []) => {
-            Ok(Motion::Ellipses { initial, velocity })
-        }
-        (ConvexSet::Polygon(initial), None, [only]) => Ok(Motion::Sets {
-            initial,
-            velocity: only.velocities.clone(),
-        }),
-        (ConvexSet::Polygon(initial), None, [_, ..]) => Ok(Motion::Spells { initial, spells }),
-        _ => Err(fault(path, "a polygon with an ellipse", "sets of one kind")),
-    }
+    Ok(Motion::Sets(Uncertainty {
+        initial,
+        velocities,
+    }))
 }

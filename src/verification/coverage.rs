@@ -19,10 +19,10 @@
 
 use super::claim::Claim;
 use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
-use crate::evaluation::{SetShape, SpaceTimeSet, TurnedHull, Violation};
+use crate::evaluation::{SpaceTimeSet, TurnedHull, Violation};
 use crate::frame::{Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{Motion, Target, VelocitySpell};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::target::{Motion, Target, TimedVelocitySet};
 use crate::tolerance;
 
 /// Parts of the known set that a set may fail to contain.
@@ -68,8 +68,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
 /// Describes each part of a target's known set that the set does not contain, with the first time.
 fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64)> {
     let level = 1.0 - claim.file.max_risk;
-    match &set.shape {
-        SetShape::Polygons { initial, spells } => {
+    match &set.sets.initial {
+        ConvexSet::Polygon(initial) => {
             let mut scales = vec![level];
             // The set around a scaled polygon has a centre of its own, so it cannot be scaled back.
             // Explicit sets are known as they are: the first check is complete.
@@ -77,12 +77,10 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             if level < 1.0 && ship && claim.file.optimal_control.is_none() {
                 scales.push(1.0);
             }
-            let short = |scale| in_sections(claim, target, set.from, (initial, spells), scale);
+            let short = |scale| in_sections(claim, target, set, initial, scale);
             scales.into_iter().filter_map(short).collect()
         }
-        SetShape::Ellipses { initial, velocity } => {
-            of_ellipses(claim, target, set.from, (initial, velocity))
-        }
+        ConvexSet::Ellipse(initial) => of_ellipses(claim, target, set, initial),
     }
 }
 
@@ -91,33 +89,45 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
 fn in_sections(
     claim: &Claim,
     target: &Target,
-    from: f64,
-    (initial, spells): (&ConvexPolygon, &[VelocitySpell]),
+    set: &SpaceTimeSet,
+    initial: &ConvexPolygon,
     scale: f64,
 ) -> Option<(String, f64)> {
     let (horizon, level) = (claim.file.horizon_s, 1.0 - claim.file.max_risk);
-    let velocities = spells.iter().map(|spell| &spell.velocities);
+    let from = set.from;
+    let sets = &set.sets.velocities;
+    // The sets of a document are of one kind.
+    let velocities: Option<Vec<&ConvexPolygon>> = sets
+        .iter()
+        .map(|timed| timed.velocities.as_polygon())
+        .collect();
+    let Some(velocities) = velocities else {
+        return Some((
+            format!("too small for {VELOCITY}: a polygon with an ellipse"),
+            from,
+        ));
+    };
     let normals = in_order(
         std::iter::once(initial)
-            .chain(velocities)
+            .chain(velocities.iter().copied())
             .flat_map(ConvexPolygon::normals),
     );
     let known = Known::of(claim, target, scale, &normals);
     let factor = scale / level;
-    let ends: Vec<f64> = spells.iter().map(|spell| from + spell.until).collect();
+    let ends: Vec<f64> = sets.iter().map(|timed| from + timed.until).collect();
     let mut times: Vec<f64> = (ends.iter().copied().chain(known.changes()))
         .chain([from, horizon])
         .filter(|time| (from..=horizon).contains(time))
         .collect();
     times.sort_by(f64::total_cmp);
     let starts = std::iter::once(from).chain(ends.iter().copied());
-    let rates: Vec<Vec<f64>> = (spells.iter().zip(starts.zip(&ends)))
-        .map(|(spell, (start, end))| {
+    let rates: Vec<Vec<f64>> = (velocities.iter().zip(starts.zip(&ends)))
+        .map(|(polygon, (start, end))| {
             // The centroid of a narrow level set is not that of the whole set, to rounding.
             let middle = 0.5 * (start + end.min(horizon));
             let center = known.center_at(middle);
-            let center = center.unwrap_or_else(|| spell.velocities.centroid());
-            scaled_about(&spell.velocities, center, factor).supports(&normals)
+            let center = center.unwrap_or_else(|| polygon.centroid());
+            scaled_about(polygon, center, factor).supports(&normals)
         })
         .collect();
     let mut section = initial.supports(&normals);
@@ -154,16 +164,16 @@ fn in_sections(
     None
 }
 
-/// Like [`in_sections`], for ellipses by their two parts. If each part contains its known part, the
+/// Like [`in_sections`], for ellipses by their parts. If each part contains its known part, the
 /// obstacle, which is an outer set of the sum, contains the known sum.
 fn of_ellipses(
     claim: &Claim,
     target: &Target,
-    from: f64,
-    (initial, velocity): (&Ellipse, &Ellipse),
+    set: &SpaceTimeSet,
+    initial: &Ellipse,
 ) -> Vec<(String, f64)> {
-    let level = 1.0 - claim.file.max_risk;
-    let whole = velocity.scaled_about_center(level.recip());
+    let (from, level) = (set.from, 1.0 - claim.file.max_risk);
+    let horizon = claim.file.horizon_s;
     let ship = matches!(target.motion, Motion::Ship(_));
     let mut lacks = Vec::new();
     let mut need = |what: &str, short: f64| {
@@ -187,45 +197,79 @@ fn of_ellipses(
                 let corners = hull.outer_points(TANGENT_SPACING);
                 largest(corners.map(|p| initial.signed_distance(p).distance)) + reach(claim, ship)
             }
-            Motion::Sets { initial: known, .. } | Motion::Spells { initial: known, .. } => {
-                beyond_polygon(initial, known)
-            }
-            Motion::Ellipses { initial: known, .. } => beyond_ellipse(initial, known),
+            Motion::Sets(known) => beyond(initial, &known.initial),
         };
         need(if ship { HULL } else { INITIAL }, short);
     }
     // The ellipse around a scaled polygon has a centre of its own, so it cannot be scaled back.
     if level == 1.0 || claim.file.optimal_control.is_none() {
+        let scale = level.recip();
         let short = match &target.motion {
-            Motion::Ship(ship) => {
-                let points = outer_velocities(ship, claim.file.horizon_s).into_iter();
+            Motion::Ship(ship) => largest(set.sets.velocities.iter().map(|timed| {
+                let Some(whole) = timed.velocities.as_ellipse() else {
+                    return f64::NAN;
+                };
+                let whole = whole.scaled_about_center(scale);
+                let points = outer_velocities(ship, horizon).into_iter();
                 largest(points.map(|p| whole.signed_distance(p).distance))
-            }
-            Motion::Sets { velocity, .. } => beyond_polygon(&whole, velocity),
-            Motion::Spells { spells, .. } => {
-                largest(spells.iter().map(|s| beyond_polygon(&whole, &s.velocities)))
-            }
-            Motion::Ellipses { velocity, .. } => beyond_ellipse(&whole, velocity),
+            })),
+            Motion::Sets(known) => velocities_beyond(set, &known.velocities, scale, horizon),
         };
         need(if ship { VELOCITIES } else { VELOCITY }, short);
     }
     if level < 1.0 {
-        let short = match &target.motion {
-            Motion::Ellipses {
-                velocity: known, ..
-            } => beyond_ellipse(velocity, &known.scaled_about_center(level)),
-            _ => {
-                let known = at_level(target, level, claim.file.horizon_s);
-                largest(
-                    known
-                        .iter()
-                        .map(|s| beyond_polygon(velocity, &s.velocities)),
-                )
-            }
-        };
-        need(LEVEL, short);
+        let known = at_level(target, level, horizon);
+        need(LEVEL, velocities_beyond(set, &known, 1.0, horizon));
     }
     lacks
+}
+
+/// Largest excess of known velocities over the velocity ellipses of a set that hold at a common
+/// time until the horizon, m/s. The ellipses are scaled by `scale` about their centres.
+///
+/// Time intervals that overlap by rounding alone need not agree. The excess over them counts as a
+/// distance, in metres.
+fn velocities_beyond(
+    set: &SpaceTimeSet,
+    known: &[TimedVelocitySet],
+    scale: f64,
+    horizon: f64,
+) -> f64 {
+    let rounding = 16.0 * f64::EPSILON * horizon;
+    let (mut most, mut way) = (f64::NEG_INFINITY, 0.0);
+    let mut start = set.from;
+    for timed in &set.sets.velocities {
+        let end = (set.from + timed.until).min(horizon);
+        let Some(ellipse) = timed.velocities.as_ellipse() else {
+            return f64::NAN;
+        };
+        let ellipse = ellipse.scaled_about_center(scale);
+        let mut known_start: f64 = 0.0;
+        for known in known {
+            let overlap = end.min(known.until) - start.max(known_start);
+            known_start = known.until;
+            if overlap < 0.0 {
+                continue;
+            }
+            let short = beyond(&ellipse, &known.velocities);
+            // Negated on purpose: a NaN is included.
+            if !(overlap <= rounding) {
+                most = largest([most, short].into_iter());
+            } else if !(short <= 0.0) {
+                way += overlap * short;
+            }
+        }
+        start = end;
+    }
+    largest([most, way].into_iter())
+}
+
+/// Largest distance by which a set extends beyond an ellipse.
+fn beyond(set: &Ellipse, known: &ConvexSet) -> f64 {
+    match known {
+        ConvexSet::Polygon(known) => beyond_polygon(set, known),
+        ConvexSet::Ellipse(known) => beyond_ellipse(set, known),
+    }
 }
 
 /// Largest distance of a polygon's vertices outside an ellipse.
@@ -249,11 +293,6 @@ pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |most, v| {
         if v > most || v.is_nan() { v } else { most }
     })
-}
-
-/// Scales a polygon about its centroid, as a level of risk scales a velocity set.
-pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
-    scaled_about(set, set.centroid(), factor)
 }
 
 /// Scales a polygon about a point; unchanged by the factor 1.

@@ -5,9 +5,9 @@ use super::figures::near_to;
 use super::file::EncounterFile;
 use super::untrue;
 use crate::document::{crosses_astern, is_crossing};
-use crate::evaluation::{Evaluation, MovingEllipse, Violation};
+use crate::evaluation::{Body, Evaluation, MovingSlabs, Violation};
 use crate::frame::{Pose, Vector, wrap};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::ConvexSet;
 use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
@@ -134,22 +134,26 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
             .hull
             .polygon(pose)
             .separation(&ship.hull.polygon(&ship.pose_at(time))),
-        None => match &target.motion {
-            Motion::Ellipses { initial, velocity } => {
-                let here = Segment {
-                    start: *pose,
-                    start_time: time,
-                    duration: 0.0,
-                    speed: 0.0,
-                    turn_rate: 0.0,
-                };
-                MovingEllipse::new(initial, velocity)
-                    .least_distance(&[here])
-                    .value
+        None => {
+            let Some(sets) = target.sets() else {
+                return f64::NAN;
+            };
+            match &sets.initial {
+                ConvexSet::Polygon(_) => sets.outer_section(time).signed_distance(pose.position),
+                ConvexSet::Ellipse(_) => {
+                    let here = Segment {
+                        start: *pose,
+                        start_time: time,
+                        duration: 0.0,
+                        speed: 0.0,
+                        turn_rate: 0.0,
+                    };
+                    MovingSlabs::new(sets)
+                        .least_distance(&[here], Body::POINT)
+                        .value
+                }
             }
-            _ => (target.outer_set_at(time))
-                .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
-        },
+        }
     }
 }
 
@@ -158,18 +162,13 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
 /// It is that of the shape matrices of ellipses. Sums of polygons omit corners at which the
 /// boundary turns by less than [`tolerance::COLLINEAR_RAD`].
 pub(super) fn shape_rounding(target: &Target, time: f64) -> f64 {
-    let omitted = |initial: &ConvexPolygon, fastest: f64| {
-        tolerance::COLLINEAR_RAD * (initial.across() + fastest * time)
-    };
+    let across = |set: &ConvexSet| set.as_polygon().map_or(0.0, |set| set.across());
     match &target.motion {
         Motion::Ship(_) => 0.0,
-        Motion::Sets { initial, velocity } => omitted(initial, velocity.across()),
-        Motion::Spells { initial, spells } => {
-            let fastest = spells.iter().map(|s| s.velocities.across());
-            omitted(initial, fastest.fold(0.0, f64::max))
-        }
-        Motion::Ellipses { initial, velocity } => {
-            MovingEllipse::new(initial, velocity).rounding(time)
+        Motion::Sets(sets) => {
+            let fastest = sets.velocities.iter().map(|set| across(&set.velocities));
+            let extent = across(&sets.initial) + fastest.fold(0.0, f64::max) * time;
+            tolerance::COLLINEAR_RAD * extent + MovingSlabs::new(sets).rounding(time)
         }
     }
 }

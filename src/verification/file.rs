@@ -72,7 +72,7 @@ pub(super) struct TargetFile {
     pub ship: Option<ShipFile>,
     pub initial_set: Option<SetFile>,
     #[serde(default)]
-    pub velocity_sets: Vec<SpellFile>,
+    pub velocity_sets: Vec<TimedSetFile>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -100,7 +100,7 @@ pub(super) struct SetFile {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct SpellFile {
+pub(super) struct TimedSetFile {
     /// Null for the last.
     pub until_s: Option<f64>,
     #[serde(flatten)]

@@ -4,8 +4,8 @@ use super::claim::Claim;
 use super::coverage::{largest, scaled_about};
 use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
-use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
-use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::geometry::{ConvexSet, Ellipse, outer_enclosing_ellipse};
+use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet};
 use crate::tolerance;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -29,33 +29,29 @@ pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> f64 {
 }
 
 /// Velocity sets of a target at a risk level, in order of time. Each is scaled about the centre
-/// that the target's representation defines. Empty for ellipses.
-pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<VelocitySpell> {
-    let forever = |velocities| VelocitySpell {
-        until: f64::INFINITY,
-        velocities,
+/// that the target's representation defines.
+pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<TimedVelocitySet> {
+    let sets = match &target.motion {
+        Motion::Ship(ship) => ship.outer_velocity_sets(ship.turn_rate, horizon),
+        Motion::Sets(sets) => sets.velocities.clone(),
     };
-    let spells = match &target.motion {
-        Motion::Ship(ship) => ship.outer_velocity_spells(ship.turn_rate, horizon),
-        Motion::Sets { velocity, .. } => vec![forever(velocity.clone())],
-        Motion::Spells { spells, .. } => spells.clone(),
-        Motion::Ellipses { .. } => Vec::new(),
+    let scaled = |set: ConvexSet| match &set {
+        ConvexSet::Polygon(polygon) => scaled_about(polygon, center(target, &set), level).into(),
+        ConvexSet::Ellipse(_) if level == 1.0 => set,
+        ConvexSet::Ellipse(_) => set.scaled_about_center(level),
     };
-    let scaled = |set: &ConvexPolygon| scaled_about(set, center(target, set), level);
-    spells
-        .into_iter()
-        .map(|spell| VelocitySpell {
-            until: spell.until,
-            velocities: scaled(&spell.velocities),
-        })
+    sets.into_iter()
+        .map(|set| TimedVelocitySet::new(set.until, scaled(set.velocities)))
         .collect()
 }
 
 /// Centre of a velocity set of a target, about which a level of risk scales it.
-fn center(target: &Target, set: &ConvexPolygon) -> Vector {
-    match target.representation {
-        Representation::Polytope => set.centroid(),
-        Representation::Ellipsoid => outer_enclosing_ellipse(set).center(),
+fn center(target: &Target, set: &ConvexSet) -> Vector {
+    match (target.representation, set) {
+        (Representation::Ellipsoid, ConvexSet::Polygon(set)) => {
+            outer_enclosing_ellipse(set).center()
+        }
+        _ => set.center(),
     }
 }
 
@@ -83,7 +79,10 @@ impl<'a> Known<'a> {
     /// Builds the reachable set. `scale` is the scale of the velocities about their centre. The
     /// directions are in counter-clockwise order.
     pub fn of(claim: &Claim, target: &Target, scale: f64, normals: &'a [Vector]) -> Self {
-        let of_ellipse = |e: &Ellipse| normals.iter().map(|n| e.support(*n)).collect();
+        let supports = |set: &ConvexSet| match set {
+            ConvexSet::Polygon(polygon) => (polygon.supports(normals), polygon.across()),
+            ConvexSet::Ellipse(e) => (normals.iter().map(|n| e.support(*n)).collect(), widest(e)),
+        };
         let (initial, across) = match &target.motion {
             Motion::Ship(ship) => {
                 let hull = TurnedHull::of(ship, claim.file.horizon_s);
@@ -92,32 +91,24 @@ impl<'a> Known<'a> {
                 let across = 2.0 * (ship.hull.half_diagonal() + reach);
                 (supports.collect(), across)
             }
-            Motion::Sets { initial, .. } | Motion::Spells { initial, .. } => {
-                (initial.supports(normals), initial.across())
-            }
-            Motion::Ellipses { initial, .. } => (of_ellipse(initial), widest(initial)),
+            Motion::Sets(sets) => supports(&sets.initial),
         };
         let motion = match &target.motion {
             Motion::Ship(ship) if scale == 1.0 => Moving::Ship(ship.clone()),
-            Motion::Ellipses { velocity, .. } => {
-                let velocity = velocity.scaled_about_center(scale);
-                let rates = of_ellipse(&velocity);
-                Moving::Sets(vec![(f64::INFINITY, rates, widest(&velocity))])
-            }
             _ => {
-                let spells = at_level(target, scale, claim.file.horizon_s);
-                let of = |s: &VelocitySpell| {
-                    let rates = s.velocities.supports(normals);
-                    (s.until, rates, s.velocities.across())
+                let sets = at_level(target, scale, claim.file.horizon_s);
+                let timed = |set: &TimedVelocitySet| {
+                    let (rates, across) = supports(&set.velocities);
+                    (set.until, rates, across)
                 };
-                Moving::Sets(spells.iter().map(of).collect())
+                Moving::Sets(sets.iter().map(timed).collect())
             }
         };
-        let spells = match &target.motion {
+        let held = match &target.motion {
             Motion::Ship(_) if scale == 1.0 => at_level(target, 1.0, claim.file.horizon_s),
             _ => Vec::new(),
         };
-        let centers = spells.iter();
+        let centers = held.iter();
         Self {
             normals,
             initial,
@@ -199,7 +190,7 @@ fn lasting(
 }
 
 /// Diameter of an ellipse.
-fn widest(ellipse: &Ellipse) -> f64 {
+pub(super) fn widest(ellipse: &Ellipse) -> f64 {
     let [a, b] = ellipse.semi_axes();
     2.0 * a.norm().max(b.norm())
 }

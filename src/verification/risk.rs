@@ -6,15 +6,15 @@
 //! the level set; slightly below it, the motion is not, at the reported time.
 
 use super::claim::{Claim, ClaimedMotion};
-use super::coverage::{about_centroid, largest};
+use super::coverage::largest;
 use super::figures::near;
 use super::file::EncounterFile;
 use super::motion::around;
 use super::untrue;
-use crate::evaluation::{Request, SetShape, SpaceTimeSet, Violation, least_margins};
+use crate::evaluation::{Request, SpaceTimeSet, Violation, least_margins};
 use crate::frame::direction;
 use crate::geometry::ConvexPolygon;
-use crate::target::{Motion, VelocitySpell};
+use crate::target::Motion;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -127,7 +127,7 @@ fn taken(
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
         .collect();
     // A set without interior was enlarged for the planner, by a polygon around a disc.
-    let near = if is_flat(&whole.shape, time) {
+    let near = if is_flat(&whole, time) {
         tolerance::DEPTH_M + 1.1 * tolerance::HALF_WIDTH_M
     } else {
         tolerance::DEPTH_M
@@ -144,15 +144,13 @@ fn taken(
 }
 
 /// Returns true for a set whose section at a time is a point or a segment, to rounding.
-fn is_flat(shape: &SetShape, time: f64) -> bool {
-    match shape {
-        SetShape::Polygons { initial, spells } if spells.len() == 1 => {
-            let section = initial.minkowski_sum(&spells[0].velocities.scaled(time));
-            let mut normals = section.normals().into_iter();
-            normals.any(|n| section.support(n) + section.support(-n) < tolerance::DEPTH_M)
-        }
-        SetShape::Polygons { .. } | SetShape::Ellipses { .. } => !shape.has_interior(),
+fn is_flat(set: &SpaceTimeSet, time: f64) -> bool {
+    if set.sets.initial.as_polygon().is_none() || set.sets.velocities.len() > 1 {
+        return !set.has_interior();
     }
+    let section = set.sets.outer_section(time);
+    let mut normals = section.normals().into_iter();
+    normals.any(|n| section.support(n) + section.support(-n) < tolerance::DEPTH_M)
 }
 
 /// Returns true for a target with several velocity sets in sequence: the last one does not
@@ -161,8 +159,7 @@ fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     let mut targets = claim.targets.iter().filter(|t| t.name == name);
     targets.any(|target| match &target.motion {
         Motion::Ship(ship) => ship.turn_rate > 0.0,
-        Motion::Spells { .. } => true,
-        Motion::Sets { .. } | Motion::Ellipses { .. } => false,
+        Motion::Sets(sets) => sets.velocities.len() > 1,
     })
 }
 
@@ -175,12 +172,11 @@ fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
     if set.from == 0.0 {
         return Some(set.clone());
     }
-    let SetShape::Polygons { initial, spells } = &set.shape else {
+    let initial = set.sets.initial.as_polygon()?;
+    let [only] = &set.sets.velocities[..] else {
         return None;
     };
-    let [only] = &spells[..] else {
-        return None;
-    };
+    let velocities = only.velocities.as_polygon()?;
     let normals = initial.normals();
     let headings: Vec<f64> = normals.iter().map(|n| n.y.atan2(n.x)).collect();
     let between: Vec<_> = (0..headings.len())
@@ -190,38 +186,22 @@ fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
         })
         .collect();
     let begun: Vec<_> = (initial.extremes(&between))
-        .zip(only.velocities.extremes(&between))
+        .zip(velocities.extremes(&between))
         .map(|(place, velocity)| place - velocity * set.from)
         .collect();
-    Some(SpaceTimeSet::polytope(
+    Some(SpaceTimeSet::constant(
         set.name.clone(),
         ConvexPolygon::hull(&begun).ok()?,
-        only.velocities.clone(),
+        velocities.clone(),
     ))
 }
 
 fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
-    let shape = match &set.shape {
-        SetShape::Polygons { initial, spells } => SetShape::Polygons {
-            initial: initial.clone(),
-            spells: spells
-                .iter()
-                .map(|spell| VelocitySpell {
-                    until: spell.until,
-                    velocities: about_centroid(&spell.velocities, factor),
-                })
-                .collect(),
-        },
-        SetShape::Ellipses { initial, velocity } => SetShape::Ellipses {
-            initial: *initial,
-            velocity: velocity.scaled_about_center(factor),
-        },
-    };
-    SpaceTimeSet {
-        name: set.name.clone(),
-        from: set.from,
-        shape,
+    let mut scaled = set.clone();
+    for timed in &mut scaled.sets.velocities {
+        timed.velocities = timed.velocities.scaled_about_center(factor);
     }
+    scaled
 }
 
 #[cfg(test)]
@@ -248,12 +228,10 @@ mod tests {
             let section = initial.minkowski_sum(&velocity.scaled(time));
             let left = SpaceTimeSet {
                 from: time,
-                ..SpaceTimeSet::polytope("t", section, velocity.clone())
+                ..SpaceTimeSet::constant("t", section, velocity.clone())
             };
             let whole = before_release(&left).expect("one velocity set");
-            let SetShape::Polygons { initial: found, .. } = whole.shape else {
-                panic!("polygons");
-            };
+            let found = &whole.sets.initial;
             for k in 0..90 {
                 let n = direction(0.07 * f64::from(k));
                 assert!((found.support(n) - initial.support(n)).abs() < 1e-9, "{n}");

@@ -1,13 +1,15 @@
 //! Assembles the sets of a document from entries with successive velocity sets.
 
 use super::claim::{ClaimError, fault, plane_set};
-use super::coverage::largest;
+use super::coverage::{largest, sampled_directions};
 use super::file::{ObstacleFile, RelaxationFile};
-use super::reached::in_order;
-use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
-use crate::geometry::{ConvexPolygon, ConvexSet};
-use crate::target::VelocitySpell;
+use super::reached::{in_order, widest};
+use crate::evaluation::{SpaceTimeSet, Violation};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
+use nalgebra::Matrix2;
 
 /// Reads the sets, and reports inconsistent entries of one name.
 ///
@@ -21,7 +23,7 @@ pub(super) fn read(
     let mut sets: Vec<SpaceTimeSet> = Vec::new();
     let mut faults = Vec::new();
     let mut until = 0.0;
-    let mut section: Option<ConvexPolygon> = None;
+    let mut section: Option<ConvexSet> = None;
     for (index, entry) in entries.iter().enumerate() {
         let path = format!("obstacles[{index}]");
         let [from, to] = entry.valid_s;
@@ -63,63 +65,83 @@ pub(super) fn read(
         }
         let initial = plane_set(&format!("{path}.initial_set"), &entry.initial_set)?;
         let velocity = plane_set(&format!("{path}.velocity_set"), &entry.velocity_set)?;
-        let shape = match (initial, velocity) {
-            (ConvexSet::Polygon(initial), ConvexSet::Polygon(velocities)) => {
-                if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
-                    note(
-                        "a slab does not begin with the final section of the previous one"
-                            .to_owned(),
-                        from,
-                    );
-                }
-                section = Some(initial.minkowski_sum(&velocities.scaled(to - from)));
-                let spell = VelocitySpell {
-                    until: if last {
-                        f64::INFINITY
-                    } else {
-                        to - released.unwrap_or(0.0)
-                    },
-                    velocities,
-                };
-                if let (
-                    true,
-                    Some(SpaceTimeSet {
-                        shape: SetShape::Polygons { spells, .. },
-                        ..
-                    }),
-                ) = (follows, sets.last_mut())
-                {
-                    spells.push(spell);
-                    until = to;
-                    continue;
-                }
-                SetShape::Polygons {
-                    initial,
-                    spells: vec![spell],
-                }
-            }
-            (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
-                if follows || !last {
-                    return Err(fault(&path, "ellipses one after another", "polygons"));
-                }
-                SetShape::Ellipses { initial, velocity }
-            }
-            _ => {
-                return Err(fault(
-                    &path,
-                    "a polygon with an ellipse",
-                    "sets of one kind",
-                ));
-            }
+        let of_one_kind = matches!(
+            (&initial, &velocity, section.as_ref().filter(|_| follows)),
+            (
+                ConvexSet::Polygon(_),
+                ConvexSet::Polygon(_),
+                None | Some(ConvexSet::Polygon(_))
+            ) | (
+                ConvexSet::Ellipse(_),
+                ConvexSet::Ellipse(_),
+                None | Some(ConvexSet::Ellipse(_))
+            )
+        );
+        if !of_one_kind {
+            return Err(fault(
+                &path,
+                "a polygon with an ellipse",
+                "sets of one kind",
+            ));
+        }
+        if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
+            note(
+                "a slab does not begin with the final section of the previous one".to_owned(),
+                from,
+            );
+        }
+        section = section_after(&initial, &velocity, to - from);
+        let until_local = if last {
+            f64::INFINITY
+        } else {
+            to - released.unwrap_or(0.0)
         };
+        let timed = TimedVelocitySet::new(until_local, velocity);
         until = to;
+        if let (true, Some(set)) = (follows, sets.last_mut()) {
+            set.sets.velocities.push(timed);
+            continue;
+        }
         sets.push(SpaceTimeSet {
             name: entry.name.clone(),
             from: released.unwrap_or(0.0),
-            shape,
+            sets: Uncertainty {
+                initial,
+                velocities: vec![timed],
+            },
         });
     }
     Ok((sets, faults))
+}
+
+/// Section of a slab at its end: the Minkowski sum of polygons, or the ellipse of least trace
+/// around the sum of ellipses.
+fn section_after(initial: &ConvexSet, velocity: &ConvexSet, duration: f64) -> Option<ConvexSet> {
+    Some(match (initial, velocity) {
+        (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
+            least_trace_sum([(initial, 1.0), (velocity, duration)])?.into()
+        }
+        _ => {
+            let slab = Uncertainty::constant(initial.clone(), velocity.clone());
+            slab.outer_section(duration).into()
+        }
+    })
+}
+
+/// Ellipse of least trace around a sum of ellipses with factors, docs/theory.md section 3.
+fn least_trace_sum(terms: [(&Ellipse, f64); 2]) -> Option<Ellipse> {
+    let (mut center, mut shape, mut sum) = (Vector::zeros(), Matrix2::zeros(), 0.0);
+    for (ellipse, factor) in terms {
+        let scaled = ellipse.shape() * (factor * factor);
+        let root = scaled.trace().sqrt();
+        // Negated on purpose: a NaN is included.
+        if !(root <= 0.0) {
+            shape += scaled / root;
+            sum += root;
+        }
+        center += ellipse.center() * factor;
+    }
+    Ellipse::new(center, shape * sum).ok()
 }
 
 /// Release time of a set that is entered, seconds. The set is valid from then on.
@@ -128,10 +150,23 @@ pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64
     own.find_map(|r| r.until_s)
 }
 
-/// Returns true if the polygons have equal supports, to the tolerance of equal sets.
-fn same(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
-    let normals = in_order([a, b].into_iter().flat_map(ConvexPolygon::normals));
-    let apart = a.supports(&normals).into_iter().zip(b.supports(&normals));
-    let apart = largest(apart.map(|(a, b)| (a - b).abs()));
-    apart <= tolerance::DEPTH_M.max(tolerance::COLLINEAR_RAD * a.across())
+/// Returns true if the sets have equal supports, to the tolerance of equal sets.
+fn same(a: &ConvexSet, b: &ConvexSet) -> bool {
+    let (normals, across) = match (a, b) {
+        (ConvexSet::Polygon(a), ConvexSet::Polygon(b)) => (
+            in_order([a, b].into_iter().flat_map(ConvexPolygon::normals)),
+            a.across(),
+        ),
+        (ConvexSet::Ellipse(a), ConvexSet::Ellipse(b)) => (
+            sampled_directions(a).chain(sampled_directions(b)).collect(),
+            widest(a),
+        ),
+        _ => return false,
+    };
+    let apart = largest(
+        normals
+            .iter()
+            .map(|n| (a.support(*n) - b.support(*n)).abs()),
+    );
+    apart <= tolerance::DEPTH_M.max(tolerance::COLLINEAR_RAD * across)
 }

@@ -5,7 +5,6 @@ use super::encounters::{distance, shape_rounding};
 use super::figures::near_to;
 use super::untrue;
 use crate::evaluation::{Violation, nominal_distance, nominal_legs};
-use crate::geometry::ConvexPolygon;
 use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -77,17 +76,7 @@ fn sampled(claim: &Claim, target: &Target, legs: &[Segment]) -> f64 {
 fn way(target: &Target, leg: &Segment) -> f64 {
     let speed = match &target.motion {
         Motion::Ship(ship) => ship.speed,
-        Motion::Sets { velocity, .. } => fastest(velocity),
-        Motion::Spells { spells, .. } => {
-            let all = spells.iter().map(|s| fastest(&s.velocities));
-            all.fold(0.0, f64::max)
-        }
-        Motion::Ellipses { .. } => 0.0,
+        Motion::Sets(sets) => sets.top_speed(),
     };
     (leg.speed + speed) * leg.duration
-}
-
-fn fastest(velocities: &ConvexPolygon) -> f64 {
-    let speeds = velocities.vertices().iter().map(|v| v.norm());
-    speeds.fold(0.0, f64::max)
 }

@@ -101,7 +101,10 @@ pub fn documents() -> Vec<(&'static str, Value)> {
         ("ellipsoid", document(round)),
         ("munkholmen", document(scenario("harbour/munkholmen.toml"))),
         ("turning", document(scenario("uncertainty/turning.toml"))),
-        ("spells", document(scenario("uncertainty/spells.toml"))),
+        (
+            "changing velocities",
+            document(scenario("uncertainty/changing-velocities.toml")),
+        ),
         ("ellipses", document(scenario("uncertainty/ellipse.toml"))),
         ("canal", document(scenario("harbour/canal-transit.toml"))),
         ("quick ferry", document(quick)),

@@ -81,10 +81,8 @@ impl Path {
 /// Metres that a motion may be inside a set. Those without interior block, too: planned around as
 /// sets a millimetre wide.
 fn depth(obstacle: &Obstacle) -> f64 {
-    let initial = match obstacle {
-        Obstacle::Polytope(o) => o.initial(),
-        Obstacle::Slabs(o) => o.initial(),
-        Obstacle::Ellipsoid(_) => return 1e-7,
+    let searoom::geometry::ConvexSet::Polygon(initial) = obstacle.section(0.0) else {
+        return 1e-7;
     };
     let width = |n: &Vector| initial.support(*n) + initial.support(-n);
     if initial.normals().iter().any(|n| width(n) < 1.1e-3) {

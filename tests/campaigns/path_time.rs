@@ -9,10 +9,10 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
-    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle,
 };
 use searoom::planner::{Objective, Outcome, Planned, Problem, SearchKind, path_time};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::{DesiredTrajectory, PathNetwork, Segment};
 use searoom::vessel::{Hull, OwnShip};
 
@@ -110,19 +110,12 @@ pub fn draw(seed: u64, kinds: Kinds) -> Drawn {
             }
             if rng.random_bool(0.25) {
                 let turned = Vector::new(velocity.y, velocity.x);
-                let spells = vec![
-                    VelocitySpell {
-                        until: time * 0.8 + 1.0,
-                        velocities: velocities.clone(),
-                    },
-                    VelocitySpell {
-                        until: f64::INFINITY,
-                        velocities: set(&mut rng, turned, spread),
-                    },
+                let timed = vec![
+                    TimedVelocitySet::new(time * 0.8 + 1.0, velocities.clone()),
+                    TimedVelocitySet::new(f64::INFINITY, set(&mut rng, turned, spread)),
                 ];
-                return SlabObstacle::new(name, initial, spells)
-                    .expect("increasing")
-                    .into();
+                let sets = Uncertainty::new(initial, timed);
+                return Obstacle::new(name, sets).expect("increasing");
             }
             PolytopeObstacle::new(name, initial, velocities).into()
         })

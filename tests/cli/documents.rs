@@ -48,7 +48,7 @@ fn every_key_is_on_the_page() {
         "scenarios/colregs/head-on.toml",
         "scenarios/paper/figure_9.toml",
         "scenarios/harbour/alternative-path.toml",
-        "scenarios/uncertainty/spells.toml",
+        "scenarios/uncertainty/changing-velocities.toml",
     ] {
         all.extend(keys_of(&["plan", scenario, "--json"]));
     }

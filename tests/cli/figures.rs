@@ -2,10 +2,10 @@
 
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 use searoom::report::figure::{Figure, assessment_figure};
 use searoom::study::assess::Situation;
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 
 fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)];
@@ -19,10 +19,11 @@ fn targets() -> Vec<Obstacle> {
     let velocities = rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
     let shape = nalgebra::Matrix2::new(900.0, 0.0, 0.0, 400.0);
     let spread = nalgebra::Matrix2::new(0.04, 0.01, 0.01, 0.09);
-    let spells = [(60.0, 0.2), (f64::INFINITY, 0.6)].map(|(until, wide)| VelocitySpell {
-        until,
-        velocities: rectangle(Vector::new(0.0, -1.5), wide, wide),
+    let timed = [(60.0, 0.2), (f64::INFINITY, 0.6)].map(|(until, wide)| {
+        TimedVelocitySet::new(until, rectangle(Vector::new(0.0, -1.5), wide, wide))
     });
+    let initial = rectangle(Vector::new(200.0, 500.0), 20.0, 20.0);
+    let changing = Uncertainty::new(initial, timed.to_vec());
     vec![
         PolytopeObstacle::new("polygons", rectangle(place, 30.0, 12.0), velocities).into(),
         EllipsoidObstacle::new(
@@ -31,13 +32,7 @@ fn targets() -> Vec<Obstacle> {
             Ellipse::new(Vector::new(1.0, 0.5), spread).expect("a shape"),
         )
         .into(),
-        SlabObstacle::new(
-            "slabs",
-            rectangle(Vector::new(200.0, 500.0), 20.0, 20.0),
-            spells.to_vec(),
-        )
-        .expect("increasing")
-        .into(),
+        Obstacle::new("slabs", changing).expect("increasing"),
     ]
 }
 

@@ -1,9 +1,9 @@
 //! Tests of CommonOcean scenarios: samples, mutated files, and memory exhaustion attacks.
 
 use searoom::frame::Vector;
+use searoom::geometry::ConvexSet;
 use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
 use searoom::scenario::{Fault, Scenario};
-use searoom::target::Motion;
 
 const HEAD_ON: &str = include_str!("../../scenarios/commonocean/sample-head-on.xml");
 const FAIRWAY: &str = include_str!("../../scenarios/commonocean/sample-fairway.xml");
@@ -72,11 +72,11 @@ fn things_that_stand_still_are_sets_with_hull_and_margin() {
     assert_eq!(names, ["shallow 4", "buoy 5", "land 6"]);
     let half = 0.5 * 100.0_f64.hypot(20.0);
     let depth = |index: usize, place: Vector| {
-        let Motion::Sets { initial, velocity } = &scenario.targets[index].motion else {
-            panic!("sets");
-        };
+        let sets = scenario.targets[index].sets().expect("sets");
+        let polygon = |set: &ConvexSet| set.as_polygon().expect("a polygon").clone();
+        let velocity = polygon(&sets.velocities[0].velocities);
         assert_eq!(velocity.vertices(), [Vector::zeros()]);
-        -initial.signed_distance(place - Vector::new(-800.0, -100.0))
+        -polygon(&sets.initial).signed_distance(place - Vector::new(-800.0, -100.0))
     };
     // the edge of the buoy keeps the margin, the corner of the land does not
     assert!(depth(1, Vector::new(105.0, 240.0)) >= half + 30.0 - 1e-9);
@@ -122,7 +122,7 @@ fn a_ship_that_appears_late_and_slows_is_in_her_sets() {
     let said = |part: &str| notes.iter().any(|n| n.contains(part));
     assert!(said("appears after 600 s"), "{notes:?}");
     let target = &scenario.targets[0];
-    assert!(matches!(target.motion, Motion::Spells { .. }));
+    assert!(target.changes().len() > 1);
     let clearance = 0.5 * 90.0_f64.hypot(15.0) + 0.5 * 100.0_f64.hypot(20.0) + 100.0;
     let depth = |time: f64, north: f64| {
         let set = target.outer_set_at(time).expect("sets");

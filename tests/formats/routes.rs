@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Vector, direction, heading_of, wrap};
 use searoom::scenario::import::{Assumed, Contents, Imported};
-use searoom::target::{Motion, Target};
+use searoom::target::Target;
 use serde_json::{Value, json};
 
 use super::{dnv_01, imported, situations};
@@ -153,10 +153,8 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
             scenario, notes, ..
         } = imported(&situation);
         let target = &scenario.targets[0];
-        let Motion::Spells { spells, .. } = &target.motion else {
-            panic!("spells")
-        };
-        assert!(spells.len() > 1 && spells.len() <= 50, "{}", spells.len());
+        let sets = &target.sets().expect("sets").velocities;
+        assert!(sets.len() > 1 && sets.len() <= 50, "{}", sets.len());
         assert_eq!(
             notes.iter().any(|n| n.contains("appears after")),
             declared.delay > 0.0
@@ -206,11 +204,10 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
                     // skip steps produced by rounding
                     let ends = [time + INSIDE, time + step - INSIDE];
                     for moment in ends.into_iter().filter(|_| step > 2.0 * INSIDE) {
-                        let now = spells
-                            .iter()
-                            .find(|s| moment <= s.until)
-                            .expect("a last one");
-                        let out = now.velocities.signed_distance(velocity);
+                        let mut later = sets.iter().filter(|s| moment <= s.until);
+                        let now = later.next().expect("a last one");
+                        let now = now.velocities.as_polygon().expect("a polygon");
+                        let out = now.signed_distance(velocity);
                         assert!(out <= 1e-9, "{out} m/s outside at {moment} s");
                     }
                     at += velocity * step;

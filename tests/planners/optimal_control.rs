@@ -137,8 +137,8 @@ fn every_way_to_spoil_a_plan_is_found() {
     // sets larger by a thousandth, entered between the nodes or at them
     let mut wider = run.clone();
     for target in &mut wider.scenario.targets {
-        if let searoom::target::Motion::Ellipses { initial, .. } = &mut target.motion {
-            *initial = initial.scaled_about_center(1.001);
+        if let searoom::target::Motion::Sets(sets) = &mut target.motion {
+            sets.initial = sets.initial.scaled_about_center(1.001);
         }
     }
     let obstacles: Vec<_> = pipeline::sets(&wider.scenario)

@@ -7,11 +7,9 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use searoom::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
-};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 
 use super::generators::{Counter, angle, check, hull, obstacle, slabs, vector};
 
@@ -50,13 +48,10 @@ fn approaching() -> impl Strategy<Value = Obstacle> {
             }
             _ => {
                 let ends = [(60.0, second), (130.0, third), (f64::INFINITY, fourth)];
-                let spells = ends.map(|(until, shape)| VelocitySpell {
-                    until,
-                    velocities: polygon(way, shape, 1.5),
-                });
-                SlabObstacle::new("s", polygon(place, first, 60.0), spells.to_vec())
-                    .expect("increasing")
-                    .into()
+                let timed = ends
+                    .map(|(until, shape)| TimedVelocitySet::new(until, polygon(way, shape, 1.5)));
+                let sets = Uncertainty::new(polygon(place, first, 60.0), timed.to_vec());
+                Obstacle::new("s", sets).expect("increasing")
             }
         }
     })
@@ -186,23 +181,15 @@ fn mirrored(obstacle: &Obstacle) -> Obstacle {
         let shape = nalgebra::Matrix2::new(q[(0, 0)], -q[(0, 1)], -q[(1, 0)], q[(1, 1)]);
         Ellipse::new(flip(&set.center()), shape).expect("a shape")
     };
-    match obstacle {
-        Obstacle::Polytope(o) => {
-            PolytopeObstacle::new("p", polygon(o.initial()), polygon(o.velocity())).into()
-        }
-        Obstacle::Ellipsoid(o) => {
-            EllipsoidObstacle::new("e", ellipse(o.initial()), ellipse(o.velocity())).into()
-        }
-        Obstacle::Slabs(o) => {
-            let spells = o.slabs().iter().map(|slab| VelocitySpell {
-                until: slab.end(),
-                velocities: polygon(slab.obstacle().velocity()),
-            });
-            SlabObstacle::new("s", polygon(o.initial()), spells.collect())
-                .expect("increasing")
-                .into()
-        }
-    }
+    let map = |set: &ConvexSet| match set {
+        ConvexSet::Polygon(set) => ConvexSet::from(polygon(set)),
+        ConvexSet::Ellipse(set) => ConvexSet::from(ellipse(set)),
+    };
+    let sets = obstacle.sets();
+    let timed = sets.velocities.iter();
+    let timed = timed.map(|set| TimedVelocitySet::new(set.until, map(&set.velocities)));
+    let sets = Uncertainty::new(map(&sets.initial), timed.collect());
+    Obstacle::new(obstacle.name(), sets).expect("increasing")
 }
 
 fn near(a: Option<f64>, b: Option<f64>) -> bool {
@@ -356,7 +343,7 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
     let horizons = select(std::vec![20.0, 90.0, f64::INFINITY]);
     let cases = (slabs(), vector(200.0), horizons, vec(vector(6.0), 200));
     check(5, 300, cases, |(slabs, position, horizon, velocities)| {
-        let regions = slabs.velocity_obstacles(position, horizon);
+        let regions = slabs.outer_velocity_obstacles(position, horizon);
         for v in velocities {
             let beyond = regions
                 .iter()

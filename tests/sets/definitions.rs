@@ -11,7 +11,7 @@ use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, PolytopeObstacle, SlabError, SlabObstacle, SpaceTimeObstacle,
 };
-use searoom::target::{DomainKind, ShipTrack, VelocitySpell};
+use searoom::target::{DomainKind, ShipTrack, TimedVelocitySet, Uncertainty};
 use searoom::trajectory::{Segment, Trajectory};
 use searoom::vessel::Hull;
 
@@ -243,10 +243,13 @@ fn the_half_planes_are_the_velocities_that_meet() {
 fn slabs_are_the_sums_of_what_went_before() {
     check(209, 400, (slabs(), 0.0..120.0), |(o, t)| {
         // definition: every vertex of O_0 with every choice of one velocity in each slab
-        let mut all = o.initial().vertices().to_vec();
+        let mut all = o.sets().initial.outer_polygon(3).vertices().to_vec();
         for slab in o.slabs() {
             let duration = (f64::min(t, slab.end()) - slab.start()).max(0.0);
-            let velocities = slab.obstacle().velocity().scaled(duration);
+            let velocities = slab.obstacle().sets().velocities[0]
+                .velocities
+                .outer_polygon(3)
+                .scaled(duration);
             all = all
                 .iter()
                 .flat_map(|p| velocities.vertices().iter().map(move |v| p + v))
@@ -257,7 +260,9 @@ fn slabs_are_the_sums_of_what_went_before() {
         for n in directions(32) {
             assert!((o.support(n, t).value - slow.support(n)).abs() < 1e-8);
         }
-        assert!((o.section(t).area() - slow.area()).abs() < 1e-6 * (1.0 + slow.area()));
+        assert!(
+            (o.section(t).outer_polygon(3).area() - slow.area()).abs() < 1e-6 * (1.0 + slow.area())
+        );
     });
 }
 
@@ -265,13 +270,10 @@ fn slabs_are_the_sums_of_what_went_before() {
 fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
     let cases = (polytope(), vector(200.0), vector(4.0), 0.0..60.0, segment());
     check(210, 400, cases, |(p, x, v, t, s)| {
-        let spells = [7.0, 20.0, f64::INFINITY]
-            .map(|until| VelocitySpell {
-                until,
-                velocities: p.velocity().clone(),
-            })
-            .to_vec();
-        let many = SlabObstacle::new("x", p.initial().clone(), spells).expect("increasing");
+        let timed = [7.0, 20.0, f64::INFINITY]
+            .map(|until| TimedVelocitySet::new(until, p.velocity().clone()));
+        let sets = Uncertainty::new(p.initial().clone(), timed.to_vec());
+        let many = SlabObstacle::new("x", sets).expect("increasing");
         let one = SlabObstacle::unchanging(&p);
         for o in [&one, &many] {
             let (a, b) = (
@@ -322,14 +324,12 @@ fn the_risk_along_a_trajectory_is_the_largest_of_its_segments() {
 
 #[test]
 fn velocity_sets_out_of_order_are_refused() {
-    let spell = |until| VelocitySpell {
-        until,
-        velocities: ConvexPolygon::point(Vector::zeros()),
-    };
-    let made = |spells| SlabObstacle::new("x", ConvexPolygon::point(Vector::zeros()), spells);
+    let still = ConvexPolygon::point(Vector::zeros());
+    let timed = |until| TimedVelocitySet::new(until, still.clone());
+    let made = |sets| SlabObstacle::new("x", Uncertainty::new(still.clone(), sets));
     assert_eq!(made(vec![]).err(), Some(SlabError::Empty));
     for bad in [5.0, 3.0, f64::NAN, f64::INFINITY] {
-        let found = made(vec![spell(5.0), spell(bad), spell(9.0)]).err();
+        let found = made(vec![timed(5.0), timed(bad), timed(9.0)]).err();
         assert!(
             matches!(
                 found,
@@ -343,7 +343,7 @@ fn velocity_sets_out_of_order_are_refused() {
         );
     }
     assert!(
-        made(vec![spell(5.0), spell(4.0)]).is_ok(),
+        made(vec![timed(5.0), timed(4.0)]).is_ok(),
         "the last has no end"
     );
 }
@@ -372,9 +372,10 @@ fn a_target_that_turns_stays_in_its_slabs() {
                 turn_rate: 0.0,
                 domain: DomainKind::Hull,
             };
-            let spells = ship.outer_velocity_spells(rate, 200.0);
+            let velocities = ship.outer_velocity_sets(rate, 200.0);
             let point = ConvexPolygon::point(Vector::zeros());
-            let o = SlabObstacle::new("x", point, spells).expect("increasing");
+            let o =
+                SlabObstacle::new("x", Uncertainty::new(point, velocities)).expect("increasing");
             for policy in 0..3 {
                 let mut x = Vector::zeros();
                 let mut course = heading + course_spread;

@@ -12,7 +12,7 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
 /// Steps of shrinking at most; some questions take milliseconds.
@@ -101,11 +101,11 @@ pub fn ellipsoid() -> impl Strategy<Value = EllipsoidObstacle> {
 pub fn slabs() -> impl Strategy<Value = SlabObstacle> {
     (polygon(60.0), vec((1.0..40.0, polygon(2.0)), 1..5)).prop_map(|(initial, slabs)| {
         let mut until = 0.0;
-        let spells = slabs.into_iter().map(|(duration, velocities)| {
+        let timed = slabs.into_iter().map(|(duration, velocities)| {
             until += duration;
-            VelocitySpell { until, velocities }
+            TimedVelocitySet::new(until, velocities)
         });
-        SlabObstacle::new("slabs", initial, spells.collect()).expect("increasing")
+        SlabObstacle::new("slabs", Uncertainty::new(initial, timed.collect())).expect("increasing")
     })
 }
 

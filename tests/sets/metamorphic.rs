@@ -6,9 +6,9 @@ use nalgebra::Matrix2;
 use proptest::prelude::*;
 use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction, heading_of};
-use searoom::geometry::{ConvexPolygon, Ellipse, outer_disc};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse, outer_disc};
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
 /// Map `x' = L x + shift + current t'`, `t' = stretch t`, with `L` a rotation or a reflection times
@@ -114,15 +114,13 @@ impl Mapped for EllipsoidObstacle {
 
 impl Mapped for SlabObstacle {
     fn mapped(&self, map: &Map) -> Self {
-        let spells = self
-            .slabs()
-            .iter()
-            .map(|slab| VelocitySpell {
-                until: slab.end() * map.stretch,
-                velocities: map.polygon(slab.obstacle().velocity(), true),
-            })
-            .collect();
-        Self::new("mapped", map.polygon(self.initial(), false), spells).expect("increasing")
+        let mapped =
+            |set: &ConvexSet, moves| map.polygon(set.as_polygon().expect("a polygon"), moves);
+        let timed = self.sets().velocities.iter().map(|set| {
+            TimedVelocitySet::new(set.until * map.stretch, mapped(&set.velocities, true))
+        });
+        let sets = Uncertainty::new(mapped(&self.sets().initial, false), timed.collect());
+        Self::new("mapped", sets).expect("increasing")
     }
 }
 

@@ -185,8 +185,7 @@ fn a_star_finds_the_cost_of_dijkstra() {
 /// another local minimum.
 #[test]
 fn cutting_time_hardly_changes_what_a_plan_costs() {
-    use searoom::obstacle::SlabObstacle;
-    use searoom::target::VelocitySpell;
+    use searoom::target::{TimedVelocitySet, Uncertainty};
     let mut changes = Vec::new();
     for scenario in scenarios(2) {
         let whole: Vec<Obstacle> = pipeline::sets(&scenario)
@@ -197,14 +196,10 @@ fn cutting_time_hardly_changes_what_a_plan_costs() {
             .iter()
             .map(|o| {
                 let o = o.as_polytope().expect("a polytope");
-                let spell = |until| VelocitySpell {
-                    until,
-                    velocities: o.velocity().clone(),
-                };
-                let spells = vec![spell(60.0), spell(f64::INFINITY)];
-                SlabObstacle::new(o.name(), o.initial().clone(), spells)
-                    .expect("in order")
-                    .into()
+                let timed = |until| TimedVelocitySet::new(until, o.velocity().clone());
+                let timed = vec![timed(60.0), timed(f64::INFINITY)];
+                let sets = Uncertainty::new(o.initial().clone(), timed);
+                Obstacle::new(o.name(), sets).expect("in order")
             })
             .collect();
         let cost = |obstacles: &[Obstacle]| {
@@ -268,10 +263,10 @@ fn degenerate_explicit_ellipses_are_planned_around() {
             let mut scenario = drawn.scenario.clone();
             let middle = scenario.desired.position_at(100.0);
             let ellipse = |center, axes| Ellipse::new(center, matrix(axes)).expect("a shape");
-            scenario.targets[0].motion = Motion::Ellipses {
-                initial: ellipse(middle, initial),
-                velocity: ellipse(Vector::new(-0.5, 0.0), velocity),
-            };
+            scenario.targets[0].motion = Motion::Sets(searoom::target::Uncertainty::constant(
+                ellipse(middle, initial),
+                ellipse(Vector::new(-0.5, 0.0), velocity),
+            ));
             scenario.targets[0].representation = Representation::Ellipsoid;
             let run = pipeline::run(scenario);
             assert!(

@@ -113,7 +113,10 @@ fn what_only_some_plans_have_is_held_too() {
     let mut risky = scenario("colregs/give-way.toml");
     risky.max_risk = 0.4;
     assert_rejected(&turning, TURNING);
-    assert_rejected(&document(scenario("uncertainty/spells.toml")), TIMED_SETS);
+    assert_rejected(
+        &document(scenario("uncertainty/changing-velocities.toml")),
+        TIMED_SETS,
+    );
     assert_rejected(&document(scenario("uncertainty/ellipse.toml")), ELLIPSES);
     assert_rejected(&document(risky), RISK);
     assert_rejected(&document(scenario("harbour/munkholmen.toml")), LAND);

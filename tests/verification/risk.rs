@@ -275,15 +275,16 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let mut turning = scenario("uncertainty/turning.toml");
     turning.compliance = Compliance::None;
     let ship = turning.targets[0].ship().expect("a ship").clone();
-    let spells = ship.outer_velocity_spells(ship.turn_rate, turning.horizon);
+    let velocities = ship.outer_velocity_sets(ship.turn_rate, turning.horizon);
     let initial = around(&ship, ship.outer_hull(0.0));
-    let slabs = SlabObstacle::new("x", initial, spells).expect("in order");
+    let slabs = SlabObstacle::new("x", searoom::target::Uncertainty::new(initial, velocities))
+        .expect("in order");
     let mut altered = document(turning);
     for (entry, slab) in list(&mut altered, "/obstacles")
         .iter_mut()
         .zip(slabs.slabs())
     {
-        entry["initial_set"]["vertices_m"] = plain(slab.obstacle().initial());
+        entry["initial_set"]["vertices_m"] = plain(&slab.obstacle().outer_section(0.0));
     }
     rejected(&altered);
 }

@@ -170,7 +170,7 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
     let corners = [(0.0, -1.0), (1e-3, 0.0), (0.0, 1.0)].map(|(x, y)| place + Vector::new(x, y));
     let [wall, still] = [&corners[..], &[Vector::zeros()]]
         .map(|points| searoom::geometry::ConvexPolygon::hull(points).expect("finite"));
-    let sets = [searoom::evaluation::SpaceTimeSet::polytope(
+    let sets = [searoom::evaluation::SpaceTimeSet::constant(
         "wall", wall, still,
     )];
     let found = evaluate(&Request {
@@ -204,7 +204,7 @@ fn each_later_velocity_set_that_is_too_small_is_found() {
     let mut found = 0;
     for plan in [
         document(scenario("uncertainty/turning.toml")),
-        document(scenario("uncertainty/spells.toml")),
+        document(scenario("uncertainty/changing-velocities.toml")),
         document(at_risk),
     ] {
         assert!(checked(&plan).verified());
@@ -224,7 +224,7 @@ fn each_later_velocity_set_that_is_too_small_is_found() {
 /// Numbers whose squares are none.
 #[test]
 fn what_is_known_may_be_too_large_for_any_set() {
-    let plan = document(scenario("uncertainty/spells.toml"));
+    let plan = document(scenario("uncertainty/changing-velocities.toml"));
     for key in ["initial_set/vertices_m", "velocity_sets/0/vertices_mps"] {
         let mut huge = plan.clone();
         *at(&mut huge, &format!("/targets/0/{key}/0")) = json!([1e300, 0.0]);
@@ -238,14 +238,14 @@ fn what_is_known_may_be_too_large_for_any_set() {
 /// A slab that ends before it begins, within the slack of a long horizon.
 #[test]
 fn slabs_follow_one_another_to_the_digit() {
-    let mut plan = document(scenario("uncertainty/spells.toml"));
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
     let slabs = list(&mut plan, "/obstacles");
     let end = slabs[0]["valid_s"][1].as_f64().expect("an end");
     let mut between = slabs[0].clone();
     between["valid_s"] = json!([end - 2e-8, end - 1e-8]);
     slabs.insert(1, between);
     assert!(said(&plan, "expected"));
-    let mut plan = document(scenario("uncertainty/spells.toml"));
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
     plan["targets"][0]["velocity_sets"][0]["until_s"] = json!(-1.0);
     let error = verify(&plan.to_string()).expect_err("a set until before the start");
     assert!(error.to_string().contains("do not increase"), "{error}");
@@ -400,7 +400,7 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
 #[test]
 fn a_set_of_very_many_corners_is_checked() {
     const CORNERS: u32 = 100_000;
-    let mut plan = document(scenario("uncertainty/spells.toml"));
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
     let corner = |k: u32| {
         let (sin, cos) = (TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
         [3e5 + 1e4 * cos, 3e5 + 1e4 * sin]

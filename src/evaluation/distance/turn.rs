@@ -45,11 +45,14 @@ pub(crate) fn turns(segments: &[Segment]) -> Vec<Turn> {
 }
 
 /// Least distance between own hull and a set during the turns. The set is fixed at the time of each
-/// turn; the times of the result are those of the turns.
+/// turn; the times of the result are those of the turns. NaN, a collision, for ellipses.
 pub(crate) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
     let mut least = Least::new();
     for turn in turns {
-        let section = slabs.section_at(turn.time);
+        let Some(section) = slabs.section_at(turn.time) else {
+            least.see(f64::NAN, turn.time);
+            continue;
+        };
         let here = least_distance(std::slice::from_ref(&turn.sweep), own, &section);
         least.see(here.value, turn.time);
         least.certified &= here.certified;
@@ -63,7 +66,7 @@ mod tests {
     use super::*;
     use crate::frame::{Pose, Vector, direction};
     use crate::geometry::ConvexPolygon;
-    use crate::target::VelocitySpell;
+    use crate::target::Uncertainty;
     use crate::vessel::Hull;
     use std::f64::consts::PI;
 
@@ -89,13 +92,10 @@ mod tests {
         let buoy = |bearing: f64| {
             let at_turn = direction(bearing) * 13.0;
             let initial = ConvexPolygon::point(at_turn - velocity * 10.0);
-            MovingSlabs::new(
-                &initial,
-                &[VelocitySpell {
-                    until: f64::INFINITY,
-                    velocities: ConvexPolygon::point(velocity),
-                }],
-            )
+            MovingSlabs::new(&Uncertainty::constant(
+                initial,
+                ConvexPolygon::point(velocity),
+            ))
         };
         let least = |to: f64, bearing: f64| {
             let turns = turns(&[straight(0.0, 0.0), straight(to, 10.0)]);

@@ -2,7 +2,7 @@
 
 use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
-use crate::frame::{Vector, direction};
+use crate::frame::{Vector, cross, direction};
 use crate::geometry::Ellipse;
 use crate::tolerance;
 
@@ -19,22 +19,57 @@ const GOLDEN_STEPS: usize = 32;
 /// Relative rounding of a shape matrix and of its eigenvalues.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
+/// Ellipse of least trace around `O_0 + sum of d_j V_j + t V` for durations `d_j`, docs/theory.md
+/// section 3, by its support function
 ///
 /// ```text
-/// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v))
-/// r = sqrt(trace Q)
+/// h(n, t) = n . p_t + sqrt((r + r_v t) (q(n) + t n' Q_v n / r_v))
+/// r = r_o + sum of d_j r_j
+/// q(n) = n' Q_o n / r_o + sum of d_j n' Q_j n / r_j
+/// r_k = sqrt(trace Q_k)
 /// ```
 ///
 /// which is concave in time: it is the root of a product of two non-negative linear functions.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct MovingEllipse {
-    initial: Ellipse,
-    velocity: Ellipse,
-    /// `r` of the initial ellipse in metres, and of the velocity ellipse in m/s.
-    roots: [f64; 2],
+    /// The initial ellipse and the earlier velocity ellipses, each with its factor.
+    earlier: Vec<(Term, f64)>,
+    center: Vector,
+    velocity: Term,
+    /// Velocity of the centre, m/s.
+    drift: Vector,
+    /// `r`, metres.
+    reach: f64,
     /// Directions of the initial scan, evenly spaced.
     directions: [Vector; DIRECTIONS],
+}
+
+/// An ellipse about the origin.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    axes: [Vector; 2],
+    /// `sqrt(trace Q)`.
+    root: f64,
+}
+
+impl Term {
+    fn new(ellipse: &Ellipse) -> Self {
+        let axes = ellipse.semi_axes();
+        Self {
+            axes,
+            root: axes[0].norm().hypot(axes[1].norm()),
+        }
+    }
+
+    /// `n' Q n / sqrt(trace Q)`; 0 for a point.
+    fn share(&self, normal: Vector) -> f64 {
+        let [a, b] = self.axes;
+        if self.root > 0.0 {
+            (normal.dot(&a).powi(2) + normal.dot(&b).powi(2)) / self.root
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Supporting line in a direction: its offset, and its outward speed.
@@ -45,40 +80,36 @@ struct Line {
 }
 
 impl MovingEllipse {
-    pub fn new(initial: &Ellipse, velocity: &Ellipse) -> Self {
-        let root = |e: &Ellipse| {
-            let [a, b] = e.semi_axes();
-            a.norm().hypot(b.norm())
-        };
+    /// From the ellipses whose sum is the initial section, each with its factor.
+    pub fn new(earlier: &[(Ellipse, f64)], velocity: &Ellipse) -> Self {
+        let centers = earlier.iter().map(|(e, factor)| e.center() * *factor);
+        let center = centers.sum();
+        let earlier: Vec<(Term, f64)> = (earlier.iter())
+            .map(|(e, factor)| (Term::new(e), *factor))
+            .collect();
         Self {
-            initial: *initial,
-            velocity: *velocity,
-            roots: [root(initial), root(velocity)],
+            reach: earlier.iter().map(|(e, factor)| factor * e.root).sum(),
+            earlier,
+            center,
+            velocity: Term::new(velocity),
+            drift: velocity.center(),
             directions: std::array::from_fn(|k| direction(STEP * k as f64)),
         }
     }
 
     /// Returns false when every section is a point or a segment, to [`tolerance::THIN_ELLIPSE`].
     pub fn has_interior(&self) -> bool {
-        let [a, b] = self.initial.semi_axes();
-        let [c, d] = self.velocity.semi_axes();
-        let spans = |p: Vector, q: Vector, lengths: f64| {
+        let terms = self.earlier.iter().map(|(e, _)| e);
+        let axes: Vec<(Vector, f64)> = terms
+            .chain([&self.velocity])
+            .flat_map(|e| e.axes.map(|axis| (axis, e.axes[0].norm())))
+            .collect();
+        let spans = |(p, long): &(Vector, f64), (q, other): &(Vector, f64)| {
             // Negated on purpose: a NaN has an interior.
-            !(crate::frame::cross(p, q).abs() <= tolerance::THIN_ELLIPSE * lengths)
+            !(cross(*p, *q).abs() <= tolerance::THIN_ELLIPSE * (long * other))
         };
-        let (still, moving) = (a.norm(), c.norm());
-        spans(a, b, still * still)
-            || spans(c, d, moving * moving)
-            || [(a, c), (a, d), (b, c), (b, d)]
-                .into_iter()
-                .any(|(p, q)| spans(p, q, still * moving))
-    }
-
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
-    /// interior.
-    pub fn edge(&self, time: f64) -> Option<f64> {
-        self.has_interior()
-            .then(|| tolerance::DEPTH_M + self.rounding(time))
+        let mut pairs = axes.iter().enumerate();
+        pairs.any(|(k, a)| axes[k + 1..].iter().any(|b| spans(a, b)))
     }
 
     /// Largest effect of the rounding of the shape matrices on a distance at a time, metres.
@@ -87,8 +118,11 @@ impl MovingEllipse {
     /// the entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or
     /// of `a²` by the square root where `b` is smaller still.
     pub fn rounding(&self, time: f64) -> f64 {
-        let [still, moving] = [&self.initial, &self.velocity].map(Ellipse::semi_axes);
-        let [long, short] = [0, 1].map(|axis| still[axis].norm() + moving[axis].norm() * time);
+        let [long, short] = [0, 1].map(|axis| {
+            let terms = self.earlier.iter();
+            let still = terms.map(|(e, factor)| e.axes[axis].norm() * factor);
+            still.sum::<f64>() + self.velocity.axes[axis].norm() * time
+        });
         if long > 0.0 {
             ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
         } else {
@@ -97,16 +131,9 @@ impl MovingEllipse {
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {
-        let square = |e: &Ellipse| {
-            let [a, b] = e.semi_axes();
-            normal.dot(&a).powi(2) + normal.dot(&b).powi(2)
-        };
-        let [still, growing] = self.roots;
-        let share = |square: f64, root: f64| if root > 0.0 { square / root } else { 0.0 };
-        let (a, b) = (
-            share(square(&self.initial), still),
-            share(square(&self.velocity), growing),
-        );
+        let (still, growing) = (self.reach, self.velocity.root);
+        let earlier = (self.earlier.iter()).map(|(e, factor)| factor * e.share(normal));
+        let (a, b) = (earlier.sum::<f64>(), self.velocity.share(normal));
         let (reach, mean) = (still + growing * time, a + b * time);
         let radius = (reach * mean).sqrt();
         let rate = if still == 0.0 {
@@ -123,10 +150,8 @@ impl MovingEllipse {
             0.5 * (growing * (mean / reach).sqrt() + opening)
         };
         Line {
-            support: normal.dot(&self.initial.center())
-                + time * normal.dot(&self.velocity.center())
-                + radius,
-            rate: normal.dot(&self.velocity.center()) + rate,
+            support: normal.dot(&self.center) + time * normal.dot(&self.drift) + radius,
+            rate: normal.dot(&self.drift) + rate,
         }
     }
 
@@ -137,8 +162,10 @@ impl MovingEllipse {
     /// It is smaller by at most a rounding, where the search ended beside the best direction: it
     /// errs toward rejection. Between two probes, a line stays below its tangent in time because it
     /// is concave. About a hundred directions per probe.
-    pub fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
-        let mut least = Least::new();
+    ///
+    /// With a `known` least distance to something else, parts that are not nearer are not refined.
+    pub fn least_distance_below<P: Piece>(&self, known: Least, pieces: &[P]) -> Least {
+        let mut least = known;
         for s in pieces {
             for time in [s.start_time(), s.end_time()] {
                 least.see(self.probe(s, time, 0.0).value, time);

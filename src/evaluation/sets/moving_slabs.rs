@@ -3,17 +3,27 @@
 use crate::evaluation::distance::clearance::{Body, least_distance_below};
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::geometry::ConvexPolygon;
-use crate::target::VelocitySpell;
+use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
+
+/// Sides of the polygon around an ellipse beside polygons.
+const SIDES: usize = 64;
 
 /// Moving set over one time interval. Its time counts from `start`.
 #[derive(Debug, Clone)]
 struct Slab {
     start: f64,
     end: f64,
-    set: MovingSet,
+    set: Moving,
+}
+
+#[derive(Debug, Clone)]
+enum Moving {
+    Polygon(MovingSet),
+    Ellipse(Box<MovingEllipse>),
 }
 
 /// Slabs of a set, in order of time. Each begins with the final section of the previous one, or
@@ -24,29 +34,54 @@ pub(crate) struct MovingSlabs {
 }
 
 impl MovingSlabs {
-    /// Builds the slabs from the set at t = 0 and the velocity sets in order. The last velocity set
-    /// holds for ever. O(slabs (n + m)²).
-    pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
-        Self::growing(|_| initial.clone(), spells)
+    /// Builds the slabs of a target's sets. Where some are polygons and some ellipses, polygons
+    /// around the ellipses are used. O(slabs (n + m)²).
+    pub fn new(sets: &Uncertainty) -> Self {
+        match Self::of_ellipses(sets) {
+            Some(slabs) => slabs,
+            None => Self::growing(|_| sets.initial.outer_polygon(SIDES), &sets.velocities),
+        }
     }
 
-    /// Like [`MovingSlabs::new`], but with one set at t = 0 per slab, as a function of the slab's
-    /// end. The end of the last slab is infinite.
-    pub fn growing(initial: impl Fn(f64) -> ConvexPolygon, spells: &[VelocitySpell]) -> Self {
-        let mut slabs = Vec::with_capacity(spells.len());
+    /// `None` unless all sets are ellipses.
+    fn of_ellipses(sets: &Uncertainty) -> Option<Self> {
+        let mut earlier = vec![(*sets.initial.as_ellipse()?, 1.0)];
+        let mut start = 0.0;
+        let mut slabs = Vec::with_capacity(sets.velocities.len());
+        for set in &sets.velocities {
+            let (end, velocity) = (set.until, *set.velocities.as_ellipse()?);
+            slabs.push(Slab {
+                start,
+                end,
+                set: Moving::Ellipse(Box::new(MovingEllipse::new(&earlier, &velocity))),
+            });
+            earlier.push((velocity, end - start));
+            start = end;
+        }
+        Some(Self { slabs })
+    }
+
+    /// Slabs of polygons with one set at t = 0 per slab, as a function of the slab's end, which is
+    /// infinite for the last one.
+    pub fn growing(
+        initial: impl Fn(f64) -> ConvexPolygon,
+        velocities: &[TimedVelocitySet],
+    ) -> Self {
+        let mut slabs = Vec::with_capacity(velocities.len());
         let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
-        for (index, spell) in spells.iter().enumerate() {
-            let last = index + 1 == spells.len();
-            let end = if last { f64::INFINITY } else { spell.until };
+        for (index, set) in velocities.iter().enumerate() {
+            let last = index + 1 == velocities.len();
+            let end = if last { f64::INFINITY } else { set.until };
             let initial = initial(end);
             let section = match &way {
                 Some(way) => initial.minkowski_sum(way),
                 None => initial,
             };
-            let set = MovingSet::new(&section, &spell.velocities);
+            let velocities = set.velocities.outer_polygon(SIDES);
+            let set = Moving::Polygon(MovingSet::new(&section, &velocities));
             slabs.push(Slab { start, end, set });
             if !last {
-                let here = spell.velocities.scaled(end - start);
+                let here = velocities.scaled(end - start);
                 way = Some(match way {
                     Some(way) => way.minkowski_sum(&here),
                     None => here,
@@ -59,24 +94,54 @@ impl MovingSlabs {
 
     /// Returns false when the sections are points or segments over some time interval.
     pub fn has_interior(&self) -> bool {
-        self.slabs.iter().all(|s| s.set.has_interior())
+        self.slabs.iter().all(|slab| match &slab.set {
+            Moving::Polygon(set) => set.has_interior(),
+            Moving::Ellipse(set) => set.has_interior(),
+        })
     }
 
-    /// The section at a time, as a fixed set.
-    pub fn section_at(&self, time: f64) -> MovingSet {
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
+    /// interior.
+    pub fn edge(&self, time: f64) -> Option<f64> {
+        self.has_interior()
+            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    }
+
+    /// Largest effect of the rounding of the shape matrices of ellipses on a distance at a time,
+    /// metres.
+    pub fn rounding(&self, time: f64) -> f64 {
+        let slab = self.slab_at(time);
+        match &slab.set {
+            Moving::Polygon(_) => 0.0,
+            Moving::Ellipse(set) => set.rounding(time - slab.start),
+        }
+    }
+
+    fn slab_at(&self, time: f64) -> &Slab {
         let index = self.slabs.partition_point(|slab| slab.end < time);
-        let slab = &self.slabs[index.min(self.slabs.len() - 1)];
-        slab.set.still_at(time - slab.start)
+        &self.slabs[index.min(self.slabs.len() - 1)]
     }
 
-    /// Least distance over all slabs, each within its time.
+    /// The section at a time, as a fixed set; `None` for ellipses.
+    pub fn section_at(&self, time: f64) -> Option<MovingSet> {
+        let slab = self.slab_at(time);
+        match &slab.set {
+            Moving::Polygon(set) => Some(set.still_at(time - slab.start)),
+            Moving::Ellipse(_) => None,
+        }
+    }
+
+    /// Least distance over all slabs, each within its time. Beside ellipses own ship is a point.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
             // A piece that ends at the start of a slab, up to rounding, belongs to the previous
             // slab: a growing set is still smaller there.
             let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
-            let fastest = slab.set.fastest();
+            let fastest = match &slab.set {
+                Moving::Polygon(set) => set.fastest(),
+                Moving::Ellipse(_) => f64::INFINITY,
+            };
             let before = |s: &P| {
                 let rounding = s.end_time() - slab.start;
                 let both = fastest + s.bounds().speed;
@@ -96,7 +161,10 @@ impl MovingSlabs {
                 value: least.value,
                 ..Least::new()
             };
-            let here = least_distance_below(known, &parts, own, &slab.set);
+            let here = match &slab.set {
+                Moving::Polygon(set) => least_distance_below(known, &parts, own, set),
+                Moving::Ellipse(set) => set.least_distance_below(known, &parts),
+            };
             least.see(here.value, here.time + slab.start);
             least.certified &= here.certified;
             least.probes += here.probes;
@@ -123,14 +191,15 @@ mod tests {
             turn_rate: 0.0,
         };
         let least = |velocity: f64| {
-            let spell = |until: f64, v: f64| VelocitySpell {
-                until,
-                velocities: ConvexPolygon::point(Vector::new(0.0, -v)),
+            let timed = |until: f64, v: f64| {
+                TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, -v)))
             };
-            let initial = ConvexPolygon::point(Vector::new(0.0, 90.0));
             let begins = end * (1.0 - 3.0 * f64::EPSILON);
-            let spells = [spell(begins, 0.0), spell(f64::INFINITY, velocity)];
-            MovingSlabs::new(&initial, &spells).least_distance(&[wait], Body::POINT)
+            let sets = Uncertainty {
+                initial: ConvexPolygon::point(Vector::new(0.0, 90.0)).into(),
+                velocities: vec![timed(begins, 0.0), timed(f64::INFINITY, velocity)],
+            };
+            MovingSlabs::new(&sets).least_distance(&[wait], Body::POINT)
         };
         assert_eq!(least(50.0).value, 90.0);
         assert!(least(1e14).value < 89.0, "{:?}", least(1e14));

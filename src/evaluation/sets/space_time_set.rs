@@ -3,76 +3,56 @@
 use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
-use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::VelocitySpell;
-use crate::tolerance;
+use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::target::Uncertainty;
 
 /// Space-time set against which a plan was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceTimeSet {
     /// Name of the target.
     pub name: String,
-    /// Time from which the set is valid, seconds; the time of the shape starts at zero then.
+    /// Time from which the set is valid, seconds; the time of the sets starts at zero then.
     pub from: f64,
-    /// Geometry of the set.
-    pub shape: SetShape,
-}
-
-/// Geometry of a space-time set.
-#[derive(Debug, Clone, PartialEq)]
-pub enum SetShape {
-    /// Every position reached from `O_0` (metres) with the velocity sets (m/s) in sequence; the
-    /// last one holds for ever.
-    Polygons {
-        /// Initial set `O_0`.
-        initial: ConvexPolygon,
-        /// Velocity sets, at least one, in order of time.
-        spells: Vec<VelocitySpell>,
-    },
-    /// Ellipse of least trace around `O_0 + t V` at every `t`: an outer set of the sum.
-    Ellipses {
-        /// Initial set `O_0`, metres.
-        initial: Ellipse,
-        /// Velocity set `V`, m/s.
-        velocity: Ellipse,
-    },
+    /// Every position reached with these velocities. For ellipses the section is the ellipse of
+    /// least trace around the sum, an outer set.
+    pub sets: Uncertainty,
 }
 
 impl SpaceTimeSet {
     /// Builds the set `initial + t velocity`, `t >= 0`; metres and m/s.
-    pub fn polytope(
+    pub fn constant(
         name: impl Into<String>,
-        initial: ConvexPolygon,
-        velocity: ConvexPolygon,
+        initial: impl Into<ConvexSet>,
+        velocity: impl Into<ConvexSet>,
     ) -> Self {
-        let spell = VelocitySpell {
-            until: f64::INFINITY,
-            velocities: velocity,
-        };
         Self {
             name: name.into(),
             from: 0.0,
-            shape: SetShape::Polygons {
-                initial,
-                spells: vec![spell],
-            },
+            sets: Uncertainty::constant(initial, velocity),
         }
     }
-}
 
-impl SpaceTimeSet {
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
+    /// sections are points or segments over some time interval, and so have no depth.
+    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
+        MovingSlabs::new(&self.sets).edge(time)
+    }
+
+    /// Returns false when the sections are points or segments over some time interval.
+    pub(crate) fn has_interior(&self) -> bool {
+        MovingSlabs::new(&self.sets).has_interior()
+    }
+
     /// Least signed distance of own ship's position from the set while the set is valid. Infinite
     /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+        let slabs = MovingSlabs::new(&self.sets);
         if self.from == 0.0 {
-            return self.shape.least_distance(pieces);
+            return slabs.least_distance(pieces, Body::POINT);
         }
-        let mut least = self
-            .shape
-            .least_distance(&since(pieces, self.from, self.from));
+        let mut least = slabs.least_distance(&since(pieces, self.from, self.from), Body::POINT);
         least.time += self.from;
         least
     }
@@ -86,41 +66,6 @@ pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
     later
         .map(|piece| piece.part(piece.start_time().max(from), piece.end_time(), zero))
         .collect()
-}
-
-impl SetShape {
-    /// Least signed distance of own ship's position along a chain of pieces.
-    pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
-        match self {
-            Self::Polygons { initial, spells } => {
-                MovingSlabs::new(initial, spells).least_distance(pieces, Body::POINT)
-            }
-            Self::Ellipses { initial, velocity } => {
-                MovingEllipse::new(initial, velocity).least_distance(pieces)
-            }
-        }
-    }
-
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
-    /// sections are points or segments over some time interval, and so have no depth.
-    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
-        match self {
-            Self::Polygons { .. } => self.has_interior().then_some(tolerance::DEPTH_M),
-            Self::Ellipses { initial, velocity } => {
-                MovingEllipse::new(initial, velocity).edge(time)
-            }
-        }
-    }
-
-    /// Returns false when the sections are points or segments over some time interval.
-    pub(crate) fn has_interior(&self) -> bool {
-        match self {
-            Self::Polygons { initial, spells } => MovingSlabs::new(initial, spells).has_interior(),
-            Self::Ellipses { initial, velocity } => {
-                MovingEllipse::new(initial, velocity).has_interior()
-            }
-        }
-    }
 }
 
 /// Vertex of the section: `initial + t velocity`.

@@ -21,7 +21,7 @@ fn left(at: &[Vector], from: f64) -> SpaceTimeSet {
     let still = ConvexPolygon::point(Vector::zeros());
     SpaceTimeSet {
         from,
-        ..SpaceTimeSet::polytope("other", initial, still)
+        ..SpaceTimeSet::constant("other", initial, still)
     }
 }
 

@@ -1,8 +1,6 @@
 //! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support
 //! form.
 
-pub(in crate::obstacle) mod slabs;
-
 use std::sync::{Arc, OnceLock};
 
 use crate::frame::Vector;

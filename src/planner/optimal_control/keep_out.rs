@@ -3,8 +3,8 @@
 use nalgebra::Matrix2;
 
 use crate::frame::{Vector, to_port};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::geometry::{ConvexSet, Ellipse, outer_enclosing_ellipse};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, SpaceTimeObstacle};
 
 /// Least semi-axis in metres. The constraint needs a set with interior, so a narrower initial
 /// ellipse is widened: an outer set.
@@ -42,16 +42,13 @@ impl KeepOut {
             Obstacle::Ellipsoid(o) => (o.as_ref().clone(), false),
             Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
             Obstacle::Slabs(o) => {
-                let velocities: Vec<Vector> = o
-                    .velocity_sets()
-                    .iter()
-                    .flat_map(|s| s.velocities.vertices().iter().copied())
-                    .collect();
-                // slabs always have velocities
-                let all = ConvexPolygon::hull(&velocities)
-                    .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
-                let whole = PolytopeObstacle::new(o.name(), o.initial().clone(), all);
-                (EllipsoidObstacle::outer_of(&whole), true)
+                let initial = match &o.sets().initial {
+                    ConvexSet::Polygon(initial) => outer_enclosing_ellipse(initial),
+                    ConvexSet::Ellipse(initial) => *initial,
+                };
+                let all = o.sets().outer_velocities_after(f64::NEG_INFINITY);
+                let all = outer_enclosing_ellipse(&all);
+                (EllipsoidObstacle::new(o.name(), initial, all), true)
             }
         };
         let initial = outer_widened(set.initial());
@@ -123,6 +120,8 @@ pub(super) fn ellipsoid(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ConvexPolygon;
+    use crate::obstacle::PolytopeObstacle;
 
     #[test]
     fn the_level_is_one_on_the_edge_and_agrees_with_the_set() {

@@ -1,7 +1,7 @@
 //! Convex piece: a part of an obstacle that is convex in space-time, with its time window.
 //!
 //! A polytope and an ellipsoid are one piece each, without a window. Consecutive velocity sets give
-//! one polytope per slab, whose time counts from the slab's start. Until the horizon, the union of
+//! one piece per slab, whose time counts from the slab's start. Until the horizon, the union of
 //! the pieces that exist at a time is the obstacle's section. The only exceptions are pieces
 //! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
 //! obstacle.
@@ -61,22 +61,36 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
             });
         };
         match o.outer_with_interior() {
-            Obstacle::Polytope(polytope) => push(None, Body::Polytope(polytope)),
-            Obstacle::Ellipsoid(ellipsoid) => push(None, bounded_ellipsoid(*ellipsoid, horizon)),
             Obstacle::Slabs(slabs) => {
                 for slab in slabs.slabs() {
                     let window = (slabs.slabs().len() > 1).then_some(Window {
                         start: slab.start(),
                         end: slab.end(),
                     });
-                    if slab.start() <= horizon {
-                        push(window, Body::Polytope(slab.obstacle().clone()));
+                    if slab.start() <= horizon
+                        && let Some(body) = body(slab.obstacle().clone(), horizon - slab.start())
+                    {
+                        push(window, body);
                     }
+                }
+            }
+            whole => {
+                if let Some(body) = body(whole, horizon) {
+                    push(None, body);
                 }
             }
         }
     }
     pieces
+}
+
+/// The body of an obstacle that is convex in space-time, until a horizon; `None` for slabs.
+fn body(obstacle: Obstacle, horizon: f64) -> Option<Body> {
+    match obstacle {
+        Obstacle::Polytope(polytope) => Some(Body::Polytope(polytope)),
+        Obstacle::Ellipsoid(ellipsoid) => Some(bounded_ellipsoid(*ellipsoid, horizon)),
+        Obstacle::Slabs(_) => None,
+    }
 }
 
 fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {

@@ -10,13 +10,11 @@
 
 use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{
-    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
-};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
-use crate::target::VelocitySpell;
+use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
@@ -278,36 +276,30 @@ impl Similarity {
         let ellipse = |e: &Ellipse, centre: Vector, unit: f64| {
             Ellipse::from_axes(centre, e.semi_axes().map(|a| self.turned(a) / unit))
         };
-        Some(match obstacle {
-            Obstacle::Polytope(o) => PolytopeObstacle::new(
-                o.name(),
-                self.places(o.initial(), horizon),
-                self.velocities(o.velocity()),
-            )
-            .into(),
-            Obstacle::Ellipsoid(o) => {
-                let (initial, velocity) = (o.initial(), o.velocity());
-                EllipsoidObstacle::new(
-                    o.name(),
-                    ellipse(initial, self.place(initial.center()), self.length),
-                    ellipse(velocity, self.velocity(velocity.center()), self.speed()),
-                )
-                .into()
+        let sets = obstacle.sets();
+        let velocities = sets.velocities.iter().map(|timed| {
+            let until = number_on_grid(timed.until / self.time, TIME_GRID_S);
+            match &timed.velocities {
+                ConvexSet::Polygon(set) => TimedVelocitySet::new(until, self.velocities(set)),
+                ConvexSet::Ellipse(set) => {
+                    let centre = self.velocity(set.center());
+                    TimedVelocitySet::new(until, ellipse(set, centre, self.speed()))
+                }
             }
-            Obstacle::Slabs(o) => {
-                let spells = o.velocity_sets().iter().map(|s| VelocitySpell {
-                    until: number_on_grid(s.until / self.time, TIME_GRID_S),
-                    velocities: self.velocities(&s.velocities),
-                });
-                SlabObstacle::new(
-                    o.name(),
-                    self.places(o.initial(), horizon),
-                    spells.collect(),
-                )
-                .ok()?
-                .into()
-            }
-        })
+        });
+        let initial = match &sets.initial {
+            ConvexSet::Polygon(set) => self.places(set, horizon).into(),
+            ConvexSet::Ellipse(set) => ellipse(set, self.place(set.center()), self.length).into(),
+        };
+        let velocities = velocities.collect();
+        Obstacle::new(
+            obstacle.name(),
+            Uncertainty {
+                initial,
+                velocities,
+            },
+        )
+        .ok()
     }
 
     /// Motion in the normalised problem, rounded: an initial guess, not a plan.

@@ -56,9 +56,10 @@ impl Prism {
         }
     }
 
-    fn round(set: &EllipsoidObstacle, from: f64, to: f64) -> Self {
+    /// The clock of the set starts at `zero`.
+    fn round(set: &EllipsoidObstacle, zero: f64, from: f64, to: f64) -> Self {
         let step = std::f64::consts::TAU / ROUND_SIDES as f64;
-        let (first, last) = (set.outer_section(from), set.outer_section(to));
+        let (first, last) = (set.outer_section(from - zero), set.outer_section(to - zero));
         let vertices = (0..ROUND_SIDES).map(|k| {
             let normal = direction(step * (k as f64 + 0.5));
             let [a, b] = [&first, &last].map(|e| e.boundary_point(normal));
@@ -68,7 +69,7 @@ impl Prism {
                 velocity,
             }
         });
-        let middle = 0.5 * (from + to);
+        let middle = 0.5 * (from + to) - zero;
         let sides = (0..ROUND_SIDES).map(|k| {
             let normal = direction(step * k as f64);
             (normal, set.support(normal, middle).rate)
@@ -95,26 +96,30 @@ impl Prism {
     }
 }
 
-/// The prisms from t = 0 to the end: exact for polytopes and slabs, chords of an ellipsoid.
+/// The prisms from t = 0 to the end: exact for polytopes, chords of an ellipsoid.
 pub fn prisms(canvas: &Canvas, set: &Obstacle) -> Vec<Prism> {
-    let end = canvas.end;
+    prisms_between(set, 0.0, canvas.end)
+}
+
+/// The prisms between two times of a set whose clock starts at the first of them.
+fn prisms_between(set: &Obstacle, from: f64, to: f64) -> Vec<Prism> {
     match set {
-        Obstacle::Polytope(o) => vec![Prism::polytope(o, 0.0, end)],
+        Obstacle::Polytope(o) => vec![Prism::polytope(o, from, to)],
         Obstacle::Ellipsoid(o) => match o.flat() {
-            Some(flat) => vec![Prism::polytope(flat, 0.0, end)],
+            Some(flat) => vec![Prism::polytope(flat, from, to)],
             None => (0..ROUND_PRISMS)
                 .map(|k| {
-                    let at = |k: usize| end * k as f64 / ROUND_PRISMS as f64;
-                    Prism::round(o, at(k), at(k + 1))
+                    let at = |k: usize| from + (to - from) * k as f64 / ROUND_PRISMS as f64;
+                    Prism::round(o, from, at(k), at(k + 1))
                 })
                 .collect(),
         },
-        Obstacle::Slabs(o) => o
-            .slabs()
-            .iter()
-            .filter(|slab| slab.start() < end)
-            .map(|slab| Prism::polytope(slab.obstacle(), slab.start(), slab.end().min(end)))
-            .collect(),
+        Obstacle::Slabs(o) => {
+            let slabs = o.slabs().iter().filter(|slab| slab.start() < to);
+            slabs
+                .flat_map(|slab| prisms_between(slab.obstacle(), slab.start(), slab.end().min(to)))
+                .collect()
+        }
     }
 }
 

@@ -105,8 +105,7 @@ fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
             .velocity_obstacle(own, ahead)
             .outer_half_planes(limit, TOLERANCE * limit),
         Obstacle::Slabs(o) => {
-            let to_come = o.velocity_sets().iter().filter(|s| s.until > time);
-            let velocities = hull(to_come.flat_map(|s| s.velocities.vertices().iter().copied()));
+            let velocities = o.sets().outer_velocities_after(time);
             from(set, time, velocities).velocity_obstacle(own, ahead)
         }
     };
@@ -118,9 +117,4 @@ fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
 /// The set that starts from the section at `time`, with the velocities from then on.
 fn from(set: &Obstacle, time: f64, velocities: ConvexPolygon) -> PolytopeObstacle {
     PolytopeObstacle::new("", set.outer_section(time), velocities)
-}
-
-fn hull(points: impl Iterator<Item = Vector>) -> ConvexPolygon {
-    let points: Vec<Vector> = points.collect();
-    ConvexPolygon::hull(&points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
 }

@@ -5,7 +5,7 @@ use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use crate::obstacle::{Obstacle, PolytopeObstacle};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
@@ -127,7 +127,7 @@ pub fn outer_velocities_within(
     let Approaching { position, horizon } = *approach;
     let wider = |set: &ConvexPolygon| {
         if distance > 0.0 {
-            set.minkowski_sum(&disc(distance))
+            set.minkowski_sum(&disc(distance).outer_polygon(64))
         } else {
             set.clone()
         }
@@ -139,8 +139,14 @@ pub fn outer_velocities_within(
             vec![wide.velocity_obstacle(position, horizon)]
         }
         Obstacle::Slabs(obstacle) => {
-            let wide = obstacle.with_initial(wider(obstacle.initial()));
-            wide.velocity_obstacles(position, horizon)
+            let wide = match &obstacle.sets().initial {
+                ConvexSet::Polygon(initial) => obstacle.with_initial(wider(initial)),
+                ConvexSet::Ellipse(initial) => {
+                    let wide = EllipsoidObstacle::new("", *initial, disc(distance));
+                    obstacle.with_initial(wide.outer_section(1.0))
+                }
+            };
+            wide.outer_velocity_obstacles(position, horizon)
         }
         Obstacle::Ellipsoid(obstacle) => {
             let region = obstacle.velocities_within(position, horizon, distance);
@@ -159,9 +165,9 @@ pub struct Approaching {
     pub horizon: f64,
 }
 
-fn disc(radius: f64) -> ConvexPolygon {
+fn disc(radius: f64) -> Ellipse {
     let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
-    Ellipse::from_axes(Vector::zeros(), axes).outer_polygon(64)
+    Ellipse::from_axes(Vector::zeros(), axes)
 }
 
 /// Square of all velocities within `limit` east and north.
@@ -173,8 +179,8 @@ pub fn square(limit: f64) -> ConvexPolygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::{EllipsoidObstacle, SlabObstacle, SpaceTimeObstacle};
-    use crate::target::VelocitySpell;
+    use crate::obstacle::SpaceTimeObstacle;
+    use crate::target::{TimedVelocitySet, Uncertainty};
 
     fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
@@ -186,10 +192,9 @@ mod tests {
     #[test]
     fn the_velocities_drawn_are_those_that_come_so_near() {
         let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));
-        let spells = [(70.0, 0.2), (f64::INFINITY, 0.9)].map(|(until, wide)| VelocitySpell {
-            until,
-            velocities: rectangle(way, wide, wide),
-        });
+        let timed = [(70.0, 0.2), (f64::INFINITY, 0.9)]
+            .map(|(until, wide)| TimedVelocitySet::new(until, rectangle(way, wide, wide)));
+        let changing = Uncertainty::new(rectangle(place, 30.0, 10.0), timed.to_vec());
         let ellipse = |center: Vector, a: f64, b: f64| {
             Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
         };
@@ -197,9 +202,7 @@ mod tests {
             PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
                 .into(),
             EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
-            SlabObstacle::new("", rectangle(place, 30.0, 10.0), spells.to_vec())
-                .expect("increasing")
-                .into(),
+            Obstacle::new("", changing).expect("increasing"),
         ];
         let (position, limit) = (Vector::new(-10.0, 5.0), 12.0);
         for horizon in [200.0, f64::INFINITY] {

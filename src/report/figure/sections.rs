@@ -146,12 +146,16 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
         // linear between the ends
         Obstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
         Obstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
-        Obstacle::Slabs(obstacle) => obstacle
-            .slabs()
-            .iter()
-            .filter(|slab| slab.start() < end)
-            .filter_map(|slab| hull(slab.start(), slab.end().min(end), 1))
-            .collect(),
+        Obstacle::Slabs(obstacle) => {
+            let steps = match obstacle.sets().initial {
+                ConvexSet::Polygon(_) => 1,
+                ConvexSet::Ellipse(_) => SWEEP,
+            };
+            let slabs = obstacle.slabs().iter().filter(|slab| slab.start() < end);
+            slabs
+                .filter_map(|slab| hull(slab.start(), slab.end().min(end), steps))
+                .collect()
+        }
     }
 }
 

@@ -237,10 +237,11 @@ impl<'a> Writing<'a> {
             self.line(format_args!(
                 "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = ["
             ));
-            for set in track.outer_velocity_sets(&spread, horizon, limits::VELOCITY_SETS) {
-                let velocities = vertices(&set.velocities);
-                let until = if set.until.is_finite() {
-                    format!("until_s = {:?}, ", set.until)
+            let sets = track.outer_velocity_sets(&spread, horizon, limits::VELOCITY_SETS);
+            for (until, velocities) in sets {
+                let velocities = vertices(&velocities);
+                let until = if until.is_finite() {
+                    format!("until_s = {until:?}, ")
                 } else {
                     String::new()
                 };

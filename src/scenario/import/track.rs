@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::frame::{Pose, Vector, heading_of, wrap};
 use crate::geometry::ConvexPolygon;
-use crate::target::{DomainKind, ShipTrack, VelocitySpell};
+use crate::target::{DomainKind, ShipTrack};
 use crate::vessel::Hull;
 
 /// Half-widths up to which consecutive stretches become one: radians (1°) and m/s.
@@ -281,7 +281,7 @@ impl Track {
         })
     }
 
-    /// At most `most` timed velocity sets that contain, at every instant, the velocity of every
+    /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of every
     /// ship that follows the track within the spread. Its position is then in the start ⊕ their
     /// sum.
     ///
@@ -294,7 +294,7 @@ impl Track {
         spread: &Spread,
         horizon: f64,
         most: usize,
-    ) -> Vec<VelocitySpell> {
+    ) -> Vec<(f64, ConvexPolygon)> {
         let times = self.times(spread);
         let mut changes: Vec<f64> = times
             .iter()
@@ -332,7 +332,7 @@ impl Track {
             // never empty: a stretch is left after the next one is entered
             let velocities = ConvexPolygon::hull(&vertices)
                 .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
-            sets.push(VelocitySpell { until, velocities });
+            sets.push((until, velocities));
             from = until;
         }
         sets

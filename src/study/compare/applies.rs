@@ -52,8 +52,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
 fn has_choice(target: &Target) -> bool {
     match &target.motion {
         Motion::Ship(ship) => ship.turn_rate == 0.0,
-        Motion::Sets { .. } => true,
-        Motion::Ellipses { .. } | Motion::Spells { .. } => false,
+        Motion::Sets(sets) => sets.initial.as_polygon().is_some() && sets.velocities.len() == 1,
     }
 }
 

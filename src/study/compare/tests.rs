@@ -118,7 +118,7 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
     off.own_ship.pose.position.y = 3.0;
     assert!(!names(&off).iter().any(|n| n.starts_with("path-time")));
     // targets given as ellipses or by several velocity sets leave no choice
-    assert_eq!(names(&scenario("uncertainty/spells")).len(), 6);
+    assert_eq!(names(&scenario("uncertainty/changing-velocities")).len(), 6);
     assert!(names(&scenario("paper/figure_9")).contains(&"optimal control".to_owned()));
     let land = methods(&scenario("harbour/munkholmen"));
     let other = land

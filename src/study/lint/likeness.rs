@@ -78,7 +78,7 @@ fn seen(scenario: &Scenario) -> Option<Vec<Seen>> {
             course: wrap(heading_of(direction(ship.pose.heading)) - own.heading),
             speed: ship.speed,
         }),
-        Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => None,
+        Motion::Sets(_) => None,
     });
     let ships: Vec<Seen> = ships.collect::<Option<_>>()?;
     (!ships.is_empty()).then_some(ships)

@@ -7,7 +7,6 @@ pub use likeness::{Likeness, likenesses};
 
 use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
 use crate::frame::{Side, relative_bearing};
-use crate::geometry::DISC_SIDES;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::sets;
 use crate::scenario::Scenario;
@@ -102,12 +101,7 @@ pub fn lint(
 fn top_speed(target: &Target) -> f64 {
     match &target.motion {
         Motion::Ship(ship) => ship.speed + ship.speed_spread,
-        Motion::Sets { velocity, .. } => velocity.reach(),
-        Motion::Ellipses { velocity, .. } => velocity.outer_polygon(DISC_SIDES).reach(),
-        Motion::Spells { spells, .. } => {
-            let speeds = spells.iter().map(|spell| spell.velocities.reach());
-            speeds.fold(0.0, f64::max)
-        }
+        Motion::Sets(sets) => sets.top_speed(),
     }
 }
 

@@ -218,7 +218,7 @@ impl Scene {
         let time = leg / speed;
         if vessel == "cybership2" {
             // ships have spreads of metres
-            self.kinds = &["sets", "ellipses", "spells"];
+            self.kinds = &["sets", "ellipses", "intervals"];
         }
         let horizon = time * self.one(&[1.0, 1.3, 2.0]);
         self.line(format!("horizon_s = {horizon:?}\n[own_ship]"));

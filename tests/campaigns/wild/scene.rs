@@ -25,7 +25,14 @@ impl Scene {
             text: String::new(),
             origin: [0.0, 0.0],
             kinds: &[
-                "ship", "ship", "turning", "sets", "ellipses", "spells", "at rest", "around",
+                "ship",
+                "ship",
+                "turning",
+                "sets",
+                "ellipses",
+                "intervals",
+                "at rest",
+                "around",
             ],
             domains: &["colregs", "colregs", "paper", "hull"],
         }
@@ -72,11 +79,11 @@ impl Scene {
                 let (initial, spread) = (self.matrix(2.0 * length), self.matrix(0.1 * speed));
                 self.line(format!("initial_set = {{ center_m = {place:?}, shape_m2 = {initial} }}\nvelocity_set = {{ center_mps = {velocity:?}, shape_m2_per_s2 = {spread} }}"));
             }
-            "spells" => {
+            "intervals" => {
                 let initial = self.polygon(place, 2.0 * length);
                 self.line(format!("initial_set = {{ vertices_m = {initial} }}"));
                 let last = self.one(&[2, 3, 5]);
-                let spells: Vec<String> = (1..=last)
+                let sets: Vec<String> = (1..=last)
                     .map(|k| {
                         let turned = self.rng.random_range(-0.3..0.3) + course;
                         let velocity = [fast * turned.cos(), fast * turned.sin()];
@@ -91,7 +98,7 @@ impl Scene {
                         format!("{{ {until}vertices_mps = {velocities} }}")
                     })
                     .collect();
-                self.line(format!("velocity_sets = [{}]", spells.join(", ")));
+                self.line(format!("velocity_sets = [{}]", sets.join(", ")));
             }
             _ => {
                 let long = length * self.rng.random_range(0.3..2.0);

@@ -204,9 +204,9 @@ impl<'s> Escapes<'s, '_> {
         let route = self.context.route;
         let along: f64 = start.before.iter().map(Segment::length).sum();
         let durations = ESCAPE_HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
-        let held = durations.filter_map(|spell| {
+        let held = durations.filter_map(|duration| {
             let mut escape = Vec::new();
-            let at = route.run(along, start.time, speed * spell, speed, &mut escape);
+            let at = route.run(along, start.time, speed * duration, speed, &mut escape);
             let time = escape.last().map_or(start.time, Segment::end_time);
             escape.extend(route.follow(at, time));
             self.held(start, escape, 0.0, speed)

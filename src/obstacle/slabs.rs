@@ -1,17 +1,22 @@
-//! Obstacles whose velocity set changes with time: a sequence of polytopes, docs/theory.md section
-//! 10 (ii).
+//! Obstacles whose velocity set changes with time: a sequence of polytopes or of ellipsoids,
+//! docs/theory.md section 10 (ii).
 
 use std::sync::{Arc, OnceLock};
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::geometry::{ConvexSet, Ellipse, SignedDistance};
 use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
 use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
 use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
-use crate::obstacle::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
-use crate::target::VelocitySpell;
+use crate::obstacle::{
+    EllipsoidObstacle, HalfSpace, Obstacle, PolytopeObstacle, SpaceTimeObstacle, Support,
+};
+use crate::target::Uncertainty;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
+
+/// Sides of the polygon around an ellipse beside polygons.
+const SIDES: usize = 64;
 
 /// Why velocity sets do not form a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -38,11 +43,13 @@ pub enum SlabError {
 pub struct Slab {
     start: f64,
     end: f64,
-    obstacle: PolytopeObstacle,
-    /// Computed when alpha is first asked for.
+    obstacle: Obstacle,
+    /// Faces of a polytope, computed when alpha is first asked for.
     faces: OnceLock<Vec<SlabFace>>,
-    /// Displacement of the target with the central velocities until the slab's start, metres.
+    /// Displacement of the target until the slab's start, metres: with the central velocities, and
+    /// for ellipses with all velocities.
     nominal: Vector,
+    way: Option<Ellipse>,
 }
 
 impl Slab {
@@ -56,10 +63,27 @@ impl Slab {
         self.end
     }
 
-    /// The convex body of this slab: its initial set is the section at the slab's start, its clock
-    /// starts there.
-    pub fn obstacle(&self) -> &PolytopeObstacle {
+    /// The convex body of this slab, a polytope or an ellipsoid: its initial set is the section at
+    /// the slab's start, its clock starts there.
+    pub fn obstacle(&self) -> &Obstacle {
         &self.obstacle
+    }
+
+    /// A polytope that contains the body for `duration` seconds, at most as long as the slab: the
+    /// body itself, or 64-gons around the ellipses, enlarged by the excess of the ellipsoid over
+    /// their sum. `None` where that is unbounded, for an ellipse that is a segment.
+    pub fn outer_polytope(&self, duration: f64) -> Option<PolytopeObstacle> {
+        match &self.obstacle {
+            Obstacle::Polytope(o) => Some(o.clone()),
+            Obstacle::Ellipsoid(o) => {
+                let growth = o.largest_ratio_to_sum(duration);
+                let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(SIDES);
+                let polytope =
+                    || PolytopeObstacle::new("", around(o.initial()), around(o.velocity()));
+                growth.is_finite().then(polytope)
+            }
+            Obstacle::Slabs(_) => None,
+        }
     }
 }
 
@@ -75,34 +99,12 @@ struct SlabFace {
     spread_rate: f64,
 }
 
-/// Every position that a target may reach whose velocity is in `V_k` from `t_k` to `t_k+1`. Exact.
+/// Every position that a target may reach whose velocity is in `V_k` from `t_k` to `t_k+1`.
 ///
-/// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Sections and slabs are convex. The whole
-/// is not where the sets grow, so every query goes slab by slab. A slab has the faces of `O_0` and
-/// of all sets so far.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::SlabObstacle;
-/// use searoom::target::VelocitySpell;
-///
-/// let heading_north = |spread: f64| {
-///     let corners = [(-spread, 4.0), (spread, 4.0), (0.0, 6.0)];
-///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
-/// };
-/// // little uncertainty for a minute, more from then on
-/// let velocity_sets = vec![
-///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
-///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
-/// ];
-/// let start = ConvexPolygon::point(Vector::zeros());
-/// let target = SlabObstacle::new("ferry", start, velocity_sets).expect("in order");
-/// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
-/// assert!((beside(60.0) - 6.0).abs() < 1e-6);
-/// assert!((beside(90.0) - 66.0).abs() < 1e-6);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
+/// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`, exact for polygons. For ellipses each
+/// section is the ellipse of least trace around that sum, an outer set, and the next slab starts
+/// from it. Sections and slabs are convex. The whole is not where the sets grow, so every query
+/// goes slab by slab. A slab of polygons has the faces of `O_0` and of all sets so far.
 #[derive(Debug, Clone)]
 pub struct SlabObstacle {
     shared: Arc<Shared>,
@@ -112,38 +114,25 @@ pub struct SlabObstacle {
 #[derive(Debug)]
 struct Shared {
     name: String,
-    initial: ConvexPolygon,
-    velocity_sets: Vec<VelocitySpell>,
+    sets: Uncertainty,
     slabs: Vec<Slab>,
 }
 
 impl PartialEq for SlabObstacle {
     fn eq(&self, other: &Self) -> bool {
         // everything else follows from these
-        let key = |o: &Self| {
-            (
-                o.name().to_owned(),
-                o.initial().clone(),
-                o.velocity_sets().to_vec(),
-            )
-        };
-        key(self) == key(other)
+        self.name() == other.name() && self.sets() == other.sets()
     }
 }
 
 impl SlabObstacle {
-    /// From the set at t = 0, metres, and the velocity sets in order of time. The last set has no
-    /// end, whatever its `until`.
-    pub fn new(
-        name: impl Into<String>,
-        initial: ConvexPolygon,
-        velocity_sets: Vec<VelocitySpell>,
-    ) -> Result<Self, SlabError> {
-        if velocity_sets.is_empty() {
+    /// From the sets of a target. The last velocity set has no end, whatever its `until`.
+    pub fn new(name: impl Into<String>, sets: Uncertainty) -> Result<Self, SlabError> {
+        let Some((_, changes)) = sets.velocities.split_last() else {
             return Err(SlabError::Empty);
-        }
+        };
         let mut after = 0.0;
-        for (index, set) in velocity_sets[..velocity_sets.len() - 1].iter().enumerate() {
+        for (index, set) in changes.iter().enumerate() {
             let found = set.until;
             if !(found > after && found.is_finite()) {
                 return Err(SlabError::NotIncreasing {
@@ -154,62 +143,63 @@ impl SlabObstacle {
             }
             after = found;
         }
-        Ok(Self::from_sequence(name.into(), initial, velocity_sets))
+        Ok(Self::from_sequence(name.into(), sets))
     }
 
-    fn from_sequence(
-        name: String,
-        initial: ConvexPolygon,
-        velocity_sets: Vec<VelocitySpell>,
-    ) -> Self {
-        let mut slabs: Vec<Slab> = Vec::with_capacity(velocity_sets.len());
-        let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
-        for (index, set) in velocity_sets.iter().enumerate() {
-            let end = if index + 1 == velocity_sets.len() {
-                f64::INFINITY
-            } else {
-                set.until
-            };
-            let obstacle = PolytopeObstacle::new(name.clone(), section, set.velocities.clone());
-            let centroid = set.velocities.centroid();
-            section = if end.is_finite() {
-                obstacle.section(end - start)
-            } else {
-                ConvexPolygon::point(Vector::zeros())
-            };
+    fn from_sequence(name: String, mut sets: Uncertainty) -> Self {
+        if let Some(last) = sets.velocities.last_mut() {
+            last.until = f64::INFINITY;
+        }
+        let is_round = |set: &ConvexSet| set.as_ellipse().is_some();
+        let round =
+            is_round(&sets.initial) && sets.velocities.iter().all(|v| is_round(&v.velocities));
+        if !round {
+            sets.initial = sets.initial.outer_polygon(SIDES).into();
+            for set in &mut sets.velocities {
+                set.velocities = set.velocities.outer_polygon(SIDES).into();
+            }
+        }
+        let mut slabs: Vec<Slab> = Vec::with_capacity(sets.velocities.len());
+        let (mut start, mut nominal) = (0.0, Vector::zeros());
+        let mut way = round.then(|| Ellipse::point(Vector::zeros()));
+        let mut section = sets.initial.clone();
+        for set in &sets.velocities {
+            let end = set.until;
+            let obstacle = body(&name, &section, &set.velocities);
+            let center = set.velocities.center();
+            let moved = way.map(|way| way_after(way, &set.velocities, end - start));
+            if end.is_finite() {
+                section = obstacle.section(end - start);
+            }
             slabs.push(Slab {
                 start,
                 end,
                 obstacle,
                 faces: OnceLock::new(),
                 nominal,
+                way,
             });
             if end.is_finite() {
-                nominal += centroid * (end - start);
-                start = end;
+                nominal += center * (end - start);
+                (start, way) = (end, moved);
             }
         }
         Self {
-            shared: Arc::new(Shared {
-                name,
-                initial,
-                velocity_sets,
-                slabs,
-            }),
+            shared: Arc::new(Shared { name, sets, slabs }),
         }
     }
 
     /// Dependence of each face of a slab on alpha. O(faces of the slab × previous slabs).
-    fn faces_of(&self, index: usize) -> Vec<SlabFace> {
-        let past: Vec<(f64, &ConvexPolygon, Vector)> = (self.slabs()[..index].iter())
-            .map(|slab| (slab.end - slab.start, slab.obstacle.velocity()))
-            .map(|(duration, set)| (duration, set, set.centroid()))
+    fn faces_of(&self, index: usize, obstacle: &PolytopeObstacle) -> Vec<SlabFace> {
+        let past: Vec<(f64, &ConvexSet, Vector)> = (self.slabs()[..index].iter())
+            .zip(&self.sets().velocities)
+            .map(|(slab, set)| (slab.end - slab.start, &set.velocities))
+            .map(|(duration, set)| (duration, set, set.center()))
             .collect();
-        let obstacle = &self.slabs()[index].obstacle;
         let centroid = obstacle.velocity().centroid();
         let of = |face: &HalfSpace| SlabFace {
             normal: face.normal,
-            initial_support: self.initial().support(face.normal),
+            initial_support: self.sets().initial.support(face.normal),
             spread_before: past
                 .iter()
                 .map(|(d, set, c)| d * (set.support(face.normal) - face.normal.dot(c)))
@@ -221,31 +211,23 @@ impl SlabObstacle {
 
     /// A polytope as a single slab.
     pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
-        let set = VelocitySpell {
-            until: f64::INFINITY,
-            velocities: polytope.velocity().clone(),
-        };
-        let (name, initial) = (polytope.name().to_owned(), polytope.initial().clone());
-        Self::from_sequence(name, initial, vec![set])
+        let (initial, velocity) = (polytope.initial().clone(), polytope.velocity().clone());
+        let sets = Uncertainty::constant(initial, velocity);
+        Self::from_sequence(polytope.name().to_owned(), sets)
     }
 
     /// These velocity sets with another set at t = 0, metres.
-    pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
-        Self::from_sequence(
-            self.shared.name.clone(),
-            initial,
-            self.shared.velocity_sets.clone(),
-        )
+    pub fn with_initial(&self, initial: impl Into<ConvexSet>) -> Self {
+        let sets = Uncertainty {
+            initial: initial.into(),
+            velocities: self.sets().velocities.clone(),
+        };
+        Self::from_sequence(self.shared.name.clone(), sets)
     }
 
-    /// `O_0`, metres.
-    pub fn initial(&self) -> &ConvexPolygon {
-        &self.shared.initial
-    }
-
-    /// The velocity sets in order of time, m/s.
-    pub fn velocity_sets(&self) -> &[VelocitySpell] {
-        &self.shared.velocity_sets
+    /// The set at t = 0 and the velocity sets.
+    pub fn sets(&self) -> &Uncertainty {
+        &self.shared.sets
     }
 
     /// The slabs in order of time; the first starts at 0, the last has no end.
@@ -254,7 +236,7 @@ impl SlabObstacle {
     }
 
     /// The section `O_t` for `t >= 0`. O(faces).
-    pub fn section(&self, time: f64) -> ConvexPolygon {
+    pub fn section(&self, time: f64) -> ConvexSet {
         let slab = self.slab_at(time);
         slab.obstacle.section(time - slab.start)
     }
@@ -317,7 +299,7 @@ impl SpaceTimeObstacle for SlabObstacle {
             })
     }
 
-    /// One alpha for all velocity sets, each about its own centroid. O(faces).
+    /// One alpha for all velocity sets, each about its own centre. O(faces).
     fn alpha(&self, position: Vector, time: f64) -> f64 {
         if time < 0.0 {
             return f64::INFINITY;
@@ -325,10 +307,19 @@ impl SpaceTimeObstacle for SlabObstacle {
         let index = self.index_at(time);
         let slab = &self.slabs()[index];
         let elapsed = time - slab.start;
-        let centroid = slab.obstacle.velocity().centroid();
-        let q = position - slab.nominal - centroid * elapsed;
+        let velocities = &self.sets().velocities[index].velocities;
+        let obstacle = match (&slab.obstacle, slab.way, &self.sets().initial) {
+            (Obstacle::Polytope(obstacle), ..) => obstacle,
+            // the section is that of one ellipsoid after a second, in which it moves all the way
+            (_, Some(way), ConvexSet::Ellipse(initial)) if time.is_finite() => {
+                let way = way_after(way, velocities, elapsed);
+                return EllipsoidObstacle::new("", *initial, way).alpha(position, 1.0);
+            }
+            _ => return 0.0,
+        };
+        let q = position - slab.nominal - velocities.center() * elapsed;
         let mut most = 0.0_f64;
-        for face in slab.faces.get_or_init(|| self.faces_of(index)) {
+        for face in slab.faces.get_or_init(|| self.faces_of(index, obstacle)) {
             let beyond = face.normal.dot(&q) - face.initial_support;
             if beyond.is_nan() {
                 return 0.0;
@@ -370,22 +361,17 @@ impl SpaceTimeObstacle for SlabObstacle {
         if alpha == 1.0 {
             return self.clone();
         }
-        let velocity_sets = self
-            .velocity_sets()
-            .iter()
-            .map(|set| VelocitySpell {
-                until: set.until,
-                velocities: scaled_velocities(&set.velocities, alpha),
-            })
-            .collect();
-        Self::from_sequence(
-            self.shared.name.clone(),
-            self.shared.initial.clone(),
-            velocity_sets,
-        )
+        let mut sets = self.sets().clone();
+        for set in &mut sets.velocities {
+            set.velocities = match &set.velocities {
+                ConvexSet::Polygon(set) => scaled_velocities(set, alpha).into(),
+                set => set.scaled_about_center(alpha),
+            };
+        }
+        Self::from_sequence(self.shared.name.clone(), sets)
     }
 
-    /// The minimum over the slabs, each in closed form; the earliest of equal ones.
+    /// The minimum over the slabs; the earliest of equal ones.
     fn closest_approach(
         &self,
         position: Vector,
@@ -420,5 +406,28 @@ impl SpaceTimeObstacle for SlabObstacle {
             slab.obstacle
                 .in_velocity_obstacle(at, velocity, end - start)
         })
+    }
+}
+
+/// The convex body of two sets of one kind.
+fn body(name: &str, initial: &ConvexSet, velocity: &ConvexSet) -> Obstacle {
+    match (initial, velocity) {
+        (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
+            EllipsoidObstacle::new(name, *initial, *velocity).into()
+        }
+        (initial, velocity) => {
+            let [initial, velocity] = [initial, velocity].map(|set| set.outer_polygon(SIDES));
+            PolytopeObstacle::new(name, initial, velocity).into()
+        }
+    }
+}
+
+/// Ellipse of least trace around a displacement and a further one with these velocities, metres.
+fn way_after(way: Ellipse, velocities: &ConvexSet, duration: f64) -> Ellipse {
+    match velocities {
+        ConvexSet::Ellipse(velocity) if duration.is_finite() => {
+            EllipsoidObstacle::new("", way, *velocity).outer_section(duration)
+        }
+        _ => way,
     }
 }
