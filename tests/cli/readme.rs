@@ -102,7 +102,7 @@ fn the_scenarios_in_the_documents_are_sound() {
     };
     let scenario = Scenario::parse(whole).expect("no faults");
     let both = Scenario::parse(&format!("{whole}\n{targets}")).expect("no faults");
-    assert_eq!(both.targets.len(), scenario.targets.len() + 3);
+    assert_eq!(both.targets.len(), scenario.targets.len() + 4);
 }
 
 /// Example of the README, line by line.

@@ -668,18 +668,6 @@ mod recordings {
                 .count(1)
                 .and(contains("no-such.rrd: cannot be read")),
         );
-        // written without one
-        let scenario = ::searoom::scenario::Scenario::read(HEAD_ON.as_ref()).expect("a scenario");
-        let run = ::searoom::pipeline::run(scenario);
-        ::searoom::recording::write(&run, None, broken.as_ref()).expect("written");
-        searoom(&["inspect", &broken])
-            .success()
-            .stdout(contains("no plan document in it"));
-        for args in [["inspect", "--plan"], ["verify", "--json"]] {
-            searoom(&[args[0], args[1], &broken])
-                .code(2)
-                .stderr(contains("holds no plan document"));
-        }
     }
 }
 
