@@ -106,7 +106,7 @@ fn plan(criterion: &mut Criterion) {
     assert_eq!(scenario.targets.len(), 3);
     let obstacles: Vec<_> = pipeline::sets(&scenario)
         .into_iter()
-        .map(|s| s.shaped)
+        .map(|s| s.with_domain)
         .collect();
     let land = pipeline::land_within_reach(&scenario);
     let land_obstacle = pipeline::land_obstacle(&scenario, &land);

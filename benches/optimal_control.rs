@@ -18,16 +18,16 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::planner::optimal_control::solver::{Iterate, Workspace, solve};
 use searoom::planner::optimal_control::{
-    Attempt, KeepOut, Measured, RecedingHorizon, Status, attempt, family,
+    KeepOut, Measured, RecedingHorizon, SolverStatus, StartAttempt, attempt, family,
 };
 use searoom::vessel::StateVector;
 
 /// The best of the starts that need no other planner.
-fn best(keep_outs: &[KeepOut], intervals: usize) -> (Option<Attempt>, Vec<f64>) {
+fn best(keep_outs: &[KeepOut], intervals: usize) -> (Option<StartAttempt>, Vec<f64>) {
     let desired = scenes::desired();
     let task = scenes::task(&desired, keep_outs, intervals);
     let mut times = Vec::new();
-    let mut best: Option<Attempt> = None;
+    let mut best: Option<StartAttempt> = None;
     for (_, guess) in family(&task) {
         let begun = Instant::now();
         let found = attempt(&task, &guess, &scenes::settings(), &|| true);
@@ -54,7 +54,7 @@ fn solves(c: &mut Criterion) {
             b.iter(|| {
                 let mut at = cold.clone();
                 let report = solve(&problem, &mut at, &mut work, &scenes::settings(), &|| true);
-                assert_eq!(report.status, Status::Solved);
+                assert_eq!(report.status, SolverStatus::Solved);
                 report.objective
             });
         });
@@ -150,7 +150,7 @@ fn random(_: &mut Criterion) {
                 &|| true,
             )
         })
-        .filter(Attempt::is_feasible)
+        .filter(StartAttempt::is_feasible)
         .map(|found| found.objective)
         .fold(f64::INFINITY, f64::min);
     println!("figure 9: stage cost {plan:.6}, the best of 40 wandering starts {random:.6}");

@@ -18,10 +18,10 @@ const ENCOUNTERS: u64 = 250;
 const TRAFFIC: u64 = 50;
 const RUNS: usize = 2;
 
-fn shaped(scenario: &Scenario) -> Vec<Obstacle> {
+fn with_domain(scenario: &Scenario) -> Vec<Obstacle> {
     pipeline::sets(scenario)
         .into_iter()
-        .map(|s| s.shaped)
+        .map(|s| s.with_domain)
         .collect()
 }
 
@@ -42,7 +42,7 @@ fn assert_planned(scenario: &Scenario) {
 
 fn time_plan(criterion: &mut Criterion, id: &str, scenario: &Scenario) {
     assert_planned(scenario);
-    let obstacles = shaped(scenario);
+    let obstacles = with_domain(scenario);
     let problem = problem(scenario, &obstacles, LandObstacle::none());
     criterion.bench_function(id, |b| b.iter(|| space_time::plan(black_box(&problem))));
 }
@@ -59,7 +59,7 @@ fn one_target(criterion: &mut Criterion) {
 /// Dijkstra over the same graph: its graph plan must cost what that of A* costs.
 fn dijkstra(criterion: &mut Criterion) {
     let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
-    let obstacles = shaped(&drawn.scenario);
+    let obstacles = with_domain(&drawn.scenario);
     let a_star = problem(&drawn.scenario, &obstacles, LandObstacle::none());
     let dijkstra = Problem {
         search: SearchKind::Dijkstra,
@@ -102,7 +102,7 @@ fn many_targets(criterion: &mut Criterion) {
 fn times(scenes: impl Iterator<Item = Scenario>) -> Vec<f64> {
     let mut times: Vec<f64> = scenes
         .map(|scenario| {
-            let obstacles = shaped(&scenario);
+            let obstacles = with_domain(&scenario);
             let problem = problem(&scenario, &obstacles, LandObstacle::none());
             (0..RUNS)
                 .map(|_| {

@@ -82,8 +82,8 @@ pub struct AssessArgs {
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     pub section: Vec<f64>,
     /// Use the ship domains instead of the hard sets
-    #[arg(long)]
-    pub shaped: bool,
+    #[arg(long, alias = "shaped")]
+    pub domains: bool,
     /// Draw sections, risk at the times of the sections, and dCPA: a file ending in .svg or .png
     #[arg(long, value_name = "PATH")]
     pub figure: Option<PathBuf>,

@@ -6,7 +6,7 @@ use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::figure::assessment_figure;
 use searoom::scenario::Scenario;
-use searoom::study::assess::{Query, Situation, SpaceTimePoint, assess as answer};
+use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
 use super::input::rows;
@@ -95,17 +95,23 @@ fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
 fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> ExitStatus {
     let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
         .into_iter()
-        .map(|sets| if args.shaped { sets.shaped } else { sets.hard })
+        .map(|sets| {
+            if args.domains {
+                sets.with_domain
+            } else {
+                sets.hard
+            }
+        })
         .collect();
     let own = &scenario.own_ship;
-    let situation = Situation {
+    let situation = OwnSituation {
         pose: own.pose,
         speed: own.speed,
         max_speed: own.max_speed(),
         horizon: scenario.horizon,
         obstacles: &obstacles,
     };
-    let sets = if args.shaped { "shaped" } else { "hard" };
+    let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = match &args.figure {
         Some(path) => match assessment_figure(&situation, &query.sections)

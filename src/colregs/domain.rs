@@ -16,10 +16,10 @@ pub struct Shapes {
     /// safety.
     pub hard: ConvexPolygon,
     /// The ship domain; contains `hard`.
-    pub shaped: ConvexPolygon,
+    pub with_domain: ConvexPolygon,
     /// The ship domain before it was reduced to let own ship start outside.
     pub full: ConvexPolygon,
-    /// Largest distance of a point of `full` from `shaped`, metres; 0 if it was not reduced.
+    /// Largest distance of a point of `full` from `with_domain`, metres; 0 if it was not reduced.
     pub reduced: f64,
     /// Largest distance of a point of `full` from `hard`, metres.
     pub reach: f64,
@@ -29,7 +29,7 @@ pub struct Shapes {
 ///
 /// - hull = [`ShipTrack::outer_hull`], on every possible heading until `horizon` seconds;
 /// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
-/// - shaped = (conv(base ∪ hull) ⊕ `[0, e]`) ⊕ the same disc.
+/// - with_domain = (conv(base ∪ hull) ⊕ `[0, e]`) ⊕ the same disc.
 ///
 /// The disc is an outer 16-gon aligned with the target. The base contains the hull before it is
 /// swept, so the domain contains the hard set by construction. The base is symmetric, so the
@@ -57,7 +57,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
     let about = shapes_about(own, target, risk, horizon);
     Shapes {
         hard: about.hard.translated(place),
-        shaped: about.shaped.translated(place),
+        with_domain: about.with_domain.translated(place),
         full: about.full.translated(place),
         ..about
     }
@@ -75,7 +75,7 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     let hard = hull.minkowski_sum(&around);
     if target.domain == DomainKind::Hull {
         return Shapes {
-            shaped: hard.clone(),
+            with_domain: hard.clone(),
             full: hard.clone(),
             hard,
             reduced: 0.0,
@@ -91,20 +91,20 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
         hull,
         around,
     };
-    let shaped = shape.at(1.0, 1.0);
+    let with_domain = shape.at(1.0, 1.0);
     debug_assert!(
-        risk.is_none() || keeps_the_design_inequality(own, target, shape.sweep, &shaped),
+        risk.is_none() || keeps_the_design_inequality(own, target, shape.sweep, &with_domain),
         "swept by {:?}",
         shape.sweep
     );
-    let reach = beyond(&shaped, &hard);
+    let reach = beyond(&with_domain, &hard);
     let start = own.pose.position;
     let clear = |set: &ConvexPolygon| set.signed_distance(start) >= tolerance::START_M;
-    if shaped.signed_distance(start) > 0.0 || hard.contains(start) {
+    if with_domain.signed_distance(start) > 0.0 || hard.contains(start) {
         return Shapes {
             hard,
-            full: shaped.clone(),
-            shaped,
+            full: with_domain.clone(),
+            with_domain,
             reduced: 0.0,
             reach,
         };
@@ -116,9 +116,9 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     };
     Shapes {
         hard,
-        reduced: beyond(&shaped, &used),
-        shaped: used,
-        full: shaped,
+        reduced: beyond(&with_domain, &used),
+        with_domain: used,
+        full: with_domain,
         reach,
     }
 }
@@ -129,24 +129,27 @@ fn keeps_the_design_inequality(
     own: &OwnShip,
     target: &ShipTrack,
     sweep: Vector,
-    shaped: &ConvexPolygon,
+    with_domain: &ConvexPolygon,
 ) -> bool {
     let Some(bad) = sweep.try_normalize(0.0) else {
         return true;
     };
     let centre = target.pose.position;
-    let reach = |n: Vector| shaped.support(n) - n.dot(&centre);
+    let reach = |n: Vector| with_domain.support(n) - n.dot(&centre);
     let rounding = 1e-9 * (1.0 + centre.norm() + sweep.norm());
     let short = 2.0 * risk_distance(own, target) - (reach(bad) - reach(-bad));
     short.is_nan() || short <= rounding && reach(-bad) >= own.safety_margin - rounding
 }
 
 impl Shapes {
-    /// The ship domain reduced toward the hard set: `scale` 1 gives `shaped`, 0 gives `hard`.
+    /// The ship domain reduced toward the hard set: `scale` 1 gives `with_domain`, 0 gives `hard`.
     /// Convex and nested. O(n + m).
     pub fn scaled(&self, scale: f64) -> ConvexPolygon {
-        let (hard, shaped) = (self.hard.scaled(1.0 - scale), self.shaped.scaled(scale));
-        hard.minkowski_sum(&shaped)
+        let (hard, with_domain) = (
+            self.hard.scaled(1.0 - scale),
+            self.with_domain.scaled(scale),
+        );
+        hard.minkowski_sum(&with_domain)
     }
 
     /// Largest distance of a point of the full domain from a set, metres.

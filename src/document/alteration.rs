@@ -87,7 +87,7 @@ fn visible(turned: f64, start: f64) -> Option<Turn> {
 mod tests {
     use super::*;
     use crate::frame::{Pose, Vector};
-    use crate::trajectory::{Node, Segment, Steered};
+    use crate::trajectory::{ForceNode, Segment, Steered};
 
     /// Builds ten-second segments with the given turns in degrees to starboard.
     fn arcs(turns: &[f64]) -> Trajectory {
@@ -129,7 +129,7 @@ mod tests {
         use Side::{Port, Starboard};
         // courses in degrees, clockwise
         let steered = |courses: &[f64]| {
-            let nodes = courses.iter().enumerate().map(|(k, course)| Node {
+            let nodes = courses.iter().enumerate().map(|(k, course)| ForceNode {
                 time: k as f64,
                 pose: Pose::new(Vector::zeros(), -course.to_radians()),
                 velocity: Vector::new(1.0, 0.0),

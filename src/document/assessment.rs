@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct AssessmentDocument {
     pub scenario: String,
     pub horizon_s: f64,
-    /// `"hard"` or `"shaped"`.
+    /// `"hard"` or `"domains"`.
     pub sets: String,
     pub targets: Vec<TargetSectionsDocument>,
     pub points: Vec<PointDocument>,

@@ -194,8 +194,8 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
-    let (kind, target, amount, unit, until_s) = match given_up {
+fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
+    let (kind, target, amount, unit, until_s) = match relaxation {
         Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
         Relaxation::Risk {
             target,

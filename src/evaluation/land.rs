@@ -8,12 +8,12 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, EdgeTree, Polygon};
 
 /// Land polygons with a spatial index of their edges.
-pub(crate) struct Shore<'a> {
+pub(crate) struct LandBodies<'a> {
     land: &'a [Polygon],
     edges: EdgeTree,
 }
 
-impl<'a> Shore<'a> {
+impl<'a> LandBodies<'a> {
     /// Builds the index of edges. O(edges log edges).
     pub fn new(land: &'a [Polygon]) -> Self {
         Self {
@@ -128,7 +128,7 @@ mod tests {
             };
             let reach = hull.half_diagonal();
             let land = [land];
-            let found = Shore::new(&land).least_distance(&[s], Body::hull(&hull), reach);
+            let found = LandBodies::new(&land).least_distance(&[s], Body::hull(&hull), reach);
             let mut scan = f64::INFINITY;
             for k in 0..=300 {
                 let pose = s.pose_after(s.duration * f64::from(k) / 300.0);
@@ -168,9 +168,9 @@ mod tests {
             speed: 5.0,
             turn_rate: 0.0,
         };
-        let found = Shore::new(&land).least_distance(&[inland], Body::hull(&hull), 11.0);
+        let found = LandBodies::new(&land).least_distance(&[inland], Body::hull(&hull), 11.0);
         assert!(found.value <= -400.0, "{found:?}");
-        let nowhere = Shore::new(&[]).least_distance(&[inland], Body::hull(&hull), 11.0);
+        let nowhere = LandBodies::new(&[]).least_distance(&[inland], Body::hull(&hull), 11.0);
         assert_eq!(nowhere.value, f64::INFINITY);
     }
 }

@@ -32,7 +32,7 @@ pub use words::{facts, outcome_word};
 use distance::least::Least;
 use distance::piece::Piece;
 use distance::turn::{Turn, turns};
-use land::Shore;
+use land::LandBodies;
 use met::passage;
 use safety::{Claim, EDGE, collision, grounding};
 
@@ -171,12 +171,12 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let segments = if judged { segments } else { &[] };
     let turns = turns(segments);
     let (passages, met) = meetings(request, segments, &turns, judged, &mut violations);
-    let shore = shore(request, segments, &turns, judged, &mut violations);
+    let land_distance = land_distance(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
         violations,
-        safety: sound.max(met).max(Safety::of_land(&shore, request)),
+        safety: sound.max(met).max(Safety::of_land(&land_distance, request)),
         counted: cost::counted::to_end(segments, request.desired),
         space_time_error: or_nan(cost::space_time_error(
             segments,
@@ -197,8 +197,8 @@ pub fn evaluate(request: &Request) -> Evaluation {
         min_clearance: or_nan(least_of(&passages, |p| p.min_clearance)),
         hold_clearance: or_nan(least_of(&passages, |p| p.hold_clearance)),
         arrival_hold: request.arrival_hold,
-        min_land_distance: or_nan(shore.value),
-        min_land_distance_time: shore.time,
+        min_land_distance: or_nan(land_distance.value),
+        min_land_distance_time: land_distance.time,
         passages,
     }
 }
@@ -268,7 +268,7 @@ fn meetings<P: Piece>(
 }
 
 /// Least distance to land along a chain of pieces. Violations are added only if `judged` is true.
-fn shore<P: Piece>(
+fn land_distance<P: Piece>(
     request: &Request,
     pieces: &[P],
     turns: &[Turn],
@@ -277,7 +277,7 @@ fn shore<P: Piece>(
 ) -> Least {
     let own = &request.own.hull;
     let (body, reach) = (Body::hull(own), own.half_diagonal());
-    let land = Shore::new(request.land);
+    let land = LandBodies::new(request.land);
     let mut least = land.least_distance(pieces, body, reach);
     for turn in turns {
         let here = land.least_distance(std::slice::from_ref(&turn.sweep), body, reach);

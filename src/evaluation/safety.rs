@@ -287,9 +287,9 @@ mod tests {
     #[test]
     fn land_and_motions_that_are_none_are_told() {
         let mut scene = scene(500.0, 0.0);
-        let shore = [(700.0, 14.0), (800.0, 14.0), (750.0, 90.0)];
-        let shore: Vec<Vector> = shore.map(|(x, y)| Vector::new(x, y)).to_vec();
-        let land = [Polygon::new(&[shore]).expect("a polygon")];
+        let outline = [(700.0, 14.0), (800.0, 14.0), (750.0, 90.0)];
+        let outline: Vec<Vector> = outline.map(|(x, y)| Vector::new(x, y)).to_vec();
+        let land = [Polygon::new(&[outline]).expect("a polygon")];
         for (margin, expected) in [(9.9, Safety::Safe), (10.1, Safety::Unsafe)] {
             let found = judged(&scene, &[], 0.0, &land, margin);
             assert_eq!(found.safety, expected, "{margin} m");

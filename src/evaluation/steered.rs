@@ -1,12 +1,12 @@
 //! Evaluates a motion under forces: checks the vessel dynamics and the clearances.
 
-use super::{Evaluation, Request, Safety, Violation, least_of, meetings, shore};
+use super::{Evaluation, Request, Safety, Violation, land_distance, least_of, meetings};
 use crate::evaluation::cost::counted::counted_error_of_cubics;
 use crate::evaluation::cost::quadrature::smooth;
 use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
-use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
+use crate::trajectory::{Cubic, DesiredTrajectory, ForceNode, Steered};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
 /// Initial number of integrator steps per interval; doubled until two results agree.
@@ -49,7 +49,7 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let pieces: Vec<Cubic> = steering.motion.pieces().collect();
     let sound = Safety::of_motion(violations.is_empty());
     let (passages, met) = meetings(request, &pieces, &[], true, &mut violations);
-    let shore = shore(request, &pieces, &[], true, &mut violations);
+    let land_distance = land_distance(request, &pieces, &[], true, &mut violations);
     let length = steering.motion.length();
     let nodes = steering.motion.nodes();
     let within = request.own.hull.length;
@@ -57,7 +57,7 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
         counted_error_of_cubics(&pieces, request.desired, request.time_weight, within);
     Evaluation {
         violations,
-        safety: sound.max(met).max(Safety::of_land(&shore, request)),
+        safety: sound.max(met).max(Safety::of_land(&land_distance, request)),
         space_time_error,
         arc_length_error: arc_length_error(&pieces, request.desired, request.time_weight),
         counted,
@@ -67,8 +67,8 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
         min_clearance: least_of(&passages, |p| p.min_clearance),
         hold_clearance: least_of(&passages, |p| p.hold_clearance),
         arrival_hold: request.arrival_hold,
-        min_land_distance: shore.value,
-        min_land_distance_time: shore.time,
+        min_land_distance: land_distance.value,
+        min_land_distance_time: land_distance.time,
         passages,
     }
 }
@@ -153,11 +153,11 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
 }
 
 /// Forces from a node until the next one.
-pub(super) fn force(node: &Node) -> ForceVector {
+pub(super) fn force(node: &ForceNode) -> ForceVector {
     ForceVector::new(node.force.x, node.force.y, node.moment)
 }
 
-pub(super) fn state(node: &Node) -> StateVector {
+pub(super) fn state(node: &ForceNode) -> StateVector {
     let place = node.pose.position;
     StateVector::new(
         place.x,

@@ -20,7 +20,7 @@ pub use sets::{TargetSets, sets};
 
 use judge::judge_answer;
 use relaxation::{Attempt, Relaxer};
-use rules::rules_given_up;
+use rules::relaxed_rules;
 
 use std::time::{Duration, Instant};
 
@@ -69,7 +69,7 @@ pub struct Run {
 
 impl Run {
     /// True where some part of a ship domain is retained.
-    pub fn is_shaped(&self) -> bool {
+    pub fn uses_domains(&self) -> bool {
         let mut both = self.whole.iter().zip(&self.sets);
         both.any(|(whole, sets)| *whole != sets.hard)
     }
@@ -159,7 +159,7 @@ pub fn run(scenario: Scenario) -> Run {
         not_arrived(&answer),
     );
     if scenario.compliance == Compliance::Rules && answer.level > RelaxationLevel::Rules {
-        relaxations.extend(rules_given_up(&scenario, &sets));
+        relaxations.extend(relaxed_rules(&scenario, &sets));
     }
     let evaluation = answer
         .trajectory()

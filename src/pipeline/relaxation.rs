@@ -107,28 +107,28 @@ impl Relaxer<'_> {
 
     /// The answer of the first level that has one; without any, that of the first level.
     pub fn answer(&self) -> Attempt {
-        let shaped = self.scenario.compliance.shapes();
-        let scale = if shaped { 1.0 } else { 0.0 };
+        let with_domain = self.scenario.compliance.shapes();
+        let scale = if with_domain { 1.0 } else { 0.0 };
         let first = self.attempt(
             RelaxationLevel::Compliant,
             &self.scales(scale),
             self.scenario.max_risk,
         );
         if self.scenario.planner.facts().relaxes_domains_only {
-            return self.without_domains(first, shaped);
+            return self.without_domains(first, with_domain);
         }
         let why = match &first.planned.outcome {
             Outcome::Solved(_) | Outcome::Deadline(Some(_)) => return first,
             Outcome::Deadline(None) => return self.leaving_sets(first),
             Outcome::Infeasible(reason) => reason.clone(),
         };
-        let relaxed = self.relaxed(first, &why, shaped);
+        let relaxed = self.relaxed(first, &why, with_domain);
         let why = (relaxed.level > RelaxationLevel::Compliant).then_some(why);
         Attempt { why, ..relaxed }
     }
 
     /// The answer of the first of [`Self::RELAXED_LEVELS`] that has one.
-    fn relaxed(&self, first: Attempt, why: &NoPlan, shaped: bool) -> Attempt {
+    fn relaxed(&self, first: Attempt, why: &NoPlan, with_domain: bool) -> Attempt {
         if matches!(
             why,
             NoPlan::StartInside { .. } | NoPlan::StartCovered { .. }
@@ -140,7 +140,7 @@ impl Relaxer<'_> {
         }
         let found = Self::RELAXED_LEVELS
             .iter()
-            .find_map(|plan| plan(self, shaped));
+            .find_map(|plan| plan(self, with_domain));
         match found {
             Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
             Some(out_of_time) => self.leaving_sets(out_of_time),
@@ -175,11 +175,11 @@ impl Relaxer<'_> {
 
     /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets that retains as much of
     /// each domain as was found.
-    fn clear_of_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+    fn clear_of_hard_sets(&self, with_domain: bool) -> Option<Attempt> {
         if !self.has_domains() {
             return None;
         }
-        if shaped {
+        if with_domain {
             return self.clear_of_scaled(0.0);
         }
         // a plan along paths for a larger set is also found for the smaller one
@@ -196,7 +196,7 @@ impl Relaxer<'_> {
     }
 
     /// [`RelaxationLevel::ReducedDomains`] by a wide detour around the hard sets.
-    fn around_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+    fn around_hard_sets(&self, with_domain: bool) -> Option<Attempt> {
         let planner = self.scenario.planner;
         let risk = self.scenario.max_risk;
         let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
@@ -211,7 +211,7 @@ impl Relaxer<'_> {
             Some(Outcome::Deadline(_)) => Outcome::Deadline(Some(plan)),
             _ => Outcome::Solved(plan),
         };
-        let level = if shaped {
+        let level = if with_domain {
             RelaxationLevel::ReducedDomains
         } else {
             RelaxationLevel::Compliant
@@ -226,7 +226,7 @@ impl Relaxer<'_> {
             planned: Planned::of(outcome),
             why: None,
         };
-        if !shaped {
+        if !with_domain {
             return Some(self.clear_of(&found, &self.scales(0.0), level));
         }
         let retained = self.retained_along(found.trajectory()?, risk);
@@ -235,14 +235,14 @@ impl Relaxer<'_> {
 
     /// [`RelaxationLevel::ReducedDomains`] from half of each domain: the planner may find a way
     /// around the larger sets that it misses for the smaller ones.
-    fn clear_of_half_domains(&self, shaped: bool) -> Option<Attempt> {
-        (shaped && self.has_domains() && !self.follows_paths())
+    fn clear_of_half_domains(&self, with_domain: bool) -> Option<Attempt> {
+        (with_domain && self.has_domains() && !self.follows_paths())
             .then(|| self.clear_of_scaled(HALF))?
     }
 
     /// [`RelaxationLevel::Waiting`]: a motion along paths that does not arrive in time, clear of
     /// the hard sets and of as much of the domains as was found.
-    fn waiting(&self, shaped: bool) -> Option<Attempt> {
+    fn waiting(&self, with_domain: bool) -> Option<Attempt> {
         if !self.follows_paths() {
             return None;
         }
@@ -251,12 +251,12 @@ impl Relaxer<'_> {
             let found = self.attempt(level, &self.scales(scale), risk);
             (!found.is_infeasible()).then_some(found)
         };
-        if shaped && let Some(found) = at(1.0) {
+        if with_domain && let Some(found) = at(1.0) {
             return Some(found);
         }
         let found = at(0.0)?;
         match found.trajectory() {
-            Some(trajectory) if shaped => {
+            Some(trajectory) if with_domain => {
                 let retained = self.retained_along(trajectory, risk);
                 Some(self.clear_of(&found, &retained, level))
             }
@@ -360,14 +360,14 @@ impl Relaxer<'_> {
     }
 
     /// The only level below the first for a planner that relaxes domains only: the hard sets.
-    fn without_domains(&self, mut first: Attempt, shaped: bool) -> Attempt {
+    fn without_domains(&self, mut first: Attempt, with_domain: bool) -> Attempt {
         let blocked = match &first.planned.outcome {
             // the ellipse around a domain may contain own ship where the domain does not
             Outcome::Infeasible(NoPlan::StartInside { .. }) => true,
             Outcome::Infeasible(reason) => reason.is_for_the_sets(),
             Outcome::Solved(_) | Outcome::Deadline(_) => false,
         };
-        if !(shaped && blocked && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
+        if !(with_domain && blocked && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
             return first;
         }
         let level = RelaxationLevel::ReducedDomains;
@@ -399,10 +399,10 @@ impl Relaxer<'_> {
 
     /// The planning problem of the scenario against these sets, with the time that is left.
     fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
-        let shaped = self.scenario.compliance.shapes();
+        let with_domain = self.scenario.compliance.shapes();
         Problem {
             deadline: self.time_left(),
-            first_turn: shaped.then(|| first_turn(self.sets)).flatten(),
+            first_turn: with_domain.then(|| first_turn(self.sets)).flatten(),
             ..super::problem(self.scenario, obstacles, self.land_obstacle)
         }
     }

@@ -39,12 +39,12 @@ pub(super) fn encountered(scenario: &Scenario, sets: &[TargetSets]) -> Vec<Encou
 }
 
 /// The rules that a plan breaks, per target.
-pub(super) fn rules_given_up(scenario: &Scenario, sets: &[TargetSets]) -> Vec<Relaxation> {
-    let given_up = |(target, e): (&TargetSets, Encountered)| Relaxation::Compliance {
+pub(super) fn relaxed_rules(scenario: &Scenario, sets: &[TargetSets]) -> Vec<Relaxation> {
+    let relaxation = |(target, e): (&TargetSets, Encountered)| Relaxation::Compliance {
         target: target.hard.name().to_owned(),
         role: e.role,
     };
-    asking(scenario, sets).map(given_up).collect()
+    asking(scenario, sets).map(relaxation).collect()
 }
 
 fn asking<'a>(

@@ -13,14 +13,14 @@ pub struct TargetSets {
     /// Hulls, margin and position uncertainty: safety is claimed for this one.
     pub hard: Obstacle,
     /// The hard set with the ship domain around it, used where domains are asked for.
-    pub shaped: Obstacle,
+    pub with_domain: Obstacle,
     /// The encounter that the domain is for, judged along the nominal desired trajectory.
     pub encounter: Encounter,
     /// Metres by which the domain is reduced to let own ship start outside.
     pub shape_reduced: f64,
     /// Metres from the hard set to the farthest point of the full domain.
     pub shape_reach: f64,
-    /// The domain to be reduced; `None` where the shaped set equals the hard one.
+    /// The domain to be reduced; `None` where the set with domain equals the hard one.
     shapes: Option<Shapes>,
 }
 
@@ -33,9 +33,13 @@ pub(super) struct ScaledDomain {
 }
 
 impl TargetSets {
-    /// The shaped or the hard set.
-    pub fn either(&self, shaped: bool) -> &Obstacle {
-        if shaped { &self.shaped } else { &self.hard }
+    /// The set with or without domain.
+    pub fn either(&self, with_domain: bool) -> &Obstacle {
+        if with_domain {
+            &self.with_domain
+        } else {
+            &self.hard
+        }
     }
 
     /// True where the domain is larger than the hard set.
@@ -45,7 +49,7 @@ impl TargetSets {
 
     /// Removes the ship domain.
     pub(super) fn remove_domain(&mut self) {
-        self.shaped = self.hard.clone();
+        self.with_domain = self.hard.clone();
         (self.shape_reduced, self.shape_reach) = (0.0, 0.0);
         self.shapes = None;
     }
@@ -66,7 +70,7 @@ impl TargetSets {
                 reduction: self.shape_reach,
             },
             _ => ScaledDomain {
-                obstacle: self.shaped.clone(),
+                obstacle: self.with_domain.clone(),
                 reduction: self.shape_reduced,
             },
         }
@@ -85,7 +89,7 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
     let encounter = colregs::encounter(own, desired, target, horizon);
     // explicit sets are used unchanged: own ship is a point
     let explicit = |obstacle: Obstacle| TargetSets {
-        shaped: obstacle.clone(),
+        with_domain: obstacle.clone(),
         hard: obstacle,
         encounter,
         shape_reduced: 0.0,
@@ -101,14 +105,14 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
                 velocities: ship.outer_velocity_sets(ship.turn_rate, horizon),
             };
             let hard = obstacle(target, sets);
-            let shaped = if shapes.shaped == shapes.hard {
+            let with_domain = if shapes.with_domain == shapes.hard {
                 hard.clone()
             } else {
-                with_initial(&hard, shapes.shaped.clone())
+                with_initial(&hard, shapes.with_domain.clone())
             };
             // the ellipse around a reduced domain may contain own ship again
             let start = own.pose.position;
-            if shaped.contains(start, 0.0) && !hard.contains(start, 0.0) {
+            if with_domain.contains(start, 0.0) && !hard.contains(start, 0.0) {
                 return TargetSets {
                     shape_reduced: shapes.reach,
                     shape_reach: shapes.reach,
@@ -117,11 +121,11 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
             }
             TargetSets {
                 hard,
-                shaped,
+                with_domain,
                 encounter,
                 shape_reduced: shapes.reduced,
                 shape_reach: shapes.reach,
-                shapes: (shapes.shaped != shapes.hard).then_some(shapes),
+                shapes: (shapes.with_domain != shapes.hard).then_some(shapes),
             }
         }
         Motion::Sets(sets) => explicit(obstacle(target, sets.clone())),

@@ -79,14 +79,14 @@ fn track(x: f64, y: f64, heading: f64, speed: f64) -> ShipTrack {
 #[test]
 fn compliance_chooses_the_sets() {
     let target = track(1500.0, 0.0, PI, 5.0);
-    let shaped = run(scenario(target.clone(), Compliance::Shape));
+    let with_domain = run(scenario(target.clone(), Compliance::Shape));
     let hard = run(scenario(target, Compliance::None));
-    assert_eq!(shaped.sets[0].encounter.role, Role::HeadOn);
-    assert_eq!(shaped.obstacles[0], shaped.sets[0].shaped);
+    assert_eq!(with_domain.sets[0].encounter.role, Role::HeadOn);
+    assert_eq!(with_domain.obstacles[0], with_domain.sets[0].with_domain);
     assert_eq!(hard.obstacles[0], hard.sets[0].hard);
-    assert!(shaped.relaxations.is_empty() && hard.relaxations.is_empty());
+    assert!(with_domain.relaxations.is_empty() && hard.relaxations.is_empty());
     let areas = |run: &Run| polytope(&run.obstacles[0]).initial().area();
-    assert!(areas(&shaped) > 2.0 * areas(&hard));
+    assert!(areas(&with_domain) > 2.0 * areas(&hard));
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
         turn_rate: 0.0,
     }])
     .expect("valid");
-    let judged = judge(&scenario, &[sets[0].shaped.clone()], &straight);
+    let judged = judge(&scenario, &[sets[0].with_domain.clone()], &straight);
     assert!(!judged.verified());
     assert!(
         judged

@@ -17,7 +17,7 @@ pub enum NoPlan {
     #[error(
         "own ship starts {depth:.1} m closer to land than its half-diagonal and the land margin allow"
     )]
-    StartAshore {
+    StartOnLand {
         /// Depth, metres.
         depth: f64,
     },
@@ -180,7 +180,7 @@ impl NoPlan {
             | Self::Lost { .. }
             | Self::Unsolved { .. } => true,
             Self::StartInside { .. }
-            | Self::StartAshore { .. }
+            | Self::StartOnLand { .. }
             | Self::StartCovered { .. }
             | Self::HorizonTooShort { .. }
             | Self::PathTooLong { .. }

@@ -32,7 +32,7 @@
 //! - `chart/map/own_ship`, `own_ship/hull`: place and name, hull and speed vector at the cursor
 //! - `chart/map/targets/<target>`: expected place, hull and speed vector at the cursor
 //! - `chart/map/trails`: where the ships have been up to the cursor
-//! - `chart/map/hard_sets/<target>`, `shaped_sets/<target>`: sections of the sets at the cursor;
+//! - `chart/map/hard_sets/<target>`, `domain_sets/<target>`: sections of the sets at the cursor;
 //!   the set with the ship domain only where it differs
 //! - `chart/map/explored/free`, `blocked`: edges that the search tested; hidden until switched on.
 //!   Blocked edges carry as labels what they meet, when, and by which rule or limit
@@ -42,7 +42,7 @@
 //! - `space_time/axes`: the sea at t = 0, the time axis
 //! - `space_time/land`: the land within the bounds, at t = 0
 //! - `space_time/desired`, `planned`, `targets`: the motions; the plan's shadow lies on the sea
-//! - `space_time/hard_sets/<target>`, `shaped_sets/<target>`: the translucent bodies of the sets
+//! - `space_time/hard_sets/<target>`, `domain_sets/<target>`: the translucent bodies of the sets
 //! - `space_time/rules`: as on the chart
 //! - `space_time/now`: the plane of the cursor and the ships in it
 //! - `space_time/explored/free`, `blocked`: as on the chart

@@ -118,10 +118,10 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
         "/chart/map/closest_points".to_owned(),
         format!("/chart/map/targets/{name}"),
         format!("/chart/map/hard_sets/{name}"),
-        format!("/chart/map/shaped_sets/{name}"),
+        format!("/chart/map/domain_sets/{name}"),
         "/chart/map/explored/free".to_owned(),
         "/chart/map/explored/blocked".to_owned(),
-        format!("/space_time/shaped_sets/{name}"),
+        format!("/space_time/domain_sets/{name}"),
         "/space_time/planned".to_owned(),
         "/space_time/explored/free".to_owned(),
         "/curves/clearance_m".to_owned(),
@@ -186,7 +186,7 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
         assert!(entities.contains_key(&format!("/space_time/hard_sets/{name}")));
         assert!(entities.contains_key(&format!("/velocities/plane/obstacles/{name}")));
     }
-    assert!(!entities.contains_key("/chart/map/shaped_sets/drifting"));
+    assert!(!entities.contains_key("/chart/map/domain_sets/drifting"));
     assert!(entities.contains_key("/chart/map/violations"));
 }
 
@@ -351,8 +351,8 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
     }
     assert!(reasons.iter().any(|r| r.contains("Rule 14")), "{reasons:?}");
 
-    let shore = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
-    let run = pipeline::run(Scenario::read(&shore).expect("valid"));
+    let harbour = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
+    let run = pipeline::run(Scenario::read(&harbour).expect("valid"));
     write_run(&run, &path).expect("writes");
     let reasons = labels(
         &Recorded::read(&path).expect("whole"),
@@ -391,7 +391,7 @@ fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
     let [peak] = run.risks[..] else {
         panic!("one target");
     };
-    assert!(run.is_shaped() && peak.risk > 0.1, "{peak:?}");
+    assert!(run.uses_domains() && peak.risk > 0.1, "{peak:?}");
     let model = ViewModel::new(&run);
     let curves = curves::risk_curves(&model, &curves::risk_times(&model));
     let largest = |name: &str| {
@@ -399,7 +399,7 @@ fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
         let values = curve.expect("drawn").values.iter().copied();
         values.fold(0.0, f64::max)
     };
-    let reported = largest("shaped set");
+    let reported = largest("with domain");
     assert!((reported - peak.risk).abs() < 1e-9, "{reported} {peak:?}");
     // the hard set alone would report something else
     assert!(largest("hard set") < peak.risk - 1e-3);

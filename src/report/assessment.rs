@@ -3,12 +3,12 @@
 use super::table::{Grid, plain};
 use crate::document::{AssessmentDocument, SectionDocument};
 use crate::frame::course_deg_from_heading;
-use crate::study::assess::Situation;
+use crate::study::assess::OwnSituation;
 use crate::text::tenths;
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.
-pub fn assessment_text(situation: &Situation, assessment: &AssessmentDocument) -> String {
+pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
     let count = assessment.targets.len();
     let plural = if count == 1 { "" } else { "s" };
     let AssessmentDocument {
@@ -43,7 +43,7 @@ fn course(heading: f64) -> String {
     format!("{:03}.{}°", tenths / 10, tenths % 10)
 }
 
-fn held(situation: &Situation, assessment: &AssessmentDocument) -> String {
+fn held(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
     let rows = assessment.hold_course.targets.iter().map(|held| {
         vec![
             held.name.clone(),
@@ -61,7 +61,7 @@ fn held(situation: &Situation, assessment: &AssessmentDocument) -> String {
     )
 }
 
-fn alteration(situation: &Situation, assessment: &AssessmentDocument) -> String {
+fn alteration(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
     let found = &assessment.alteration;
     if found.speed_mps == Some(0.0) {
         return "Alteration: none needed, own velocity is in no velocity obstacle".to_owned();

@@ -147,7 +147,7 @@ pub enum Placement {
 
 /// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct RandomEncounter {
     /// Ready to be planned.
     pub scenario: Scenario,
     /// Kind of encounter with each target, in the scenario's order.
@@ -179,7 +179,7 @@ pub fn random_encounter(
     kind: EncounterKind,
     seed: u64,
     placement: Placement,
-) -> Result<Drawn, GeneratorError> {
+) -> Result<RandomEncounter, GeneratorError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(kind as u64);
     let title = format!("{} {seed}", kind.name());
@@ -192,7 +192,7 @@ pub fn random_traffic(
     count: usize,
     seed: u64,
     placement: Placement,
-) -> Result<Drawn, GeneratorError> {
+) -> Result<RandomEncounter, GeneratorError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream((EncounterKind::ALL.len() + count) as u64);
     let kinds = (0..count)
@@ -211,7 +211,7 @@ fn scene(
     kinds: Vec<EncounterKind>,
     placement: Placement,
     rng: &mut ChaCha8Rng,
-) -> Result<Drawn, GeneratorError> {
+) -> Result<RandomEncounter, GeneratorError> {
     let mut rejected = 0;
     let mut ships = Vec::with_capacity(kinds.len());
     for &kind in &kinds {
@@ -245,7 +245,7 @@ fn scene(
     });
     let waypoints = [Vector::zeros(), Vector::new(PATH_LENGTH, 0.0)];
     let waypoints = waypoints.map(|w| origin.world_coordinates(w));
-    Ok(Drawn {
+    Ok(RandomEncounter {
         scenario: Scenario {
             title,
             horizon: HORIZON,
@@ -333,7 +333,7 @@ fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
 mod tests {
     use super::*;
 
-    fn all(count: u64) -> Vec<Drawn> {
+    fn all(count: u64) -> Vec<RandomEncounter> {
         let mut drawn = Vec::new();
         for kind in EncounterKind::ALL {
             for seed in 0..count {
@@ -367,7 +367,7 @@ mod tests {
                 there,
                 random_encounter(kind, seed, Placement::Random).expect("drawn")
             );
-            let ship = |d: &Drawn| d.scenario.targets[0].ship().expect("a ship").clone();
+            let ship = |d: &RandomEncounter| d.scenario.targets[0].ship().expect("a ship").clone();
             let pose = there.scenario.own_ship.pose;
             let body = pose.body_coordinates(ship(&there).pose.position);
             assert!((body - ship(&here).pose.position).norm() < 1e-8);
@@ -380,7 +380,7 @@ mod tests {
     #[test]
     fn every_kind_is_drawn_without_many_replacements_and_no_two_seeds_are_alike() {
         for kind in EncounterKind::ALL {
-            let drawn: Vec<Drawn> = (0..300)
+            let drawn: Vec<RandomEncounter> = (0..300)
                 .map(|s| random_encounter(kind, s, Placement::Origin).expect("drawn"))
                 .collect();
             let rejected: usize = drawn.iter().map(|d| d.rejected).sum();

@@ -5,5 +5,5 @@ mod encounter_generator;
 
 pub use behaviour::{Behaviour, Signal};
 pub use encounter_generator::{
-    Drawn, EncounterKind, GeneratorError, Placement, random_encounter, random_traffic,
+    EncounterKind, GeneratorError, Placement, RandomEncounter, random_encounter, random_traffic,
 };

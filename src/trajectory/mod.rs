@@ -10,7 +10,7 @@ pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;
 pub use segment::Segment;
 pub(crate) use steered::{Bounds, hermite};
-pub use steered::{Cubic, Node, Steered, Swing};
+pub use steered::{Cubic, ForceNode, Steered, Swing};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;

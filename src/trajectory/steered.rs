@@ -5,7 +5,7 @@ use crate::frame::{Pose, Vector, direction, to_port};
 
 /// The state of a ship at one time, and the forces from then on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
+pub struct ForceNode {
     /// Seconds.
     pub time: f64,
     /// Pose; the heading is not wrapped.
@@ -20,7 +20,7 @@ pub struct Node {
     pub moment: f64,
 }
 
-impl Node {
+impl ForceNode {
     /// Velocity over ground, m/s.
     pub fn ground_velocity(&self) -> Vector {
         let ahead = self.pose.ahead();
@@ -64,12 +64,12 @@ pub struct Swing {
 /// This is what a plan of forces claims; a check decides how closely the ship follows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steered {
-    nodes: Vec<Node>,
+    nodes: Vec<ForceNode>,
 }
 
 impl Steered {
     /// From at least two nodes of finite numbers with increasing times.
-    pub fn new(nodes: Vec<Node>) -> Result<Self, TrajectoryError> {
+    pub fn new(nodes: Vec<ForceNode>) -> Result<Self, TrajectoryError> {
         if nodes.len() < 2 {
             return Err(TrajectoryError::Empty);
         }
@@ -83,7 +83,7 @@ impl Steered {
     }
 
     /// The nodes, in order of time.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[ForceNode] {
         &self.nodes
     }
 
@@ -102,7 +102,7 @@ impl Steered {
     }
 
     /// The node at `time`, clamped like [`Self::piece_at`].
-    pub fn node_at(&self, time: f64) -> &Node {
+    pub fn node_at(&self, time: f64) -> &ForceNode {
         let after = self.nodes.partition_point(|node| node.time <= time);
         &self.nodes[after.clamp(1, self.nodes.len()) - 1]
     }
@@ -197,7 +197,7 @@ pub(crate) struct Bounds {
 
 impl Cubic {
     /// From a node to the next one.
-    pub fn from_nodes(from: &Node, to: &Node) -> Self {
+    pub fn from_nodes(from: &ForceNode, to: &ForceNode) -> Self {
         Self {
             start_time: from.time,
             duration: to.time - from.time,

@@ -102,8 +102,8 @@ pub(super) struct Claim {
 impl Claim {
     /// Returns true where the document reports that the plan does not arrive.
     pub fn gives_up_arrival(&self) -> bool {
-        let mut given_up = self.file.relaxations.iter();
-        given_up.any(|r| r.kind == ARRIVAL)
+        let mut relaxations = self.file.relaxations.iter();
+        relaxations.any(|r| r.kind == ARRIVAL)
     }
 
     /// Parses a document; the error is the first field that is unreadable or invalid.
@@ -173,11 +173,11 @@ impl Claim {
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
         let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
-        for (index, given_up) in file.relaxations.iter().enumerate() {
+        for (index, relaxation) in file.relaxations.iter().enumerate() {
             let at = |key: &str| format!("relaxations[{index}].{key}");
-            word(&at("kind"), &given_up.kind, &KINDS)?;
-            word(&at("target"), &given_up.target, &names)?;
-            not_negative(&at("amount"), given_up.amount)?;
+            word(&at("kind"), &relaxation.kind, &KINDS)?;
+            word(&at("target"), &relaxation.target, &names)?;
+            not_negative(&at("amount"), relaxation.amount)?;
         }
         let (sets, mut faults) = sets::read(&file.obstacles, &file.relaxations, file.horizon_s)?;
         let land = file

@@ -3,7 +3,7 @@
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near_to;
 use super::file::EncounterFile;
-use super::untrue;
+use super::mismatch;
 use crate::document::{crosses_astern, is_crossing};
 use crate::evaluation::{Body, Evaluation, MovingSlabs, Violation};
 use crate::frame::{Pose, Vector, wrap};
@@ -28,7 +28,7 @@ pub(super) fn check(
         names(&mut claim.targets.iter().map(|t| &t.name)),
     );
     if have != want {
-        found.push(untrue(
+        found.push(mismatch(
             "encounters",
             format!("'{have}'"),
             format!("'{want}'"),
@@ -44,7 +44,7 @@ pub(super) fn check(
             let value = said
                 .dcpa_m
                 .map_or_else(|| "nothing".to_owned(), |d| d.to_string());
-            found.push(untrue(&label("dcpa_m"), value, dcpa));
+            found.push(mismatch(&label("dcpa_m"), value, dcpa));
             continue;
         }
         // The least distance may last for some time, so the distance at the given time is compared.
@@ -57,7 +57,7 @@ pub(super) fn check(
             _ => then,
         };
         if !(then.is_finite() && near_to(then, dcpa, rounding)) {
-            found.push(untrue(
+            found.push(mismatch(
                 &label("tcpa_s"),
                 tcpa,
                 format!(
@@ -78,14 +78,14 @@ pub(super) fn check(
         if !poses.iter().any(may_be) {
             let to_port = poses.first().is_some_and(|p| abeam(p) > tolerance::DEPTH_M);
             let so = if to_port { "port" } else { "starboard" };
-            found.push(untrue(&label("passing_side"), side_said, so));
+            found.push(mismatch(&label("passing_side"), side_said, so));
         }
         let crossing = trajectory.as_ref().and_then(|t| crossing(t, said, target));
         if let Some(so) = crossing {
             let word =
                 |astern: Option<bool>| astern.map_or("nothing".to_owned(), |a| a.to_string());
             let (said, so) = (word(said.crosses_astern), word(so));
-            found.push(untrue(&label("crosses_astern"), said, so));
+            found.push(mismatch(&label("crosses_astern"), said, so));
         }
     }
     found

@@ -9,7 +9,7 @@
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
 use super::file::EscapeFile;
-use super::untrue;
+use super::mismatch;
 use crate::evaluation::{Evaluation, Request, Violation, evaluate};
 use crate::frame::{clockwise_deg, wrap};
 use crate::tolerance;
@@ -32,13 +32,13 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     let mut found = Vec::new();
     let mut same = |key: &str, said: &str, so: &str| {
         if said != so {
-            found.push(untrue(key, format!("'{said}'"), format!("'{so}'")));
+            found.push(mismatch(key, format!("'{said}'"), format!("'{so}'")));
         }
     };
     same("escape.policy", &escape.policy, POLICY);
     same("compliance", &claim.file.compliance, COMPLIANCE);
     let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
-        found.push(untrue(
+        found.push(mismatch(
             "escape",
             "there is one",
             "no motion of lines and arcs",
@@ -50,7 +50,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
         let so = segments.get(escape.first_segment).map(|s| s.start_time);
         let so = so.map_or("no segment".to_owned(), |t| format!("a start at {t} s"));
         let said = format!("{latest} s, segment {}", escape.first_segment);
-        found.push(untrue("escape.latest_s, first_segment", said, so));
+        found.push(mismatch("escape.latest_s, first_segment", said, so));
         return found;
     };
     let at = |violation: Violation| Violation {
@@ -62,7 +62,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     for set in claim.sets.iter().filter(|set| set.from > latest) {
         let said = format!("clear from {latest} s on");
         let so = format!("in the set of '{}' until {} s", set.name, set.from);
-        found.push(at(untrue("escape", said, so)));
+        found.push(at(mismatch("escape", said, so)));
     }
     for (target, passage) in claim.targets.iter().zip(&evaluation.passages) {
         // Negated on purpose: a NaN is not clear.
@@ -71,7 +71,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
             let so = format!("{depth} m deep in the set of '{}'", target.name);
             found.push(Violation {
                 time: passage.min_margin_time,
-                ..untrue("escape", "clear", so)
+                ..mismatch("escape", "clear", so)
             });
         }
     }
@@ -132,7 +132,7 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
     })?;
     Some(Violation {
         time: wrong.start_time,
-        ..untrue(
+        ..mismatch(
             "escape.latest_s",
             "course and speed are held",
             format!("{} m/s, {} rad/s", wrong.speed, wrong.turn_rate),
@@ -150,13 +150,13 @@ const CORNER_RADII: f64 = 4.0;
 fn first(claim: &Claim, escape: &EscapeFile, away: &[Segment]) -> Option<Violation> {
     let speed = away[0].speed;
     if !near(escape.speed_mps, speed) {
-        return Some(untrue("escape.speed_mps", escape.speed_mps, speed));
+        return Some(mismatch("escape.speed_mps", escape.speed_mps, speed));
     }
     if escape.turn_deg == 0.0 {
         let fastest = claim.desired.legs().iter().map(|l| l.speed);
         let allowed = HALF * fastest.fold(0.0, f64::max);
         let slow = speed <= allowed * (1.0 + tolerance::LIMIT);
-        return (!slow).then(|| untrue("escape.speed_mps", speed, format!("{allowed} at most")));
+        return (!slow).then(|| mismatch("escape.speed_mps", speed, format!("{allowed} at most")));
     }
     let side = away[0].turn_rate.signum();
     let turning = away
@@ -164,12 +164,12 @@ fn first(claim: &Claim, escape: &EscapeFile, away: &[Segment]) -> Option<Violati
         .take_while(|s| s.turn_rate != 0.0 && s.turn_rate.signum() == side);
     let turned = clockwise_deg(turning.map(|s| s.turn_rate * s.duration).sum());
     if !near(escape.turn_deg, turned) {
-        return Some(untrue("escape.turn_deg", escape.turn_deg, turned));
+        return Some(mismatch("escape.turn_deg", escape.turn_deg, turned));
     }
     let apparent = turned >= APPARENT_DEG * (1.0 - tolerance::LIMIT);
     (!apparent).then(|| {
         let so = format!("{APPARENT_DEG} to starboard at least");
-        untrue("escape.turn_deg", turned, so)
+        mismatch("escape.turn_deg", turned, so)
     })
 }
 
@@ -197,5 +197,5 @@ fn needless(claim: &Claim, hold: &[Segment], request: &Request) -> Option<Violat
     });
     let met = |v: &Violation| v.what.starts_with("set of ") || v.what.starts_with("land");
     (!straight.violations.iter().any(met))
-        .then(|| untrue("escape", "needed", "needless: holding on meets nothing"))
+        .then(|| mismatch("escape", "needed", "needless: holding on meets nothing"))
 }

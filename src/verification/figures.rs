@@ -2,12 +2,12 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::encounters::shape_rounding;
-use super::untrue;
+use super::mismatch;
 use crate::document::first_alteration;
 use crate::evaluation::{Evaluation, Steering, Violation, stage_costs};
 use crate::frame::Vector;
 use crate::tolerance;
-use crate::trajectory::{Node, Segment};
+use crate::trajectory::{ForceNode, Segment};
 
 /// Checks the costs, the figures of the mission and the path-time profile.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
@@ -20,7 +20,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
             (said, so) => said.is_none() && so.is_none(),
         };
         if !agree {
-            found.push(untrue(what, words(said), words(so)));
+            found.push(mismatch(what, words(said), words(so)));
         }
     };
     let mut same = |what: &str, said: Option<f64>, so: f64| same_to(what, said, so, 0.0);
@@ -35,7 +35,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         claim.desired.length(),
     );
     let Some(cost) = &file.cost else {
-        found.push(untrue("cost", "nothing", "that of a motion"));
+        found.push(mismatch("cost", "nothing", "that of a motion"));
         return found;
     };
     let end = evaluation.duration + claim.arrival_hold();
@@ -92,7 +92,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     }
     let arrives = !forces && !claim.gives_up_arrival();
     if cost.arrived != arrives {
-        found.push(untrue("cost.arrived", cost.arrived, arrives));
+        found.push(mismatch("cost.arrived", cost.arrived, arrives));
     }
     // The document holds only the land within reach; the nearest land of the map may be beyond.
     let land = evaluation.min_land_distance;
@@ -100,7 +100,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         .min_land_distance_m
         .filter(|said| !(*said <= land || near(*said, land)))
     {
-        found.push(untrue("cost.min_land_distance_m", said, land));
+        found.push(mismatch("cost.min_land_distance_m", said, land));
     }
     if let Some(said) = cost
         .min_land_distance_m
@@ -109,11 +109,11 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         let beyond = beyond_reach(claim);
         if !(said >= beyond || near(said, beyond)) {
             let so = format!("{land}, or at least {beyond} for land beyond reach");
-            found.push(untrue("cost.min_land_distance_m", said, so));
+            found.push(mismatch("cost.min_land_distance_m", said, so));
         }
     }
     if cost.min_land_distance_m.is_none() && land.is_finite() {
-        found.push(untrue("cost.min_land_distance_m", "nothing", land));
+        found.push(mismatch("cost.min_land_distance_m", "nothing", land));
     }
     found.extend(first_turn(claim));
     found.extend(profile(claim));
@@ -137,14 +137,14 @@ fn first_turn(claim: &Claim) -> Option<Violation> {
     let words = |turn: Option<String>| turn.unwrap_or_else(|| "nothing".to_owned());
     let said = said.map(|t| turn(&t.side, t.turn_deg, t.t_s));
     let so = so.map(|t| turn(&t.side.to_string(), t.degrees, t.start));
-    (!agree).then(|| untrue("cost.first_turn", words(said), words(so)))
+    (!agree).then(|| mismatch("cost.first_turn", words(said), words(so)))
 }
 
 /// Checks the remaining distance of a plan that does not arrive. It is at least the straight
 /// distance; with a single path, it is the part of the path that was not covered.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
-    let mut given_up = claim.file.relaxations.iter();
-    let said = given_up.find(|r| r.kind == ARRIVAL)?.amount;
+    let mut relaxation = claim.file.relaxations.iter();
+    let said = relaxation.find(|r| r.kind == ARRIVAL)?.amount;
     let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
         return None;
     };
@@ -153,10 +153,10 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let unsailed = claim.desired.length() - evaluation.length;
     let alone = claim.file.mission.alternatives.is_empty();
     let so = if alone { unsailed } else { straight };
-    // Negated on purpose: a NaN is untrue.
+    // Negated on purpose: a NaN is a mismatch.
     if !(said > 0.0 && (near(said, so) || !alone && said >= so)) {
         let so = format!("{so} m{}", if alone { "" } else { " at least" });
-        return Some(untrue("relaxation of arrival, amount", said, so));
+        return Some(mismatch("relaxation of arrival, amount", said, so));
     }
     None
 }
@@ -180,7 +180,7 @@ fn beyond_reach(claim: &Claim) -> f64 {
         // Between two nodes, the motion is within their distance of the nodes.
         Some(ClaimedMotion::Steered { motion, .. }) => {
             let nodes = motion.nodes().windows(2);
-            let most = |w: &[Node]| {
+            let most = |w: &[ForceNode]| {
                 let [a, b] = [w[0].pose.position, w[1].pose.position];
                 off(a).max(off(b)) + (b - a).norm()
             };
@@ -261,12 +261,12 @@ fn profile(claim: &Claim) -> Option<Violation> {
         segments.iter().map(way).sum()
     };
     let Some([begin, at]) = profile.first() else {
-        return Some(untrue("path_time.profile", "nothing", "that of a motion"));
+        return Some(mismatch("path_time.profile", "nothing", "that of a motion"));
     };
     let start = segments.first().map_or(f64::NAN, |s| s.start_time);
     if !near(*at, start) {
         let said = format!("a start at {at} s");
-        return Some(untrue("path_time.profile", said, format!("{start} s")));
+        return Some(mismatch("path_time.profile", said, format!("{start} s")));
     }
     // The profile is linear between its points, and the covered distance between the joints of the
     // motion. They are equal if they are equal at both.
@@ -278,7 +278,7 @@ fn profile(claim: &Claim) -> Option<Violation> {
         let so = begin + sailed(*t);
         return Some(Violation {
             time: *t,
-            ..untrue(
+            ..mismatch(
                 "path_time.profile",
                 format!("{s} m at {t} s"),
                 format!("{so} m"),
@@ -288,7 +288,7 @@ fn profile(claim: &Claim) -> Option<Violation> {
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let last = profile.last().map_or(f64::NAN, |[_, t]| *t);
     (!near(last, end)).then(|| {
-        untrue(
+        mismatch(
             "path_time.profile",
             format!("an end at {last} s"),
             format!("{end} s"),

@@ -4,7 +4,7 @@ use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
 use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
-use crate::trajectory::{Node, Segment, Steered, Trajectory};
+use crate::trajectory::{ForceNode, Segment, Steered, Trajectory};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
@@ -147,8 +147,8 @@ fn segment(segment: &SegmentFile) -> Segment {
 
 /// Converts the samples that are nodes. A course has no full circles, so the heading is continued
 /// by the turn nearest to the integral of the yaw rates.
-fn nodes(samples: &[SampleFile]) -> Vec<Node> {
-    let mut nodes: Vec<Node> = Vec::new();
+fn nodes(samples: &[SampleFile]) -> Vec<ForceNode> {
+    let mut nodes: Vec<ForceNode> = Vec::new();
     for sample in samples {
         let Some(mut node) = node(sample) else {
             continue;
@@ -165,9 +165,9 @@ fn nodes(samples: &[SampleFile]) -> Vec<Node> {
 
 /// Converts the signs: starboard and clockwise are positive in the file, port and counter-clockwise
 /// here.
-fn node(sample: &SampleFile) -> Option<Node> {
+fn node(sample: &SampleFile) -> Option<ForceNode> {
     let yaw_rate = radians_from_deg(-sample.yaw_rate_deg_per_s?);
-    Some(Node {
+    Some(ForceNode {
         time: sample.t_s,
         pose: Pose::new(
             Vector::new(sample.east_m, sample.north_m),

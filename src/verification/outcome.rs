@@ -1,7 +1,7 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
-use super::untrue;
+use super::mismatch;
 use crate::evaluation::{Evaluation, Violation, outcome_word};
 use crate::tolerance;
 
@@ -13,13 +13,13 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     let nothing = || "nothing".to_owned();
     if file.safe != Some(safe) {
         let said = file.safe.map_or_else(nothing, |said| said.to_string());
-        found.push(untrue("safe", said, safe));
+        found.push(mismatch("safe", said, safe));
     }
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
     let word = outcome_word(&file.outcome, evaluation.map(|e| e.safety), risk);
     if file.verdict.as_ref() != Some(&word) {
         let said = file.verdict.clone().unwrap_or_else(nothing);
-        found.push(untrue("verdict", said, word));
+        found.push(mismatch("verdict", said, word));
     }
     found
 }
@@ -39,11 +39,11 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         (Some(_), false) => ["relaxed", "deadline"],
     };
     if !allowed.contains(&outcome) {
-        found.push(untrue("outcome", outcome, allowed.join(" or ")));
+        found.push(mismatch("outcome", outcome, allowed.join(" or ")));
     }
     let mut planner = |wrong: bool, so: &str| {
         if wrong {
-            found.push(untrue("planner", &file.planner, so));
+            found.push(mismatch("planner", &file.planner, so));
         }
     };
     let forces = file.planner == OPTIMAL_CONTROL;
@@ -65,7 +65,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         _ => &["space-time-error"],
     };
     if !objectives.contains(&file.objective.as_str()) {
-        found.push(untrue(
+        found.push(mismatch(
             "objective",
             &file.objective,
             objectives.join(" or "),
@@ -79,11 +79,11 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             })
         };
         let so = format!("the first of relaxations, {}", name(most_important));
-        found.push(untrue("relaxation", name(file.relaxation.as_ref()), so));
+        found.push(mismatch("relaxation", name(file.relaxation.as_ref()), so));
     }
-    for (index, given_up) in file.relaxations.iter().enumerate() {
-        let what = format!("relaxation of '{}'", given_up.target);
-        let asked = match given_up.kind.as_str() {
+    for (index, relaxation) in file.relaxations.iter().enumerate() {
+        let what = format!("relaxation of '{}'", relaxation.target);
+        let asked = match relaxation.kind.as_str() {
             "compliance" => file.compliance == "rules",
             "domain" => file.compliance != "none",
             ARRIVAL => file.planner == PATH_TIME,
@@ -94,22 +94,22 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
                 "no part of compliance '{}' of this planner",
                 file.compliance
             );
-            found.push(untrue(&what, &given_up.kind, so));
+            found.push(mismatch(&what, &relaxation.kind, so));
         }
-        if given_up.kind == "domain" && given_up.amount == 0.0 {
-            found.push(untrue(
+        if relaxation.kind == "domain" && relaxation.amount == 0.0 {
+            found.push(mismatch(
                 &what,
                 "a domain drawn back by 0",
                 "nothing given up",
             ));
         }
         let again = |r: &&super::file::RelaxationFile| {
-            r.kind == given_up.kind && r.target == given_up.target
+            r.kind == relaxation.kind && r.target == relaxation.target
         };
         if file.relaxations[..index].iter().any(|r| again(&r)) {
-            found.push(untrue(
+            found.push(mismatch(
                 &what,
-                format!("'{}' twice", given_up.kind),
+                format!("'{}' twice", relaxation.kind),
                 "given up once",
             ));
         }
@@ -126,24 +126,24 @@ const RISK: &str = "risk";
 pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let released = claim.file.relaxations.iter();
-    for (given_up, until) in released.filter_map(|r| Some((r, r.until_s?))) {
-        let of = |key: &str| format!("relaxation of '{}', {key}", given_up.target);
+    for (relaxation, until) in released.filter_map(|r| Some((r, r.until_s?))) {
+        let of = |key: &str| format!("relaxation of '{}', {key}", relaxation.target);
         if !OUTCOMES.contains(&claim.file.outcome.as_str()) {
-            found.push(untrue(
+            found.push(mismatch(
                 "outcome",
                 &claim.file.outcome,
                 OUTCOMES.join(" or "),
             ));
         }
-        if given_up.kind != RISK {
-            found.push(untrue(&of("kind"), &given_up.kind, RISK));
+        if relaxation.kind != RISK {
+            found.push(mismatch(&of("kind"), &relaxation.kind, RISK));
         }
         if claim.file.max_risk > 0.0 {
-            found.push(untrue("max_risk", claim.file.max_risk, 0.0));
+            found.push(mismatch("max_risk", claim.file.max_risk, 0.0));
         }
         // Own ship may start on the edge of the set.
-        if !(given_up.amount >= 0.0 && given_up.amount <= 1.0) {
-            found.push(untrue(&of("amount"), given_up.amount, "from 0 to 1"));
+        if !(relaxation.amount >= 0.0 && relaxation.amount <= 1.0) {
+            found.push(mismatch(&of("amount"), relaxation.amount, "from 0 to 1"));
         }
         let end = match &claim.motion {
             Some(ClaimedMotion::Segments(segments)) => segments.last().map(|s| s.end_time()),
@@ -154,7 +154,7 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
         let end = if end > 0.0 { end } else { claim.file.horizon_s };
         // Negated on purpose: a NaN fails.
         if !(until > 0.0 && until <= end + tolerance::TIME_S * (1.0 + end)) {
-            found.push(untrue(
+            found.push(mismatch(
                 &of("until_s"),
                 until,
                 format!("above 0, at most {end}"),

@@ -9,8 +9,8 @@ use super::claim::{Claim, ClaimedMotion};
 use super::coverage::largest;
 use super::figures::near;
 use super::file::EncounterFile;
+use super::mismatch;
 use super::motion::around;
-use super::untrue;
 use crate::evaluation::{Request, SpaceTimeSet, Violation, least_margins};
 use crate::frame::direction;
 use crate::geometry::ConvexPolygon;
@@ -31,11 +31,11 @@ pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
         && !near(cost.max_risk, most)
     {
         let so = format!("{most}, the largest of the encounters");
-        found.push(untrue("cost.max_risk", cost.max_risk, so));
+        found.push(mismatch("cost.max_risk", cost.max_risk, so));
     }
     for encounter in encounters {
         found.extend(bounds(claim, encounter, said(encounter)));
-        found.extend(given_up(claim, encounter, said(encounter)));
+        found.extend(relaxation(claim, encounter, said(encounter)));
         found.extend(instant(encounter, said(encounter)));
         if let Some(ClaimedMotion::Segments(segments)) = &claim.motion {
             found.extend(taken(claim, encounter, segments, request));
@@ -55,7 +55,7 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
     let accepted = if released { 1.0 } else { claim.file.max_risk };
     let within = said >= 0.0 && said <= accepted + tolerance::FIGURE;
     (!within).then(|| {
-        untrue(
+        mismatch(
             &label(encounter, "max_risk"),
             said,
             format!("from 0 to {accepted}"),
@@ -64,16 +64,16 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
 }
 
 /// Checks that a target whose risk is taken has a relaxation with that risk.
-fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
+fn relaxation(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let mut named = claim.file.relaxations.iter();
     let named = named.find(|r| r.kind == KIND && r.target == encounter.target);
     let what = format!("relaxation of '{}', amount", encounter.target);
     match named {
-        Some(risk) if !near(risk.amount, said) => Some(untrue(&what, risk.amount, said)),
+        Some(risk) if !near(risk.amount, said) => Some(mismatch(&what, risk.amount, said)),
         Some(risk) if said == 0.0 && risk.until_s.is_none() => {
-            Some(untrue(&what, risk.amount, "nothing"))
+            Some(mismatch(&what, risk.amount, "nothing"))
         }
-        None if said > 0.0 => Some(untrue(&what, "nothing", said)),
+        None if said > 0.0 => Some(mismatch(&what, "nothing", said)),
         _ => None,
     }
 }
@@ -82,8 +82,8 @@ fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Viola
 fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let what = label(encounter, "max_risk_t_s");
     match encounter.max_risk_t_s {
-        Some(time) if said == 0.0 => Some(untrue(&what, time, "nothing")),
-        None if said > 0.0 => Some(untrue(&what, "nothing", "a time")),
+        Some(time) if said == 0.0 => Some(mismatch(&what, time, "nothing")),
+        None if said > 0.0 => Some(mismatch(&what, "nothing", "a time")),
         _ => None,
     }
 }
@@ -119,7 +119,7 @@ fn taken(
     // A set is closed, and the risk drops to zero beyond its edge; there is no risk above 1.
     let above = said + tolerance::FIGURE;
     if above < 1.0 && !(margin(above, segments) >= -tolerance::DEPTH_M) {
-        return Some(untrue(&what, said, "more"));
+        return Some(mismatch(&what, said, "more"));
     }
     let time = encounter.max_risk_t_s?;
     let below = said - tolerance::FIGURE;
@@ -137,7 +137,7 @@ fn taken(
         let so = format!("less at {time} s");
         return Some(Violation {
             time,
-            ..untrue(&what, said, so)
+            ..mismatch(&what, said, so)
         });
     }
     None

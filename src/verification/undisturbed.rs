@@ -3,7 +3,7 @@
 use super::claim::Claim;
 use super::encounters::{distance, shape_rounding};
 use super::figures::near_to;
-use super::untrue;
+use super::mismatch;
 use crate::evaluation::{Violation, nominal_distance, nominal_legs};
 use crate::target::{Motion, Target};
 use crate::tolerance;
@@ -31,11 +31,11 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             None => (f64::NEG_INFINITY, sampled(claim, target, &legs)),
         };
         let Some(dcpa) = said.undisturbed_dcpa_m else {
-            return Some(untrue(&label("undisturbed_dcpa_m"), "nothing", most));
+            return Some(mismatch(&label("undisturbed_dcpa_m"), "nothing", most));
         };
         let within = (dcpa >= least || near(dcpa, least)) && (dcpa <= most || near(dcpa, most));
         if !within {
-            return Some(untrue(&label("undisturbed_dcpa_m"), dcpa, most));
+            return Some(mismatch(&label("undisturbed_dcpa_m"), dcpa, most));
         }
         let tcpa = said.undisturbed_tcpa_s.unwrap_or(f64::NAN);
         let slack = tolerance::TIME_S * (1.0 + tcpa.abs());
@@ -45,7 +45,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             .map(|s| at(claim, target, s, tcpa));
         (!then.any(|then| near(then, dcpa))).then(|| {
             let so = format!("a time along the mission at which the distance is {dcpa} m");
-            untrue(&label("undisturbed_tcpa_s"), tcpa, so)
+            mismatch(&label("undisturbed_tcpa_s"), tcpa, so)
         })
     })
     .collect()

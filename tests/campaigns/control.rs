@@ -5,11 +5,11 @@ use rand_chacha::ChaCha8Rng;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::optimal_control::{
-    Attempt, Controls, KeepOut, Settings, Task, Weights, attempt, plan,
+    Controls, KeepOut, Settings, StartAttempt, Task, Weights, attempt, plan,
 };
 use searoom::planner::{ControlSettings, Outcome};
 use searoom::scenario::Scenario;
-use searoom::trajectory::{Node, Steered};
+use searoom::trajectory::{ForceNode, Steered};
 use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector, VesselKind};
 
 use super::Report;
@@ -40,7 +40,7 @@ fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
 fn largest_defect(motion: &Steered) -> f64 {
     const STEPS: usize = 500;
     let ship = CyberShip2::EXACT;
-    let state = |n: &Node| {
+    let state = |n: &ForceNode| {
         let place = n.pose.position;
         let velocity = n.velocity;
         StateVector::new(
@@ -142,7 +142,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     (0..starts)
         .map(|_| scenes::wandering(&task, &mut rng))
         .map(|guess| attempt(&task, &guess, &Settings::default(), &|| true))
-        .filter(Attempt::is_feasible)
+        .filter(StartAttempt::is_feasible)
         .map(|found| found.objective)
         .collect()
 }

@@ -15,7 +15,7 @@ use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::simulation::{
-    Behaviour, Drawn, EncounterKind, Placement, Signal, random_encounter, random_traffic,
+    Behaviour, EncounterKind, Placement, RandomEncounter, Signal, random_encounter, random_traffic,
 };
 use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;
@@ -57,7 +57,7 @@ const MEDIAN_COST: [f64; 4] = [6_000.0, 11_000.0, 10_000.0, 13_000.0];
 /// Record of one planned and evaluated encounter.
 pub struct Record {
     seed: u64,
-    pub drawn: Drawn,
+    pub drawn: RandomEncounter,
     roles: Vec<Role>,
     pub obstacles: Vec<Obstacle>,
     pub plan: Option<(Trajectory, f64)>,
@@ -69,7 +69,7 @@ pub struct Record {
     milliseconds: f64,
 }
 
-pub fn planned(seed: u64, drawn: Drawn) -> Record {
+pub fn planned(seed: u64, drawn: RandomEncounter) -> Record {
     let run = pipeline::run(drawn.scenario.clone());
     let refusal = match &run.planned.outcome {
         Outcome::Infeasible(reason) => reason.to_string(),
@@ -206,7 +206,7 @@ pub fn role(kind: EncounterKind) -> Role {
 fn played(
     seeds: Seeds,
     report: &mut Report,
-    draw: impl Fn(u64) -> Drawn,
+    draw: impl Fn(u64) -> RandomEncounter,
 ) -> (Vec<Record>, Vec<f64>) {
     let records: Vec<Record> = seeds.map(|seed| planned(seed, draw(seed))).collect();
     let least: Vec<f64> = records.par_iter().map(least_sampled).collect();

@@ -80,8 +80,8 @@ fn an_assessment_document_has_what_the_contract_names() {
         norths.iter().fold(f64::MIN, |a, b| a.max(*b))
             - norths.iter().fold(f64::MAX, |a, b| a.min(*b))
     };
-    let shaped = document(&searoom(&[&args[..], &["--shaped"]].concat()).success());
-    assert!(area(&shaped) > area(&assessment));
+    let with_domain = document(&searoom(&[&args[..], &["--domains"]].concat()).success());
+    assert!(area(&with_domain) > area(&assessment));
 }
 
 /// The velocity that the document recommends is in no velocity obstacle, and one a little less far

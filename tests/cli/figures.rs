@@ -4,7 +4,7 @@ use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 use searoom::report::figure::{Figure, assessment_figure};
-use searoom::study::assess::Situation;
+use searoom::study::assess::OwnSituation;
 use searoom::target::{TimedVelocitySet, Uncertainty};
 
 fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
@@ -37,7 +37,7 @@ fn targets() -> Vec<Obstacle> {
 }
 
 fn figure(obstacles: &[Obstacle], speed: f64, times: &[f64]) -> Figure {
-    let situation = Situation {
+    let situation = OwnSituation {
         pose: Pose::new(Vector::zeros(), 0.3),
         speed,
         max_speed: 6.0,

@@ -13,8 +13,8 @@ use searoom::planner::optimal_control::solver::{
 };
 use searoom::planner::optimal_control::transcription::Transcription;
 use searoom::planner::optimal_control::{
-    Attempt, Controls, Measured, Profile, RecedingHorizon, Settings, Status, Task, Weights,
-    attempt, family, plan,
+    Controls, Measured, Profile, RecedingHorizon, Settings, SolverStatus, StartAttempt, Task,
+    Weights, attempt, family, plan,
 };
 use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
 use searoom::vessel::{CyberShip2, ForceVector, StateVector, VesselKind};
@@ -22,11 +22,11 @@ use searoom::vessel::{CyberShip2, ForceVector, StateVector, VesselKind};
 use crate::campaigns::control_scenes as scenes;
 
 /// Cheapest of the starts that need no other planner.
-fn best(task: &Task<CyberShip2>) -> Option<Attempt> {
+fn best(task: &Task<CyberShip2>) -> Option<StartAttempt> {
     family(task)
         .into_iter()
         .map(|(_, guess)| attempt(task, &guess, &Settings::default(), &|| true))
-        .filter(Attempt::is_feasible)
+        .filter(StartAttempt::is_feasible)
         .min_by(|a, b| a.objective.total_cmp(&b.objective))
 }
 
@@ -115,7 +115,7 @@ fn another_solver_finds_the_same_optimum() {
         let mut at = start;
         let mut work = Workspace::new(&drawn);
         let report = solve(&drawn, &mut at, &mut work, &Settings::default(), &|| true);
-        assert_eq!(report.status, Status::Solved);
+        assert_eq!(report.status, SolverStatus::Solved);
         let cost = report.objective * unit;
         assert!((cost - known).abs() < 1e-3, "{cost} {known}");
     }
@@ -232,11 +232,16 @@ fn the_clock_is_read_between_the_trial_points_of_a_step() {
     let guesses = family(&task).into_iter().map(|(_, guess)| guess);
     let (guess, all) = guesses
         .map(|guess| (until(&guess, usize::MAX), guess))
-        .find(|((all, report), _)| report.status == Status::Solved && *all > report.iterations)
+        .find(|((all, report), _)| {
+            report.status == SolverStatus::Solved && *all > report.iterations
+        })
         .map(|((all, _), guess)| (guess, all))
         .expect("a start with a step that is cut");
     for strikes in 1..=all {
         let (readings, report) = until(&guess, strikes);
-        assert_eq!((readings, report.status), (strikes, Status::OutOfTime));
+        assert_eq!(
+            (readings, report.status),
+            (strikes, SolverStatus::OutOfTime)
+        );
     }
 }

@@ -75,7 +75,7 @@ fn larger(scenario: &Scenario, factor: f64) -> Planned {
     let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
         .iter()
         .map(|sets| {
-            let set = sets.shaped.as_polytope().expect("a polytope");
+            let set = sets.with_domain.as_polytope().expect("a polytope");
             let initial = polygon(set.initial(), factor);
             PolytopeObstacle::new("x", initial, polygon(set.velocity(), 1.0)).into()
         })

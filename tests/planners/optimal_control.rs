@@ -11,7 +11,7 @@ use searoom::planner::{NoPlan, Outcome};
 use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
-use searoom::trajectory::{Node, Steered, Trajectory};
+use searoom::trajectory::{ForceNode, Steered, Trajectory};
 use searoom::vessel::{ForceVector, VesselKind};
 
 const FIGURE_9: &str = include_str!("../../scenarios/paper/figure_9.toml");
@@ -108,7 +108,7 @@ fn words(found: &Evaluation) -> Vec<String> {
 }
 
 /// Re-evaluates the plan of figure 9 after a change.
-fn judged(run: &Run, change: impl Fn(&mut Vec<Node>)) -> Vec<String> {
+fn judged(run: &Run, change: impl Fn(&mut Vec<ForceNode>)) -> Vec<String> {
     let plan = run.planned.outcome.plan().expect("a plan");
     let mut nodes = plan.trajectory.steered().expect("forces").nodes().to_vec();
     change(&mut nodes);
@@ -327,7 +327,7 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
     let plan = full.planned.outcome.plan().expect("a plan");
     let motion = plan.trajectory.steered().expect("forces");
-    let largest = |part: fn(&Node) -> f64| motion.nodes().iter().map(part).fold(0.0, f64::max);
+    let largest = |part: fn(&ForceNode) -> f64| motion.nodes().iter().map(part).fold(0.0, f64::max);
     // the forces are some tenths of the limits of 686 kN and 514 kN
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
@@ -400,7 +400,7 @@ fn a_scaled_scene_has_the_scaled_plan() {
     assert!(off.abs() < 1e-6, "{off:e}");
     let error = |run: &Run| run.evaluation.as_ref().expect("judged").space_time_error;
     assert!((error(&ship) / (error(&model) * scale * scale) - 1.0).abs() < 1e-4);
-    let nodes = |run: &Run| -> Vec<Node> {
+    let nodes = |run: &Run| -> Vec<ForceNode> {
         let plan = run.planned.outcome.plan().expect("a plan");
         plan.trajectory.steered().expect("forces").nodes().to_vec()
     };

@@ -46,8 +46,8 @@ fn turning_and_moving_the_scene_changes_no_judgement_and_no_shape() {
                     there.hard.outer_section(0.0).area().sqrt(),
                 ),
                 (
-                    here.shaped.outer_section(0.0).area().sqrt(),
-                    there.shaped.outer_section(0.0).area().sqrt(),
+                    here.with_domain.outer_section(0.0).area().sqrt(),
+                    there.with_domain.outer_section(0.0).area().sqrt(),
                 ),
             ];
             for (a, b) in pairs {

@@ -8,7 +8,7 @@ use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
+use searoom::study::assess::{Alteration, OwnSituation, Query, assess, least_alteration};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 
 use super::generators::{Counter, angle, check, hull, obstacle, slabs, vector};
@@ -66,8 +66,11 @@ fn motion() -> impl Strategy<Value = (f64, f64, f64)> {
     )
 }
 
-fn situation((heading, speed, horizon): (f64, f64, f64), obstacles: &[Obstacle]) -> Situation<'_> {
-    Situation {
+fn situation(
+    (heading, speed, horizon): (f64, f64, f64),
+    obstacles: &[Obstacle],
+) -> OwnSituation<'_> {
+    OwnSituation {
         pose: Pose::new(Vector::zeros(), heading),
         speed,
         max_speed: 9.0,
@@ -76,7 +79,7 @@ fn situation((heading, speed, horizon): (f64, f64, f64), obstacles: &[Obstacle])
     }
 }
 
-fn is_free(s: &Situation, heading: f64, speed: f64) -> bool {
+fn is_free(s: &OwnSituation, heading: f64, speed: f64) -> bool {
     let velocity = direction(heading) * speed;
     s.obstacles
         .iter()
@@ -209,7 +212,7 @@ fn a_mirrored_scene_has_the_mirrored_answer() {
         |(obstacles, motion)| {
             let other: Vec<_> = obstacles.iter().map(mirrored).collect();
             let s = situation(motion, &obstacles);
-            let m = Situation {
+            let m = OwnSituation {
                 pose: Pose::new(Vector::zeros(), -s.pose.heading),
                 obstacles: &other,
                 ..s
@@ -236,7 +239,7 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
         PolytopeObstacle::new("p", around(center), ConvexPolygon::point(velocity)).into()
     };
     let still = |obstacles: &[Obstacle], speed: f64| {
-        least_alteration(&Situation {
+        least_alteration(&OwnSituation {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed,
             max_speed: 6.0,

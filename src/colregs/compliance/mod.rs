@@ -9,7 +9,7 @@ mod role_intervals;
 mod samples;
 mod score;
 
-pub use monitor::{Measure, MonitorResult, Verdict, monitors};
+pub use monitor::{Measure, MonitorResult, MonitorVerdict, monitors};
 pub use role_intervals::{RoleInterval, roles};
 pub use samples::EncounterSamples;
 pub(crate) use samples::OwnSamples;
@@ -77,7 +77,7 @@ impl ComplianceReport {
 
     /// Names of the violated rules and monitors; a rule may appear more than once.
     pub fn broken(&self) -> impl Iterator<Item = &'static str> {
-        let violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
+        let violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
         let monitors = self.monitors.iter().filter(violated).map(|f| f.monitor);
         self.violations.iter().map(|b| b.rule).chain(monitors)
     }

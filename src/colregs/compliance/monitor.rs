@@ -7,7 +7,7 @@ use crate::frame::{Pose, wrap};
 
 /// Verdict of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum MonitorVerdict {
     /// The formula holds, and its premise was met.
     Satisfied,
     /// The formula does not hold.
@@ -18,7 +18,7 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl MonitorVerdict {
     /// Its name in documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ pub struct MonitorResult {
     /// (stand-on).
     pub monitor: &'static str,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: MonitorVerdict,
     /// Least margin by which the formula holds, negative if violated; `None` if idle.
     pub robustness: Option<f64>,
     /// Unit of the robustness.
@@ -208,8 +208,8 @@ impl Trace<'_> {
         let result = Self::result("R1", Measure::Time, worst, false);
         let open = self.samples.last().is_some_and(|s| within(&s));
         match result.verdict {
-            Verdict::Satisfied if open => MonitorResult {
-                verdict: Verdict::Undecided,
+            MonitorVerdict::Satisfied if open => MonitorResult {
+                verdict: MonitorVerdict::Undecided,
                 ..result
             },
             _ => result,
@@ -223,13 +223,13 @@ impl Trace<'_> {
         open: bool,
     ) -> MonitorResult {
         let verdict = match worst {
-            None => Verdict::Idle,
+            None => MonitorVerdict::Idle,
             // touching is encounter: the sets are closed
             Some((r, _)) if r > 0.0 || (r == 0.0 && measure == Measure::Angle) => {
-                Verdict::Satisfied
+                MonitorVerdict::Satisfied
             }
-            Some(_) if open => Verdict::Undecided,
-            Some(_) => Verdict::Violated,
+            Some(_) if open => MonitorVerdict::Undecided,
+            Some(_) => MonitorVerdict::Violated,
         };
         MonitorResult {
             monitor,

@@ -315,7 +315,7 @@ impl Between {
 
 /// An uninterrupted turn to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Alteration {
+pub struct CourseChange {
     /// Seconds.
     pub from: f64,
     /// Seconds.
@@ -330,8 +330,8 @@ pub fn alterations(
     samples: &[EncounterSample],
     least_rate: f64,
     least_turn: f64,
-) -> Vec<Alteration> {
-    let mut found: Vec<Alteration> = Vec::new();
+) -> Vec<CourseChange> {
+    let mut found: Vec<CourseChange> = Vec::new();
     for pair in samples.windows(2) {
         let (from, until) = (pair[0].time, pair[1].time);
         let turn = wrap(pair[1].own.pose.heading - pair[0].own.pose.heading);
@@ -343,7 +343,7 @@ pub fn alterations(
                 last.until = until;
                 last.turn += turn;
             }
-            _ => found.push(Alteration { from, until, turn }),
+            _ => found.push(CourseChange { from, until, turn }),
         }
     }
     found.retain(|a| a.turn.abs() > least_turn);

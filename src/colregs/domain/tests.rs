@@ -144,7 +144,7 @@ fn the_design_inequality_holds_whatever_the_hull() {
             Role::Overtaking => {}
             other => panic!("{other:?} has no bad side"),
         }
-        let shape = shapes(&own, &target, Some(&risk), HORIZON).shaped;
+        let shape = shapes(&own, &target, Some(&risk), HORIZON).with_domain;
         let centre = target.pose.position;
         let reach = |n: Vector| shape.support(n) - n.dot(&centre);
         let asymmetry = reach(bad) - reach(-bad);
@@ -173,23 +173,23 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
                 .all(|p| outer.signed_distance(*p) < 1e-7)
         };
         assert!(inside(&target.hull.polygon(&target.pose), &found.hard));
-        assert!(inside(&found.hard, &found.shaped), "{target:?}");
+        assert!(inside(&found.hard, &found.with_domain), "{target:?}");
         let away = own_at(Vector::new(1e5, 0.0), own.safety_margin);
         let whole = shapes(&away, &target, Some(&risk), HORIZON);
-        assert!(inside(&found.shaped, &whole.shaped) && whole.reduced == 0.0);
+        assert!(inside(&found.with_domain, &whole.with_domain) && whole.reduced == 0.0);
         let start = own.pose.position;
         let (from_hard, from_whole) = (
             found.hard.signed_distance(start),
-            whole.shaped.signed_distance(start),
+            whole.with_domain.signed_distance(start),
         );
         if from_hard <= 0.0 || from_whole > 0.0 {
-            assert_eq!(found.shaped, whole.shaped);
+            assert_eq!(found.with_domain, whole.with_domain);
             assert_eq!(found.reduced, 0.0);
             continue;
         }
         drawn_back += 1;
-        bare += usize::from(found.shaped.area() < 1.05 * found.hard.area());
-        let from_used = found.shaped.signed_distance(start);
+        bare += usize::from(found.with_domain.area() < 1.05 * found.hard.area());
+        let from_used = found.with_domain.signed_distance(start);
         assert!(
             from_used >= tolerance::START_M.min(0.99 * from_hard),
             "{from_used}"
@@ -199,7 +199,7 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         assert!(found.reduced >= -from_whole - 1e-6, "{found:?}");
         let cut = (0..720)
             .map(|i| direction(f64::from(i) * PI / 360.0))
-            .map(|n| whole.shaped.support(n) - found.shaped.support(n))
+            .map(|n| whole.with_domain.support(n) - found.with_domain.support(n))
             .fold(0.0, f64::max);
         assert!(
             cut <= found.reduced + 1e-6 && cut > 0.9 * found.reduced,
@@ -220,10 +220,10 @@ fn the_sweep_is_given_up_before_the_base() {
     let found = shapes(&own, &target, Some(&risk), HORIZON);
     let base = shapes(&own, &target, None, HORIZON);
     assert!(found.reduced > 10.0 && base.reduced == 0.0);
-    for p in base.shaped.vertices() {
-        assert!(found.shaped.signed_distance(*p) < 1e-7);
+    for p in base.with_domain.vertices() {
+        assert!(found.with_domain.signed_distance(*p) < 1e-7);
     }
-    assert!(found.shaped.area() > 1.1 * base.shaped.area());
+    assert!(found.with_domain.area() > 1.1 * base.with_domain.area());
 }
 
 #[test]
@@ -239,7 +239,10 @@ fn shapes_have_the_reach_they_are_named_for() {
             ways.map(|(x, y)| (set.support(Vector::new(x, y)) - around).round() as i32)
         };
         assert_eq!(reach(&found.hard), [25, 25, 5, 5]);
-        (reach(&found.shaped), found.shaped.vertices().len())
+        (
+            reach(&found.with_domain),
+            found.with_domain.vertices().len(),
+        )
     };
     assert_eq!(reaches(DomainKind::Colregs), ([100, 100, 75, 75], 16));
     assert_eq!(reaches(DomainKind::Paper).0, [300, 100, 75, 200]);
@@ -248,6 +251,6 @@ fn shapes_have_the_reach_they_are_named_for() {
     // starboard is starboard
     let mut target = track(Vector::zeros(), FRAC_PI_2, 5.0);
     target.domain = DomainKind::Paper;
-    let set = shapes(&own, &target, None, HORIZON).shaped;
+    let set = shapes(&own, &target, None, HORIZON).with_domain;
     assert!(set.support(Vector::new(1.0, 0.0)) > set.support(Vector::new(-1.0, 0.0)));
 }

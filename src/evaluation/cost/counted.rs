@@ -153,7 +153,7 @@ fn entrance<P: Piece>(
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::trajectory::{Node, Steered};
+    use crate::trajectory::{ForceNode, Steered};
 
     fn desired(points: &[(f64, f64)]) -> DesiredTrajectory {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
@@ -184,7 +184,7 @@ mod tests {
                     0.0
                 };
                 let time = s.start_time + first + (s.duration - first) * k as f64 / many as f64;
-                Node {
+                ForceNode {
                     time,
                     pose: s.pose_at(time),
                     velocity: Vector::new(s.speed, 0.0),

@@ -2,7 +2,9 @@
 //! motion is deepest between them, until it is clear everywhere.
 
 use super::between::low_points;
-use super::solver::{Iterate, Matrix, Report, RowPoint, Settings, Status, Workspace, solve};
+use super::solver::{
+    Iterate, Matrix, RowPoint, Settings, SolverReport, SolverStatus, Workspace, solve,
+};
 use super::task::{Profile, Task};
 use super::transcription::Transcription;
 use crate::trajectory::Cubic;
@@ -40,11 +42,11 @@ pub struct Inside {
 
 /// Result of one initial guess.
 #[derive(Debug, Clone)]
-pub struct Attempt {
+pub struct StartAttempt {
     /// The motion.
     pub profile: Profile,
     /// Report of the last solve.
-    pub report: Report,
+    pub report: SolverReport,
     /// Iterations of all solves.
     pub iterations: usize,
     /// Number of solves after the first, for rows between the nodes.
@@ -62,7 +64,7 @@ pub struct Attempt {
     pub(super) rows: Vec<Vec<(usize, f64)>>,
 }
 
-impl Attempt {
+impl StartAttempt {
     /// True where the solver made no progress. Exact second derivatives alone may succeed:
     /// Gauss–Newton steps are poor where the state weights are small relative to the force weights.
     pub fn is_lost(&self) -> bool {
@@ -71,7 +73,7 @@ impl Attempt {
 
     /// True when solved and clear.
     pub fn is_feasible(&self) -> bool {
-        self.report.status == Status::Solved && self.inside.is_none()
+        self.report.status == SolverStatus::Solved && self.inside.is_none()
     }
 }
 
@@ -81,7 +83,7 @@ pub fn attempt<V: Manoeuvring>(
     guess: &Profile,
     settings: &Settings,
     keep_going: &dyn Fn() -> bool,
-) -> Attempt {
+) -> StartAttempt {
     let problem = task.transcription();
     let states = guess
         .states
@@ -107,7 +109,7 @@ pub(super) fn resume<V: Manoeuvring>(
     mut work: Workspace<6, 3>,
     settings: &Settings,
     keep_going: &dyn Fn() -> bool,
-) -> Attempt {
+) -> StartAttempt {
     let tight = settings.tolerance;
     let mut settings = *settings;
     // the multipliers include those of rows added earlier
@@ -117,7 +119,7 @@ pub(super) fn resume<V: Manoeuvring>(
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
     // solved but with violated rows, before the penalty was raised
-    let mut cheaper: Option<Attempt> = None;
+    let mut cheaper: Option<StartAttempt> = None;
     loop {
         let (deepest, added) = deepest(task, &problem, &iterate);
         let found = Progress {
@@ -129,7 +131,7 @@ pub(super) fn resume<V: Manoeuvring>(
         if let Some(short) = cheaper.take()
             && failed(report.status)
         {
-            return Attempt {
+            return StartAttempt {
                 iterations,
                 rounds,
                 priced_out: true,
@@ -137,7 +139,7 @@ pub(super) fn resume<V: Manoeuvring>(
             };
         }
         let short = report.shortfall > SOLVER_VIOLATION.max(settings.tolerance);
-        if report.status != Status::Solved || rounds == MAX_ROUNDS || (short && raised) {
+        if report.status != SolverStatus::Solved || rounds == MAX_ROUNDS || (short && raised) {
             return found.attempt(&problem, iterate);
         }
         settings.barrier = WARM_BARRIER;
@@ -168,7 +170,7 @@ pub(super) fn resume<V: Manoeuvring>(
 /// Result of the solves so far.
 #[derive(Debug, Clone, Copy)]
 struct Progress {
-    report: Report,
+    report: SolverReport,
     iterations: usize,
     rounds: usize,
     inside: Option<Inside>,
@@ -179,8 +181,8 @@ impl Progress {
         self,
         problem: &Transcription<V>,
         iterate: Iterate<6, 3>,
-    ) -> Attempt {
-        Attempt {
+    ) -> StartAttempt {
+        StartAttempt {
             profile: Profile {
                 states: iterate.states.iter().map(|x| problem.state(x)).collect(),
                 forces: iterate.controls.iter().map(|u| problem.force(u)).collect(),
@@ -202,8 +204,8 @@ impl Progress {
 }
 
 /// True where a solve ended away from any solution.
-fn failed(status: Status) -> bool {
-    matches!(status, Status::Iterations | Status::Stalled)
+fn failed(status: SolverStatus) -> bool {
+    matches!(status, SolverStatus::Iterations | SolverStatus::Stalled)
 }
 
 /// Row to be added.

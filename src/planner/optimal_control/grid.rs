@@ -1,7 +1,7 @@
 //! Grid refinement: from a solution on one grid to a solution on a grid fine enough for the ship's
 //! dynamics.
 
-use super::attempt::{Attempt, attempt};
+use super::attempt::{StartAttempt, attempt};
 use super::defect::largest_defect;
 use super::solver::Settings;
 use super::task::{Profile, Task};
@@ -36,7 +36,7 @@ pub(super) enum GridResult {
 /// Solution on the last grid.
 #[derive(Debug)]
 pub(super) struct Refined {
-    pub found: Attempt,
+    pub found: StartAttempt,
     pub intervals: usize,
     /// Largest deviation of the ship at the end of an interval, in its own units.
     pub defect: f64,
@@ -46,7 +46,7 @@ pub(super) struct Refined {
 /// Refines the grid of a feasible motion until `exact` follows it to [`tolerance::DEFECT`].
 pub(super) fn refine_grid<V: Manoeuvring>(
     coarse: &Task<V>,
-    found: &Attempt,
+    found: &StartAttempt,
     exact: &V,
     keep_going: &dyn Fn() -> bool,
 ) -> Refined {

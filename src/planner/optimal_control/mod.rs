@@ -26,13 +26,13 @@ mod task;
 #[doc(hidden)]
 pub mod transcription;
 
-pub use attempt::{Attempt, Inside, attempt};
+pub use attempt::{Inside, StartAttempt, attempt};
 pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
 pub use plan::plan;
 pub use receding::{Measured, RecedingHorizon};
 pub use report::{ControlReport, HomotopyClass, StartReport};
-pub use solver::{Report, Settings, Status};
+pub use solver::{Settings, SolverReport, SolverStatus};
 pub use task::{Controls, Profile, Task};
 pub use transcription::Weights;
 

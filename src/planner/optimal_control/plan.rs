@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::attempt::{Attempt, attempt};
+use super::attempt::{StartAttempt, attempt};
 use super::grid::{GridResult, Refined, refine_grid};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
 use super::report::{ControlReport, HomotopyClass, StartReport};
-use super::solver::{Settings, Status};
+use super::solver::{Settings, SolverStatus};
 use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
 use crate::frame::Vector;
@@ -143,8 +143,9 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
         let mut attempts = self.attempts(&Settings::default());
-        let lost =
-            |(_, attempt): &(_, Option<Attempt>)| attempt.as_ref().is_none_or(Attempt::is_lost);
+        let lost = |(_, attempt): &(_, Option<StartAttempt>)| {
+            attempt.as_ref().is_none_or(StartAttempt::is_lost)
+        };
         if attempts.iter().all(lost) && self.in_share(STARTS_SHARE) {
             attempts = self.attempts(&Settings {
                 gauss_newton: false,
@@ -153,12 +154,12 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
         }
         let late = attempts
             .iter()
-            .any(|(report, _)| report.status == Status::OutOfTime);
-        let (reports, attempts): (Vec<StartReport>, Vec<Option<Attempt>>) =
+            .any(|(report, _)| report.status == SolverStatus::OutOfTime);
+        let (reports, attempts): (Vec<StartReport>, Vec<Option<StartAttempt>>) =
             attempts.into_iter().unzip();
         report.classes = classes(&reports);
         report.starts = reports;
-        let attempts: Vec<Attempt> = attempts.into_iter().flatten().collect();
+        let attempts: Vec<StartAttempt> = attempts.into_iter().flatten().collect();
         match self.cheapest_on_fine_grid(&attempts, report) {
             Outcome::Solved(plan) if late || !self.in_time() => Outcome::Deadline(Some(plan)),
             _ if late || !self.in_time() => Outcome::Deadline(None),
@@ -167,7 +168,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
     }
 
     /// Results of all initial guesses, in their order.
-    fn attempts(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
+    fn attempts(&self, settings: &Settings) -> Vec<(StartReport, Option<StartAttempt>)> {
         let task = self.task(self.intervals);
         let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
             .into_iter()
@@ -198,11 +199,11 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
         guess: Option<Profile>,
         settings: &Settings,
         keep_going: &(dyn Fn() -> bool + Sync),
-    ) -> Option<(StartReport, Option<Attempt>)> {
+    ) -> Option<(StartReport, Option<StartAttempt>)> {
         if !keep_going() {
             let unsolved = StartReport {
                 start,
-                status: Status::OutOfTime,
+                status: SolverStatus::OutOfTime,
                 feasible: false,
                 objective: f64::NAN,
                 iterations: 0,
@@ -227,7 +228,11 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
 
     /// Cheapest attempt that can be refined to a fine enough grid; after the deadline, the cheapest
     /// that is on one.
-    fn cheapest_on_fine_grid(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
+    fn cheapest_on_fine_grid(
+        &self,
+        attempts: &[StartAttempt],
+        report: &mut ControlReport,
+    ) -> Outcome {
         let mut unrefined = None;
         for found in cheapest_first(attempts) {
             let fine = self.refined(found);
@@ -263,7 +268,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
     }
 
     /// Attempt refined to a fine enough grid.
-    fn refined(&self, found: &Attempt) -> Fine {
+    fn refined(&self, found: &StartAttempt) -> Fine {
         let first = self.task(self.intervals);
         let grid = refine_grid(&first, found, &self.exact, &|| self.in_time());
         let Refined {
@@ -291,7 +296,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
                 why: match grid
                     .found
                     .inside
-                    .filter(|_| grid.found.report.status == Status::Solved)
+                    .filter(|_| grid.found.report.status == SolverStatus::Solved)
                 {
                     Some(inside) => format!(
                         "it would be inside the set of '{}' at {:.1} s",
@@ -310,11 +315,11 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
     }
 
     /// Reason why none of the attempts is a plan.
-    fn no_plan_reason(&self, attempts: &[Attempt]) -> NoPlan {
+    fn no_plan_reason(&self, attempts: &[StartAttempt]) -> NoPlan {
         let starts = attempts.len();
         let solved = attempts
             .iter()
-            .filter(|a| a.report.status == Status::Solved)
+            .filter(|a| a.report.status == SolverStatus::Solved)
             .filter_map(|a| a.inside)
             .max_by(|a, b| a.level.total_cmp(&b.level));
         let Some(inside) = solved else {
@@ -349,33 +354,34 @@ struct Fine {
 }
 
 /// Solver status in words, with a remedy.
-fn status_text(status: Status) -> String {
+fn status_text(status: SolverStatus) -> String {
     match hint(status) {
         Some(hint) => format!("{status}; {hint}"),
         None => status.to_string(),
     }
 }
 
-fn hint(status: Status) -> Option<&'static str> {
+fn hint(status: SolverStatus) -> Option<&'static str> {
     match status {
-        Status::Iterations | Status::Stalled | Status::Unbounded => Some(
+        SolverStatus::Iterations | SolverStatus::Stalled | SolverStatus::Unbounded => Some(
             "what may help: weights and force limits nearer to the vessel's own, more intervals \
              (planner.optimal_control), a shorter horizon",
         ),
-        Status::NotANumber | Status::Singular => Some(
+        SolverStatus::NotANumber | SolverStatus::Singular => Some(
             "what may help: more intervals (planner.optimal_control), a speed nearer to what the vessel can make",
         ),
-        Status::OutOfTime => Some("what may help: a longer planner.deadline_s"),
-        Status::Solved | Status::BadProblem => None,
+        SolverStatus::OutOfTime => Some("what may help: a longer planner.deadline_s"),
+        SolverStatus::Solved | SolverStatus::BadProblem => None,
     }
 }
 
 /// Feasible attempts, cheapest first; among equals the earlier one.
-fn cheapest_first(attempts: &[Attempt]) -> Vec<&Attempt> {
-    let mut left: Vec<&Attempt> = attempts.iter().filter(|a| a.is_feasible()).collect();
+fn cheapest_first(attempts: &[StartAttempt]) -> Vec<&StartAttempt> {
+    let mut left: Vec<&StartAttempt> = attempts.iter().filter(|a| a.is_feasible()).collect();
     // stable; then attempts with the same plan in the order of their initial guesses
     left.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME_OBJECTIVE));
+    let same =
+        |a: &StartAttempt, b: &StartAttempt| !(a.objective < b.objective * (1.0 - SAME_OBJECTIVE));
     left.dedup_by(|next, kept| same(kept, next));
     left
 }

@@ -1,6 +1,6 @@
 //! Receding-horizon control: repeats the optimisation as the ship moves, with a warm start.
 
-use super::attempt::{Attempt, attempt, resume};
+use super::attempt::{StartAttempt, attempt, resume};
 use super::keep_out::KeepOut;
 use super::solver::{Iterate, RowPoint, Settings, Workspace};
 use super::task::{Profile, Task};
@@ -13,7 +13,7 @@ const BARRIER: f64 = 1e-4;
 /// solves again from the current states, forces and multipliers.
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon {
-    attempt: Attempt,
+    attempt: StartAttempt,
     settings: Settings,
 }
 
@@ -41,7 +41,7 @@ impl RecedingHorizon {
     }
 
     /// Current plan.
-    pub fn plan(&self) -> &Attempt {
+    pub fn plan(&self) -> &StartAttempt {
         &self.attempt
     }
 

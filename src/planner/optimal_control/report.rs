@@ -1,7 +1,7 @@
 //! Report of an optimal-control plan.
 
 use super::guess::Start;
-use super::solver::Status;
+use super::solver::SolverStatus;
 use crate::frame::Side;
 
 /// Result of one initial guess.
@@ -10,7 +10,7 @@ pub struct StartReport {
     /// Kind of guess.
     pub start: Start,
     /// Solver status.
-    pub status: Status,
+    pub status: SolverStatus,
     /// True when solved and clear of every set.
     pub feasible: bool,
     /// Integral of the stage cost.

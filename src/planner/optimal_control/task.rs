@@ -1,11 +1,11 @@
 //! Optimal control task, and its conversion to stages.
 
 use super::keep_out::KeepOut;
-use super::reference::{Side, reference};
+use super::reference::{LegSide, reference};
 use super::solver::Vector;
 use super::transcription::{Row, Span, Transcription, Weights};
 use crate::frame::{Pose, Vector as Place};
-use crate::trajectory::{DesiredTrajectory, Node};
+use crate::trajectory::{DesiredTrajectory, ForceNode};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
 /// Fractions of every interval at which all sets are constrained from the start.
@@ -69,9 +69,9 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
         let spans = (0..self.intervals)
             .map(|k| Span {
                 reference: [
-                    reference(self.desired, self.time(k), Side::After),
-                    reference(self.desired, self.time(k) + half, Side::After),
-                    reference(self.desired, self.time(k + 1), Side::Before),
+                    reference(self.desired, self.time(k), LegSide::After),
+                    reference(self.desired, self.time(k) + half, LegSide::After),
+                    reference(self.desired, self.time(k + 1), LegSide::Before),
                 ],
             })
             .collect();
@@ -114,7 +114,7 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
     }
 
     /// Nodes of a motion; the last one has zero force.
-    pub fn nodes(&self, states: &[StateVector], forces: &[ForceVector]) -> Vec<Node> {
+    pub fn nodes(&self, states: &[StateVector], forces: &[ForceVector]) -> Vec<ForceNode> {
         states
             .iter()
             .enumerate()
@@ -127,8 +127,8 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
 }
 
 /// State and forces as a node of a trajectory.
-pub fn node(time: f64, state: &StateVector, force: &ForceVector) -> Node {
-    Node {
+pub fn node(time: f64, state: &StateVector, force: &ForceVector) -> ForceNode {
+    ForceNode {
         time,
         pose: Pose::new(Place::new(state[0], state[1]), state[2]),
         velocity: Place::new(state[3], state[4]),

@@ -92,11 +92,11 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
         let Some(pose) = pose_at(nominal_motion, time) else {
             break;
         };
-        let ashore = land_obstacle
+        let on_land = land_obstacle
             .depth(pose.position)
             .is_some_and(|d| d > TOUCH_M);
         // the first contact itself is at the edge
-        if !ashore && step > 0 {
+        if !on_land && step > 0 {
             on_water = true;
             continue;
         }

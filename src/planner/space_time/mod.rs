@@ -183,7 +183,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         // negated on purpose: a NaN is on land
         && !(depth <= tolerance::TOUCH_M)
     {
-        return refuse(NoPlan::StartAshore { depth });
+        return refuse(NoPlan::StartOnLand { depth });
     }
     if has_arrived(problem) {
         let plan = arrived_plan(problem);

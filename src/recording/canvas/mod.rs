@@ -132,9 +132,9 @@ impl<'a> Canvas<'a> {
     }
 
     /// The set with the ship domain, where it is shown beside the hard one.
-    pub fn shaped<'s>(&self, sets: &'s TargetSets) -> Option<&'s Obstacle> {
+    pub fn with_domain<'s>(&self, sets: &'s TargetSets) -> Option<&'s Obstacle> {
         let is_used = self.scenario.compliance != Compliance::None;
-        (is_used && sets.shaped != sets.hard).then_some(&sets.shaped)
+        (is_used && sets.with_domain != sets.hard).then_some(&sets.with_domain)
     }
 
     /// Largest error of a line that is drawn with fewer points, metres.

@@ -2,7 +2,7 @@
 
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
 
-use super::ships::{HARD_RADIUS, SHAPED_RADIUS, shaped_color};
+use super::ships::{DOMAIN_RADIUS, HARD_RADIUS, domain_color};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
@@ -140,11 +140,11 @@ pub fn waters_legend(canvas: &Canvas) -> Vec<Key> {
             canvas.target_color(0),
             HARD_RADIUS,
         ));
-        if canvas.sets.iter().any(|s| canvas.shaped(s).is_some()) {
+        if canvas.sets.iter().any(|s| canvas.with_domain(s).is_some()) {
             entries.push((
-                format!("shaped set{whose}"),
-                shaped_color(canvas, 0),
-                SHAPED_RADIUS,
+                format!("set with domain{whose}"),
+                domain_color(canvas, 0),
+                DOMAIN_RADIUS,
             ));
         }
     }

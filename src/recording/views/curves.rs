@@ -181,8 +181,8 @@ pub fn clearances(canvas: &Canvas, motion: &ShownMotion, target: &Target) -> Vec
 pub fn margin_curves(model: &ViewModel) -> Vec<Series> {
     let sets = &model.sets;
     let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
-    let shaped: Vec<&Obstacle> = (sets.iter())
-        .map(|s| model.shaped(s).unwrap_or(&s.hard))
+    let with_domain: Vec<&Obstacle> = (sets.iter())
+        .map(|s| model.with_domain(s).unwrap_or(&s.hard))
         .collect();
     let mut series = vec![Series {
         name: "hard sets".to_owned(),
@@ -190,17 +190,17 @@ pub fn margin_curves(model: &ViewModel) -> Vec<Series> {
         width: 2.0,
         values: margins(model, &hard),
     }];
-    if hard != shaped {
+    if hard != with_domain {
         series.push(Series {
-            name: "shaped sets".to_owned(),
+            name: "sets with domains".to_owned(),
             color: style::SpeedClass::Slow.color(),
             width: 2.0,
-            values: margins(model, &shaped),
+            values: margins(model, &with_domain),
         });
     }
     // level sets of an accepted risk, or ellipsoids around the others
     let avoided: Vec<&Obstacle> = model.run.obstacles.iter().collect();
-    if avoided != hard && avoided != shaped {
+    if avoided != hard && avoided != with_domain {
         series.push(Series {
             name: "sets kept out of".to_owned(),
             color: style::SpeedClass::Fast.color(),
@@ -257,7 +257,7 @@ pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
         if *avoided == sets.hard {
             series.push(curve(name.to_owned(), 2.0, avoided));
         } else {
-            series.push(curve(format!("{name}, shaped set"), 2.0, avoided));
+            series.push(curve(format!("{name}, with domain"), 2.0, avoided));
             series.push(curve(format!("{name}, hard set"), 1.0, &sets.hard));
         }
     }

@@ -7,7 +7,7 @@ use crate::frame::clockwise_deg_per_s;
 use crate::recording::canvas::{ShownMotion, ViewModel, style};
 use crate::recording::write::Recorder;
 use crate::recording::{TIMELINE, path};
-use crate::trajectory::{Node, Steered};
+use crate::trajectory::{ForceNode, Steered};
 
 /// Surge, sway and yaw rate at the nodes.
 pub const STATES: &str = "curves/states";
@@ -27,7 +27,7 @@ pub fn log_forces(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
     let Some(motion) = steered(model) else {
         return Ok(());
     };
-    let states = |n: &Node| [n.velocity.x, -n.velocity.y, clockwise_deg_per_s(n.yaw_rate)];
+    let states = |n: &ForceNode| [n.velocity.x, -n.velocity.y, clockwise_deg_per_s(n.yaw_rate)];
     let names = [
         "surge, m/s",
         "sway to starboard, m/s",
@@ -41,7 +41,7 @@ pub fn log_forces(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
         motion,
         states,
     )?;
-    let forces = |n: &Node| [n.force.x, -n.force.y, -n.moment];
+    let forces = |n: &ForceNode| [n.force.x, -n.force.y, -n.moment];
     let names = ["surge, N", "sway to starboard, N", "yaw clockwise, Nm"];
     log(
         rec,
@@ -59,7 +59,7 @@ fn log(
     names: [&str; 3],
     between: InterpolationMode,
     motion: &Steered,
-    values: impl Fn(&Node) -> [f64; 3],
+    values: impl Fn(&ForceNode) -> [f64; 3],
 ) -> RecordingStreamResult<()> {
     let style = SeriesLines::new()
         .with_names(names)

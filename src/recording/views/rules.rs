@@ -6,7 +6,7 @@ use rerun::{
 };
 
 use super::chart::Lines;
-use crate::colregs::compliance::{ComplianceReport, MonitorResult, Verdict};
+use crate::colregs::compliance::{ComplianceReport, MonitorResult, MonitorVerdict};
 use crate::frame::{Side, Vector, clockwise_deg, knots_from_mps};
 use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
@@ -64,7 +64,7 @@ fn violated(conduct: &ComplianceReport) -> Vec<Violated> {
         time: violation.time,
         rule: violation.rule.to_owned(),
     });
-    let is_violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
+    let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
     let monitors = conduct.monitors.iter().filter(is_violated);
     let monitors = monitors.map(|monitor| Violated {
         time: monitor.time.unwrap_or(0.0),

@@ -17,10 +17,10 @@ use crate::target::Target;
 /// Line width of hard sets.
 pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
 /// Line width of sets with a ship domain, thinner than that of the hard ones.
-pub const SHAPED_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
+pub const DOMAIN_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
 
 /// Colour of the outline of a set with a ship domain.
-pub fn shaped_color(canvas: &Canvas, index: usize) -> Color {
+pub fn domain_color(canvas: &Canvas, index: usize) -> Color {
     style::toward_background(canvas.target_color(index), 0.75)
 }
 
@@ -61,10 +61,10 @@ pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
 pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     for (index, sets) in canvas.sets.iter().enumerate() {
         let name = sets.hard.name();
-        if let Some(shaped) = canvas.shaped(sets) {
-            let style = set_style(shaped_color(canvas, index), SHAPED_RADIUS);
-            let entity = path(&[MAP, "shaped_sets", name]);
-            log_sections(rec, canvas, entity, shaped, &style)?;
+        if let Some(with_domain) = canvas.with_domain(sets) {
+            let style = set_style(domain_color(canvas, index), DOMAIN_RADIUS);
+            let entity = path(&[MAP, "domain_sets", name]);
+            log_sections(rec, canvas, entity, with_domain, &style)?;
         }
         let style = set_style(canvas.target_color(index), HARD_RADIUS);
         let entity = path(&[MAP, "hard_sets", name]);

@@ -18,7 +18,7 @@ use crate::recording::{VOLUME, path};
 const SHADOW: f32 = 0.35;
 
 /// Opacity of the body of a set with a ship domain, of 255.
-pub const SHAPED_ALPHA: u8 = 16;
+pub const DOMAIN_ALPHA: u8 = 16;
 /// Opacity of the body of a hard set, of 255.
 const HARD_ALPHA: u8 = 36;
 
@@ -62,10 +62,10 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
     log_axes(rec, canvas)?;
     for (index, sets) in canvas.sets.iter().enumerate() {
         let name = sets.hard.name();
-        if let Some(shaped) = canvas.shaped(sets) {
-            let entity = path(&[VOLUME, "shaped_sets", name]);
-            let style = (canvas.target_color(index), SHAPED_ALPHA);
-            log_body(rec, canvas, entity, shaped, style)?;
+        if let Some(with_domain) = canvas.with_domain(sets) {
+            let entity = path(&[VOLUME, "domain_sets", name]);
+            let style = (canvas.target_color(index), DOMAIN_ALPHA);
+            log_body(rec, canvas, entity, with_domain, style)?;
         }
         let entity = path(&[VOLUME, "hard_sets", name]);
         let style = (canvas.target_color(index), HARD_ALPHA);

@@ -198,7 +198,7 @@ fn radius(style: &LineStyle) -> rerun::Radius {
 /// level sets of a risk that it accepts.
 fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
     let mut both = run.obstacles.iter().zip(sets);
-    both.any(|(kept, sets)| *kept != sets.hard && *kept != sets.shaped)
+    both.any(|(kept, sets)| *kept != sets.hard && *kept != sets.with_domain)
 }
 
 /// Logs the sets that a method avoids, in its colour: outlines on the chart, bodies in the volume.
@@ -213,11 +213,11 @@ fn log_kept_out_of(
     for set in &run.obstacles {
         let below = |folder: &EntityPath| folder.join(&path(&["", set.name()]));
         let name = format!("{} avoids: {}", candidate.own.name, set.name());
-        let style = ships::set_style(color, ships::SHAPED_RADIUS)
+        let style = ships::set_style(color, ships::DOMAIN_RADIUS)
             .with_labels([name])
             .with_show_labels(false);
         ships::log_sections(rec, canvas, below(on_chart), set, &style)?;
-        let style = (candidate.own.color, space_time::SHAPED_ALPHA);
+        let style = (candidate.own.color, space_time::DOMAIN_ALPHA);
         space_time::log_body(rec, canvas, below(in_volume), set, style)?;
     }
     Ok(())
@@ -236,7 +236,7 @@ fn legend(canvas: &Canvas, candidates: &[Candidate], sets: &[TargetSets]) -> Vec
     if let Some(first) = candidates.iter().find(|c| of_its_own(c)) {
         let color = style::toward_background(first.own.color, SET_STRENGTH);
         let name = "a method's own sets".to_owned();
-        keys.push((name, color, ships::SHAPED_RADIUS));
+        keys.push((name, color, ships::DOMAIN_RADIUS));
     }
     keys.push(("desired".into(), style::desired(), style::points(0.8)));
     keys.extend(chart::waters_legend(canvas));

@@ -7,7 +7,7 @@ use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, PlotWindow};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::study::assess::Situation;
+use crate::study::assess::OwnSituation;
 
 /// Limit of the velocity panel as a multiple of the maximum speed.
 const FASTEST: f64 = 1.3;
@@ -29,7 +29,7 @@ const COLUMNS: usize = 2;
 
 /// Draws the sections at `times` in seconds, dCPA over the velocities, and the risk at each time.
 /// Without times: the start, a third, two thirds and the end of the horizon.
-pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
+pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
     let thirds: Vec<f64> = (0..4)
         .map(|i| situation.horizon * f64::from(i) / 3.0)
         .collect();
@@ -78,7 +78,7 @@ const OWN_ON_FIELD: Stroke = Stroke {
 
 /// Writes the targets' names above their first sections. A name that would overlap an earlier one
 /// moves up a line, or below its set at the edge of the panel.
-fn name(panel: &mut Panel, situation: &Situation) {
+fn name(panel: &mut Panel, situation: &OwnSituation) {
     let window = panel.window();
     let pixel = window.size().x / AREA[0];
     let mut taken: Vec<(Vector, f64)> = Vec::new();

@@ -3,7 +3,7 @@
 use super::outline::{Stroke, curve};
 use super::{Panel, PlotWindow};
 use crate::frame::{Vector, deg_from_radians};
-use crate::trajectory::{Node, Steered};
+use crate::trajectory::{ForceNode, Steered};
 use crate::vessel::ForceVector;
 
 const ZERO: Stroke = Stroke {
@@ -44,12 +44,12 @@ struct Quantities<'a> {
 /// Builds panels for speeds, turn rate, forces and moment, because their units differ. Starboard
 /// and clockwise are positive.
 pub(super) fn force_panels(motion: &Steered, limits: &ForceVector) -> Vec<Panel> {
-    let states = |value: fn(&Node) -> f64| -> Vec<Vector> {
+    let states = |value: fn(&ForceNode) -> f64| -> Vec<Vector> {
         let nodes = motion.nodes().iter();
         nodes.map(|n| Vector::new(n.time, value(n))).collect()
     };
     // each held until the next node
-    let forces = |value: fn(&Node) -> f64| -> Vec<Vector> {
+    let forces = |value: fn(&ForceNode) -> f64| -> Vec<Vector> {
         let pairs = motion.nodes().windows(2);
         pairs
             .flat_map(|p| [p[0].time, p[1].time].map(|t| Vector::new(t, value(&p[0]))))

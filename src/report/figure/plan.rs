@@ -50,7 +50,7 @@ const FOUND: Stroke = Stroke {
 pub(super) const LAND: &str = "#d9cba3";
 
 /// Outline of land.
-const SHORE: Stroke = Stroke {
+const LAND_OUTLINE: Stroke = Stroke {
     colour: LAND,
     width: 0.8,
     dashed: false,
@@ -232,7 +232,7 @@ pub(super) fn land_areas(land: Option<&Land>, shown: PlotWindow) -> Vec<Plot> {
         .flat_map(|land| land.map.pieces_within(&window))
         .filter_map(|piece| ConvexPolygon::hull(&window.part_of(piece)).ok())
         .filter_map(|piece| {
-            let outline = curve(piece.vertices(), true, SHORE);
+            let outline = curve(piece.vertices(), true, LAND_OUTLINE);
             area(&piece, LAND, 1.0).map(|filled| [filled, outline])
         })
         .flatten()

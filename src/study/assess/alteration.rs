@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_PI_8, PI};
 
-use super::Situation;
+use super::OwnSituation;
 use crate::frame::{Side, Vector, heading_of, wrap, wrap_positive};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle, VelocityObstacle};
 use crate::tolerance;
@@ -41,7 +41,7 @@ pub struct Alteration {
 /// for ellipses.
 ///
 /// Source: velocity obstacles, paper eq. (26).
-pub fn least_alteration(situation: &Situation) -> Alteration {
+pub fn least_alteration(situation: &OwnSituation) -> Alteration {
     let covers: Vec<Cover> = situation
         .obstacles
         .iter()
@@ -66,13 +66,13 @@ struct Cover<'a> {
 }
 
 struct Search<'a> {
-    situation: &'a Situation<'a>,
+    situation: &'a OwnSituation<'a>,
     covers: Vec<Cover<'a>>,
 }
 
 impl Search<'_> {
     fn covered_by(&self, cover: &Cover, velocity: Vector) -> bool {
-        let Situation { pose, horizon, .. } = self.situation;
+        let OwnSituation { pose, horizon, .. } = self.situation;
         cover
             .target
             .in_velocity_obstacle(pose.position, velocity, *horizon)
@@ -83,7 +83,7 @@ impl Search<'_> {
     }
 
     fn turn(&self, side: Side) -> Option<f64> {
-        let Situation { pose, speed, .. } = *self.situation;
+        let OwnSituation { pose, speed, .. } = *self.situation;
         let sign = side.turn_sign();
         let velocity = |turn: f64| {
             self.situation
@@ -134,7 +134,7 @@ impl Search<'_> {
 
     /// First free speed from own speed towards `limit`.
     fn speed(&self, limit: f64) -> Option<f64> {
-        let Situation { pose, speed, .. } = *self.situation;
+        let OwnSituation { pose, speed, .. } = *self.situation;
         let ahead = pose.ahead();
         let way = if limit < speed { -1.0 } else { 1.0 };
         let mut at = speed;

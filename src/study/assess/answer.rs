@@ -1,6 +1,6 @@
 //! A query about a situation and its answers.
 
-use super::{Situation, least_alteration};
+use super::{OwnSituation, least_alteration};
 use crate::document::{
     AlterationDocument, ApproachDocument, AssessmentDocument, HeldDocument, HoldCourseDocument,
     PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
@@ -29,10 +29,15 @@ pub struct Query {
     pub velocities: Vec<Vector>,
 }
 
-/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Cost per target:
+/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"domains"`. Cost per target:
 /// O(n + m) per point and per velocity; O((n + m)²) at worst for the largest risk of holding
 /// course. For the alteration see [`least_alteration`].
-pub fn assess(title: &str, sets: &str, situation: &Situation, query: &Query) -> AssessmentDocument {
+pub fn assess(
+    title: &str,
+    sets: &str,
+    situation: &OwnSituation,
+    query: &Query,
+) -> AssessmentDocument {
     let obstacles = situation.obstacles;
     let held = situation.held();
     let alteration = least_alteration(situation);
@@ -93,7 +98,7 @@ fn risk_at(target: &Obstacle, point: &SpaceTimePoint) -> PointRiskDocument {
     }
 }
 
-fn approach(situation: &Situation, target: &Obstacle, velocity: Vector) -> ApproachDocument {
+fn approach(situation: &OwnSituation, target: &Obstacle, velocity: Vector) -> ApproachDocument {
     let (from, horizon) = (situation.pose.position, situation.horizon);
     let nearest = target.closest_approach(from, velocity, horizon);
     ApproachDocument {

@@ -11,4 +11,4 @@ mod situation;
 
 pub use alteration::{Alteration, least_alteration};
 pub use answer::{Query, SpaceTimePoint, assess};
-pub use situation::Situation;
+pub use situation::OwnSituation;

@@ -6,7 +6,7 @@ use crate::trajectory::Segment;
 
 /// Own ship at t = 0 and the obstacles around it.
 #[derive(Debug, Clone, Copy)]
-pub struct Situation<'a> {
+pub struct OwnSituation<'a> {
     /// Position, metres, and heading, radians; the course is the heading.
     pub pose: Pose,
     /// Speed in m/s, non-negative.
@@ -20,7 +20,7 @@ pub struct Situation<'a> {
     pub obstacles: &'a [Obstacle],
 }
 
-impl Situation<'_> {
+impl OwnSituation<'_> {
     /// Velocity at constant course and speed, m/s.
     pub fn velocity(&self) -> Vector {
         self.velocity_on(self.pose.heading, self.speed)

@@ -6,7 +6,7 @@ use crate::frame::{Pose, direction};
 use crate::obstacle::{Obstacle, PeakRisk, level_sets};
 use crate::pipeline::{self, Run, TargetSets};
 use crate::scenario::{Compliance, Scenario};
-use crate::study::assess::{Situation, least_alteration};
+use crate::study::assess::{OwnSituation, least_alteration};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
@@ -72,7 +72,7 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<ComparedMotion> {
     let mut candidates: Vec<(f64, f64)> = Vec::new();
     for &heading in &headings {
         for &speed in &speeds {
-            let situation = Situation {
+            let situation = OwnSituation {
                 pose: Pose::new(own.pose.position, heading),
                 speed,
                 max_speed: own.max_speed(),
@@ -106,7 +106,7 @@ pub(super) struct Sets {
 impl Sets {
     pub fn of(scenario: &Scenario) -> Self {
         let used = |sets: TargetSets| match scenario.compliance {
-            Compliance::Shape | Compliance::Rules => sets.shaped,
+            Compliance::Shape | Compliance::Rules => sets.with_domain,
             Compliance::None => sets.hard,
         };
         let whole: Vec<Obstacle> = pipeline::sets(scenario).into_iter().map(used).collect();

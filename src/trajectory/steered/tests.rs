@@ -1,7 +1,7 @@
 use super::*;
 
-fn node(time: f64, x: f64, y: f64, heading: f64) -> Node {
-    Node {
+fn node(time: f64, x: f64, y: f64, heading: f64) -> ForceNode {
+    ForceNode {
         time,
         pose: Pose::new(Vector::new(x, y), heading),
         velocity: Vector::new(0.3 + 0.1 * x, -0.1),

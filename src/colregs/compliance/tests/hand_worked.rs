@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{ComplianceReport, LENGTH, Measure, Verdict, standard, steady};
+use super::{ComplianceReport, LENGTH, Measure, MonitorVerdict, standard, steady};
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector, deg_from_radians, radians_from_deg};
 use crate::trajectory::{Segment, Trajectory};
@@ -204,11 +204,11 @@ fn scores_of_giving_way_and_of_overtaking_are_those_worked_out_by_hand() {
 }
 
 /// Verdict, robustness in metres, seconds or degrees, and time of a monitor.
-type Found = Option<(Verdict, f64, f64)>;
+type Found = Option<(MonitorVerdict, f64, f64)>;
 
 #[test]
 fn monitors_are_those_worked_out_by_hand() {
-    use Verdict::{Satisfied, Undecided, Violated};
+    use MonitorVerdict::{Satisfied, Undecided, Violated};
     let cases: &[Case<[Found; 6]>] = &[
         // 8 of the 20 degrees; whether more follows is not known before they have passed
         (
@@ -335,7 +335,7 @@ fn monitors_are_those_worked_out_by_hand() {
         assert_eq!(names, ["S", "R1", "R3", "R4", "R5", "R6"]);
         for (found, expected) in monitors.iter().zip(expected) {
             let Some((verdict, robustness, time)) = *expected else {
-                assert_eq!(found.verdict, Verdict::Idle, "{legs:?}: {found:?}");
+                assert_eq!(found.verdict, MonitorVerdict::Idle, "{legs:?}: {found:?}");
                 continue;
             };
             assert_eq!(found.verdict, verdict, "{legs:?}: {found:?}");

@@ -85,7 +85,10 @@ fn rules(c: &ComplianceReport) -> Vec<&'static str> {
 }
 
 fn violated(c: &ComplianceReport) -> Vec<&'static str> {
-    let broken = c.monitors.iter().filter(|f| f.verdict == Verdict::Violated);
+    let broken = c
+        .monitors
+        .iter()
+        .filter(|f| f.verdict == MonitorVerdict::Violated);
     broken.map(|f| f.monitor).collect()
 }
 
@@ -132,11 +135,11 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     };
     let meets = (1440.0 - HULL.length) / 12.0;
     let (verdict, seconds) = left(meets - 50.0);
-    assert_eq!(verdict, Verdict::Satisfied);
+    assert_eq!(verdict, MonitorVerdict::Satisfied);
     let seconds = seconds.expect("in extremis");
     assert!(seconds < 50.0 && seconds > 40.0, "{seconds}");
-    assert_eq!(left(20.0), (Verdict::Idle, None));
-    assert_eq!(left(meets), (Verdict::Violated, Some(0.0)));
+    assert_eq!(left(20.0), (MonitorVerdict::Idle, None));
+    assert_eq!(left(meets), (MonitorVerdict::Violated, Some(0.0)));
     // the plan ends on the way to the meeting
     let own = planned(&[(0.0, meets - 30.0)], 6.0);
     let meeting = EncounterSamples::along(
@@ -145,7 +148,7 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
         &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
     );
     let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
-    assert_eq!(found.verdict, Verdict::Undecided);
+    assert_eq!(found.verdict, MonitorVerdict::Undecided);
     assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
 }
 
@@ -254,5 +257,5 @@ fn what_is_not_a_number_is_a_collision() {
     let own = planned(&[(0.0, 60.0)], 6.0);
     let c = ComplianceReport::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
     assert_eq!(c.scores.safety, 0.0);
-    assert_eq!(c.monitors[0].verdict, Verdict::Violated);
+    assert_eq!(c.monitors[0].verdict, MonitorVerdict::Violated);
 }

@@ -27,12 +27,12 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
         exact,
     );
     let task = planner.task(planner.intervals);
-    let attempts: Vec<Attempt> = family(&task)
+    let attempts: Vec<StartAttempt> = family(&task)
         .into_iter()
         .map(|(_, guess)| attempt(&task, &guess, &Settings::default(), &|| true))
         .collect();
     let is_fine =
-        |a: &Attempt| largest_defect(&exact, &a.profile, task.step()) <= tolerance::DEFECT;
+        |a: &StartAttempt| largest_defect(&exact, &a.profile, task.step()) <= tolerance::DEFECT;
     let ordered = cheapest_first(&attempts);
     assert!(!is_fine(ordered[0]));
     let fine = ordered.iter().find(|a| is_fine(a)).expect("one of many");
@@ -43,7 +43,7 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     assert_eq!(plan.cost, fine.objective);
     assert!(report.intervals == planner.intervals && report.defect <= tolerance::DEFECT);
     // this one needs a finer grid, and there is no time
-    let coarse: Vec<Attempt> = ordered.into_iter().take(1).cloned().collect();
+    let coarse: Vec<StartAttempt> = ordered.into_iter().take(1).cloned().collect();
     assert!(matches!(
         planner.cheapest_on_fine_grid(&coarse, &mut report),
         Outcome::Infeasible(NoPlan::Coarse { .. })

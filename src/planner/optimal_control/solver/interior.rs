@@ -5,7 +5,7 @@ use super::line_search::{Accepted, Search};
 use super::newton::Curvature;
 use super::stage::{StageProblem, Triple, Vector};
 use super::workspace::Workspace;
-use super::{Report, Settings, Status};
+use super::{Settings, SolverReport, SolverStatus};
 
 /// The barrier is reduced once the error is below this multiple of it.
 const BARRIER_ERROR: f64 = 10.0;
@@ -35,9 +35,9 @@ pub fn solve<const N: usize, const M: usize>(
     work: &mut Workspace<N, M>,
     settings: &Settings,
     keep_going: &dyn Fn() -> bool,
-) -> Report {
-    let mut report = Report {
-        status: Status::BadProblem,
+) -> SolverReport {
+    let mut report = SolverReport {
+        status: SolverStatus::BadProblem,
         iterations: 0,
         objective: f64::NAN,
         error: f64::INFINITY,
@@ -190,7 +190,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    fn run(&mut self, report: &mut Report, keep_going: &dyn Fn() -> bool) -> Status {
+    fn run(&mut self, report: &mut SolverReport, keep_going: &dyn Fn() -> bool) -> SolverStatus {
         let mut search = Search::new(self.infeasibility());
         search.restart(&mut self.work.filter);
         let mut forced = false;
@@ -199,21 +199,21 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             let errors = self.errors();
             report.error = errors.at(0.0);
             if !report.error.is_finite() {
-                return Status::NotANumber;
+                return SolverStatus::NotANumber;
             }
             if report.error <= self.settings.tolerance {
-                return Status::Solved;
+                return SolverStatus::Solved;
             }
             let objective = self.objective();
             let far = |v: &Vector<N>| v.amax() > DIVERGED;
             if objective < -DIVERGED || self.at.states.iter().any(far) {
-                return Status::Unbounded;
+                return SolverStatus::Unbounded;
             }
             if report.iterations >= self.settings.max_iterations {
-                return Status::Iterations;
+                return SolverStatus::Iterations;
             }
             if !keep_going() {
-                return Status::OutOfTime;
+                return SolverStatus::OutOfTime;
             }
             while errors.at(self.barrier) <= BARRIER_ERROR * self.barrier {
                 let floor = 0.1 * self.settings.tolerance;
@@ -228,7 +228,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 search.restart(&mut self.work.filter);
             }
             let Some(used) = self.factorise(forced) else {
-                return Status::Singular;
+                return SolverStatus::Singular;
             };
             self.work
                 .target
@@ -240,10 +240,10 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             let to_limit = FRACTION_TO_BOUNDARY.max(1.0 - self.barrier);
             let longest = self.longest(to_limit);
             if !longest[0].is_finite() {
-                return Status::NotANumber;
+                return SolverStatus::NotANumber;
             }
             match search.run(self, longest, to_limit, keep_going) {
-                Accepted::OutOfTime => return Status::OutOfTime,
+                Accepted::OutOfTime => return SolverStatus::OutOfTime,
                 Accepted::Step(primal) => {
                     self.take(primal, longest[1]);
                     forced = false;
@@ -258,7 +258,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                         self.take(fraction * longest[0], longest[1]);
                         forced = false;
                     }
-                    None => return Status::Stalled,
+                    None => return SolverStatus::Stalled,
                 },
             }
             report.iterations += 1;

@@ -53,11 +53,11 @@ impl Default for Settings {
     }
 }
 
-/// Reason why the solver stopped. Only [`Status::Solved`] is a solution.
+/// Reason why the solver stopped. Only [`SolverStatus::Solved`] is a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
+pub enum SolverStatus {
     /// The optimality conditions hold to the tolerance; rows may still have a
-    /// [`Report::shortfall`].
+    /// [`SolverReport::shortfall`].
     Solved,
     /// Step limit reached.
     Iterations,
@@ -75,7 +75,7 @@ pub enum Status {
     BadProblem,
 }
 
-impl std::fmt::Display for Status {
+impl std::fmt::Display for SolverStatus {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Solved => "solved",
@@ -94,9 +94,9 @@ impl std::fmt::Display for Status {
 
 /// Report of a solve; the point itself is in the iterate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Report {
+pub struct SolverReport {
     /// Reason for stopping.
-    pub status: Status,
+    pub status: SolverStatus,
     /// Number of steps.
     pub iterations: usize,
     /// Objective without penalties.

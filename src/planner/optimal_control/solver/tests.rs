@@ -50,7 +50,7 @@ impl<const N: usize, const M: usize> Toy<N, M> {
         )
     }
 
-    fn solve(&self, settings: &Settings) -> (Report, Iterate<N, M>) {
+    fn solve(&self, settings: &Settings) -> (SolverReport, Iterate<N, M>) {
         let mut at = self.cold();
         let report = solve(self, &mut at, &mut Workspace::new(self), settings, &|| true);
         (report, at)
@@ -226,7 +226,7 @@ fn a_scalar_regulator_has_the_golden_gain() {
         Matrix::identity(),
     );
     let (report, at) = toy.solve(&Settings::default());
-    assert_eq!(report.status, Status::Solved);
+    assert_eq!(report.status, SolverStatus::Solved);
     assert_eq!(report.iterations, 1);
     let gain = 2.0 / (1.0 + 5.0_f64.sqrt());
     assert!((at.controls[0][0] + gain * 8.0).abs() < 1e-9);
@@ -246,7 +246,7 @@ fn limits_hold_and_their_multipliers_balance() {
     );
     toy.limits = [Vector::repeat(-1.0), Vector::repeat(1.0)];
     let (report, at) = toy.solve(&Settings::default());
-    assert_eq!(report.status, Status::Solved);
+    assert_eq!(report.status, SolverStatus::Solved);
     for k in 0..5 {
         assert!((at.controls[k][0] + 1.0).abs() < 1e-5 && at.low[k][0] > 0.1);
     }
@@ -332,7 +332,7 @@ fn a_point_in_a_disc_moves_to_its_nearest_point() {
                 &settings,
                 &|| true,
             );
-            assert_eq!(report.status, Status::Solved, "{start} {report:?}");
+            assert_eq!(report.status, SolverStatus::Solved, "{start} {report:?}");
             assert!(
                 (at.states[1] - Vector::<2>::new(1.0, 0.0)).amax() < 1e-5,
                 "{at:?}"
@@ -346,7 +346,7 @@ fn a_point_in_a_disc_moves_to_its_nearest_point() {
             };
             let again = solve(&disc, &mut at, &mut Workspace::new(&disc), &warm, &|| true);
             assert!(
-                again.status == Status::Solved && again.iterations <= 5,
+                again.status == SolverStatus::Solved && again.iterations <= 5,
                 "{again:?}"
             );
         }
@@ -367,7 +367,7 @@ fn unsatisfiable_rows_have_the_least_shortfall() {
     row.y[0] = 1.0;
     toy.rows = vec![(row, 3.0)];
     let (report, at) = toy.solve(&Settings::default());
-    assert_eq!(report.status, Status::Solved);
+    assert_eq!(report.status, SolverStatus::Solved);
     assert!((at.states[1][0] - 1.0).abs() < 1e-5 && (report.shortfall - 2.0).abs() < 1e-5);
     assert!((report.row_multiplier - 100.0).abs() < 1e-4);
 }
@@ -391,7 +391,7 @@ fn a_nonlinear_problem_with_rows_satisfies_its_conditions() {
         row.y[1] = 1.0;
         toy.rows = vec![(row, -0.3)];
         let (report, at) = toy.solve(&Settings::default());
-        assert_eq!(report.status, Status::Solved, "{report:?}");
+        assert_eq!(report.status, SolverStatus::Solved, "{report:?}");
         assert!(report.error <= 1e-6);
         for k in 0..12 {
             let mut value = [0.0];
@@ -415,16 +415,22 @@ fn divergence_and_nan_are_reported() {
     );
     toy.cost.uu = Matrix::zeros();
     toy.cost.yy = -Matrix::identity();
-    assert_eq!(toy.solve(&Settings::default()).0.status, Status::Unbounded);
+    assert_eq!(
+        toy.solve(&Settings::default()).0.status,
+        SolverStatus::Unbounded
+    );
     toy.cost.yy = Matrix::repeat(f64::NAN);
-    assert_eq!(toy.solve(&Settings::default()).0.status, Status::NotANumber);
+    assert_eq!(
+        toy.solve(&Settings::default()).0.status,
+        SolverStatus::NotANumber
+    );
     toy.cost.yy = Matrix::identity();
     toy.cost.uu = Matrix::identity();
     let short = Settings {
         max_iterations: 0,
         ..Settings::default()
     };
-    assert_eq!(toy.solve(&short).0.status, Status::Iterations);
+    assert_eq!(toy.solve(&short).0.status, SolverStatus::Iterations);
     let mut at = toy.cold();
     let stopped = solve(
         &toy,
@@ -433,7 +439,7 @@ fn divergence_and_nan_are_reported() {
         &Settings::default(),
         &|| false,
     );
-    assert_eq!(stopped.status, Status::OutOfTime);
+    assert_eq!(stopped.status, SolverStatus::OutOfTime);
     for bad in [
         Toy {
             stages: 0,
@@ -452,7 +458,10 @@ fn divergence_and_nan_are_reported() {
             ..toy.clone()
         },
     ] {
-        assert_eq!(bad.solve(&Settings::default()).0.status, Status::BadProblem);
+        assert_eq!(
+            bad.solve(&Settings::default()).0.status,
+            SolverStatus::BadProblem
+        );
     }
     let mut at = toy.cold();
     at.states.pop();
@@ -463,5 +472,5 @@ fn divergence_and_nan_are_reported() {
         &Settings::default(),
         &|| true,
     );
-    assert_eq!(report.status, Status::BadProblem);
+    assert_eq!(report.status, SolverStatus::BadProblem);
 }

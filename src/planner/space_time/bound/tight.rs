@@ -375,7 +375,7 @@ mod tests {
                 scenario.targets.iter_mut().for_each(change);
                 let obstacles: Vec<_> = pipeline::sets(&scenario)
                     .into_iter()
-                    .map(|s| s.shaped)
+                    .map(|s| s.with_domain)
                     .collect();
                 greatest = greatest.max(tightest_ratio(&Problem {
                     search: SearchKind::AStar,

@@ -53,7 +53,7 @@ impl CostToGoGrid {
             layers,
             to_go: vec![f32::INFINITY; WIDE * WIDE * layers],
         };
-        let ashore: Vec<bool> = (0..CELLS * CELLS)
+        let on_land: Vec<bool> = (0..CELLS * CELLS)
             .map(|k| {
                 let depth = problem.land_obstacle.depth(grid.middle(k));
                 depth.is_some_and(|depth| depth > 0.0)
@@ -74,7 +74,7 @@ impl CostToGoGrid {
                 return None;
             }
             let time = step * layer as f64;
-            let mut blocked = ashore.clone();
+            let mut blocked = on_land.clone();
             for proxy in proxies {
                 grid.block(&mut blocked, proxy, time);
             }

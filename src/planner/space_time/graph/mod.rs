@@ -463,8 +463,8 @@ impl Space for Graph<'_> {
             return met.is_none() && !land::meets(self.problem.land_obstacle, &soon);
         }
         let met = first_met(self.proxies, &state.motion).or_else(|| {
-            let ashore = land::meets(self.problem.land_obstacle, &state.motion);
-            ashore.then_some(self.problem.obstacles.len())
+            let on_land = land::meets(self.problem.land_obstacle, &state.motion);
+            on_land.then_some(self.problem.obstacles.len())
         });
         state.met.set(met);
         met.is_none()

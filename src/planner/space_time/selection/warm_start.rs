@@ -195,7 +195,7 @@ mod tests {
         for drawn in encounters.chain(traffic) {
             let scenario = drawn.expect("drawn").scenario;
             let sets = pipeline::sets(&scenario);
-            let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.shaped).collect();
+            let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.with_domain).collect();
             let problem = Problem {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(60),
