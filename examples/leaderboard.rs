@@ -176,7 +176,7 @@ fn row(
 fn is_clear(run: &Run) -> bool {
     matches!(run.planned.outcome, Outcome::Solved(_))
         && run.max_risk == 0.0
-        && run.released.iter().all(Option::is_none)
+        && !run.enters()
         && run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 

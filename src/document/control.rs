@@ -71,7 +71,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         start_intervals: report.start_intervals,
         intervals: report.intervals,
         defect: finite(report.defect),
-        enclosed_targets: (run.whole.iter())
+        enclosed_targets: (run.targets.iter().map(|target| &target.whole))
             .filter(|set| !matches!(set, Obstacle::Ellipsoid(_)))
             .map(|set| set.name().to_owned())
             .collect(),

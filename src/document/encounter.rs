@@ -78,11 +78,11 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
     let conduct = run.judged_conduct();
-    (run.scenario.targets.iter().zip(&run.sets).enumerate())
-        .map(|(index, (target, sets))| {
+    (run.scenario.targets.iter().zip(&run.targets).enumerate())
+        .map(|(index, (target, outcome))| {
             let passage = passages.and_then(|passages| passages.get(index));
-            let peak = run.risks.get(index);
-            let encounter = &sets.encounter;
+            let peak = &outcome.peak;
+            let encounter = &outcome.sets.encounter;
             let crossing = passage
                 .zip(trajectory)
                 .filter(|_| is_crossing(encounter.role.name()));

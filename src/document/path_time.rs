@@ -63,7 +63,7 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
             .obstacles
             .iter()
             .map(|seen| PathObstacleDocument {
-                target: run.obstacles[seen.obstacle].name().to_owned(),
+                target: run.targets[seen.obstacle].obstacle.name().to_owned(),
                 leg: seen.leg,
                 vertices: seen.corners.iter().map(plain).collect(),
             })

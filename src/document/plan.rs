@@ -137,11 +137,11 @@ impl PlanDocument {
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
             targets: scenario.targets.iter().map(target).collect(),
-            obstacles: run
-                .obstacles
-                .iter()
-                .zip(&run.released)
-                .flat_map(|(set, from)| obstacles(set, from.unwrap_or(0.0), scenario.horizon))
+            obstacles: (run.targets.iter())
+                .flat_map(|target| {
+                    let from = target.released.unwrap_or(0.0);
+                    obstacles(&target.obstacle, from, scenario.horizon)
+                })
                 .collect(),
             encounters: encounters(run),
             path_time: (run.planned.path_time.as_deref())
@@ -258,8 +258,8 @@ fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
     let trajectory = &plan.trajectory;
     let minimised = minimised(&run.scenario, plan, evaluation);
-    let (arrived, risks) = (run.arrives(), &run.risks);
-    Some(cost_of(trajectory, evaluation, minimised, arrived, risks))
+    let (arrived, risks) = (run.arrives(), run.risks());
+    Some(cost_of(trajectory, evaluation, minimised, arrived, &risks))
 }
 
 /// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the

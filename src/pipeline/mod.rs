@@ -35,21 +35,12 @@ use crate::scenario::{Compliance, Scenario};
 pub struct Run {
     /// The request.
     pub scenario: Scenario,
-    /// The sets, in the order of the scenario's targets.
-    pub sets: Vec<TargetSets>,
+    /// One per target, in the order of the scenario.
+    pub targets: Vec<TargetOutcome>,
     /// How much of the request the plan satisfies.
     pub level: RelaxationLevel,
-    /// The whole sets that the plan keeps clear of, in the same order: hard sets with the retained
-    /// part of the ship domains. [`Run::risks`] refer to these.
-    pub whole: Vec<Obstacle>,
-    /// The obstacles that were planned against, in the same order: the level sets `O_alpha` of
-    /// `whole`, `alpha = 1 - max_risk`.
-    pub obstacles: Vec<Obstacle>,
     /// The accepted risk, in `[0, 1)`: the scenario's, or more where there was no plan at that.
     pub max_risk: f64,
-    /// Seconds, per target in the same order: the plan enters the set and is clear of it from then
-    /// on. `None` where it is always clear.
-    pub released: Vec<Option<f64>>,
     /// The convex pieces of land that were planned against: all that own ship could reach.
     pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
@@ -58,20 +49,53 @@ pub struct Run {
     pub why: Option<NoPlan>,
     /// Requirements that were given up, most important first.
     pub relaxations: Vec<Relaxation>,
-    /// The largest risk along the plan, per target in the same order, in the sets `whole`; empty
-    /// without a plan.
-    pub risks: Vec<PeakRisk>,
     /// The independent evaluation of the plan; `None` without a plan.
     pub evaluation: Option<Evaluation>,
     /// Wall-clock time of planning alone.
     pub plan_time: Duration,
 }
 
+/// The obstacles of one target, and what a plan does to them.
+#[derive(Debug, Clone)]
+pub struct TargetOutcome {
+    /// The hard set, the one with a ship domain, and the encounter.
+    pub sets: TargetSets,
+    /// The whole set that the plan keeps clear of: the hard set with the retained part of the ship
+    /// domain.
+    pub whole: Obstacle,
+    /// The obstacle that was planned against: the level set `O_alpha` of `whole`,
+    /// `alpha = 1 - max_risk`.
+    pub obstacle: Obstacle,
+    /// Seconds: the plan enters the set and is clear of it from then on. `None` where it is always
+    /// clear.
+    pub released: Option<f64>,
+    /// The largest risk along the plan in the set `whole`; `None` without a plan.
+    pub peak: Option<PeakRisk>,
+}
+
 impl Run {
+    /// The obstacles that were planned against, in the order of the targets.
+    pub fn obstacles(&self) -> impl ExactSizeIterator<Item = &Obstacle> {
+        self.targets.iter().map(|target| &target.obstacle)
+    }
+
+    /// The largest risk along the plan of each target; empty without a plan.
+    pub fn risks(&self) -> Vec<PeakRisk> {
+        self.targets
+            .iter()
+            .filter_map(|target| target.peak)
+            .collect()
+    }
+
+    /// True where the plan enters the set of a target.
+    pub fn enters(&self) -> bool {
+        self.targets.iter().any(|target| target.released.is_some())
+    }
+
     /// True where some part of a ship domain is retained.
     pub fn uses_domains(&self) -> bool {
-        let mut both = self.whole.iter().zip(&self.sets);
-        both.any(|(whole, sets)| *whole != sets.hard)
+        let mut targets = self.targets.iter();
+        targets.any(|target| target.whole != target.sets.hard)
     }
 
     /// True where the plan ends at the last waypoint. Motions under forces end at the horizon.
@@ -164,19 +188,26 @@ pub fn run(scenario: Scenario) -> Run {
     let evaluation = answer
         .trajectory()
         .map(|trajectory| judge_answer(&scenario, &answer, trajectory));
+    let mut peaks = risks.into_iter();
+    let avoided = answer.whole.into_iter().zip(answer.obstacles);
+    let targets = (sets.into_iter().zip(avoided).zip(answer.released))
+        .map(|((sets, (whole, obstacle)), released)| TargetOutcome {
+            sets,
+            whole,
+            obstacle,
+            released,
+            peak: peaks.next(),
+        })
+        .collect();
     Run {
+        targets,
         level: answer.level,
-        whole: answer.whole,
-        obstacles: answer.obstacles,
         max_risk: answer.risk,
-        released: answer.released,
         planned: answer.planned,
         why: answer.why,
         scenario,
-        sets,
         land,
         relaxations,
-        risks,
         evaluation,
         plan_time,
     }

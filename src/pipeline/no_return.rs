@@ -42,7 +42,7 @@ impl Run {
         if !scenario.planner.facts().has_no_return {
             return None;
         }
-        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let hard: Vec<Obstacle> = self.targets.iter().map(|t| t.sets.hard.clone()).collect();
         let land_obstacle = land_obstacle(scenario, &self.land);
         let asked = problem(scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked)?;

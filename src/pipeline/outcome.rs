@@ -144,7 +144,7 @@ impl Run {
 
     /// The largest risk along the plan toward any target; 0 without one.
     pub fn greatest_risk(&self) -> f64 {
-        let risks = self.risks.iter().map(|peak| peak.risk);
+        let risks = self.risks().into_iter().map(|peak| peak.risk);
         risks.max_by(f64::total_cmp).unwrap_or(0.0)
     }
 }

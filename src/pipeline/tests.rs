@@ -18,6 +18,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 mod land;
 mod last_moments;
 
+fn released(run: &Run) -> Vec<Option<f64>> {
+    run.targets.iter().map(|target| target.released).collect()
+}
+
 fn polytope(o: &Obstacle) -> &PolytopeObstacle {
     o.as_polytope().expect("a polytope")
 }
@@ -81,11 +85,14 @@ fn compliance_chooses_the_sets() {
     let target = track(1500.0, 0.0, PI, 5.0);
     let with_domain = run(scenario(target.clone(), Compliance::Shape));
     let hard = run(scenario(target, Compliance::None));
-    assert_eq!(with_domain.sets[0].encounter.role, Role::HeadOn);
-    assert_eq!(with_domain.obstacles[0], with_domain.sets[0].with_domain);
-    assert_eq!(hard.obstacles[0], hard.sets[0].hard);
+    assert_eq!(with_domain.targets[0].sets.encounter.role, Role::HeadOn);
+    assert_eq!(
+        with_domain.targets[0].obstacle,
+        with_domain.targets[0].sets.with_domain
+    );
+    assert_eq!(hard.targets[0].obstacle, hard.targets[0].sets.hard);
     assert!(with_domain.relaxations.is_empty() && hard.relaxations.is_empty());
-    let areas = |run: &Run| polytope(&run.obstacles[0]).initial().area();
+    let areas = |run: &Run| polytope(&run.targets[0].obstacle).initial().area();
     assert!(areas(&with_domain) > 2.0 * areas(&hard));
 }
 
@@ -98,7 +105,12 @@ fn a_domain_over_the_start_is_reduced_and_reported() {
         [Relaxation::Domain { target, amount }] if target == "other" && *amount > 1.0
     ));
     let start = relaxed.scenario.own_ship.pose.position;
-    assert!(polytope(&relaxed.obstacles[0]).slack(start, 0.0).value > 0.0);
+    assert!(
+        polytope(&relaxed.targets[0].obstacle)
+            .slack(start, 0.0)
+            .value
+            > 0.0
+    );
     // the hard sets have no domain
     assert!(
         run(scenario(target, Compliance::None))
@@ -144,10 +156,10 @@ fn domains_that_no_plan_clears_are_reduced_as_far_as_the_plan_needs() {
     use crate::simulation::{EncounterKind, Placement, random_encounter};
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
-    let sets = &run.sets[0];
+    let sets = &run.targets[0].sets;
     assert!(sets.shape_reduced > 0.0 && run.level == RelaxationLevel::ReducedDomains);
     let initial = |set: &Obstacle| polytope(set).initial().clone();
-    let (kept, hard) = (initial(&run.obstacles[0]), initial(&sets.hard));
+    let (kept, hard) = (initial(&run.targets[0].obstacle), initial(&sets.hard));
     for corner in hard.vertices() {
         assert!(kept.signed_distance(*corner) < tolerance::LENGTH_M);
     }
@@ -254,7 +266,7 @@ fn where_no_motion_leaves_the_sets_own_ship_slows_and_meets_no_nominal_hull() {
         let is_late = matches!(run.planned.outcome, Outcome::Deadline(_));
         assert_eq!(is_late, deadline == 0.0);
         let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
-        assert_eq!(run.released, [Some(trajectory.end_time())]);
+        assert_eq!(released(&run), [Some(trajectory.end_time())]);
         let first = trajectory.segments()[0];
         assert!(first.speed < 0.5 * run.scenario.own_ship.speed, "{first:?}");
         assert!(changes_of_speed(trajectory) <= 2);
@@ -284,7 +296,7 @@ fn out_of_time_own_ship_still_meets_no_nominal_hull() {
 fn at_the_goal_inside_a_set_own_ship_has_arrived() {
     let run = run(fault("infeasible-at-goal.toml"));
     assert_eq!(run.level, RelaxationLevel::Inside);
-    assert_eq!(run.released, [Some(run.scenario.horizon)]);
+    assert_eq!(released(&run), [Some(run.scenario.horizon)]);
     let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
     assert_eq!(trajectory.end_time(), 0.0);
     assert!(matches!(
@@ -307,11 +319,11 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
     scenario.targets.push(beside);
     let run = run(scenario);
     assert_eq!(run.level, RelaxationLevel::Inside);
-    let [Some(until), None] = run.released[..] else {
-        panic!("{:?}", run.released);
+    let [Some(until), None] = released(&run)[..] else {
+        panic!("{:?}", released(&run));
     };
     let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
-    let hard = &run.sets[0].hard;
+    let hard = &run.targets[0].sets.hard;
     let depth = |at: Vector, t: f64| -hard.signed_distance(at, t).distance;
     for t in trajectory.sample_times(0.1, 10_000) {
         let deep = depth(trajectory.pose_at(t).position, t);
@@ -367,7 +379,7 @@ fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
     assert_eq!(off_paths.level, RelaxationLevel::Inside);
     let plan = off_paths.planned.outcome.plan().expect("a plan");
     let end = plan.trajectory.end_time();
-    assert_eq!(off_paths.released, [Some(end), None, None]);
+    assert_eq!(released(&off_paths), [Some(end), None, None]);
     assert!(off_paths.evaluation.expect("judged").verified());
     // along its path it stops, and the box, 900 m to its edge at 5 m/s, moves away
     let along = run(Scenario {
@@ -375,8 +387,8 @@ fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
         ..scenario
     });
     assert_eq!(along.level, RelaxationLevel::Inside);
-    let [Some(until), None, None] = along.released[..] else {
-        panic!("{:?}", along.released);
+    let [Some(until), None, None] = released(&along)[..] else {
+        panic!("{:?}", released(&along));
     };
     assert!((until - 180.0).abs() < 1.0, "{until}");
     let plan = along.planned.outcome.plan().expect("a plan");
@@ -441,7 +453,7 @@ fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {
     scenario.deadline = 60.0;
     let run = run(scenario);
     assert!(run.level < RelaxationLevel::Risk && run.max_risk == 0.0);
-    assert!(run.risks.iter().all(|peak| peak.risk == 0.0));
+    assert!(run.risks().iter().all(|peak| peak.risk == 0.0));
     assert!(run.evaluation.is_some_and(|e| e.verified()));
 }
 

@@ -200,7 +200,7 @@ fn nothing_is_said_of_the_margin_after_arrival() {
         crate::trajectory::DesiredTrajectory::new(&points, &[5.0]).expect("valid");
     let model = ViewModel::new(&run);
     assert!((model.end - late).abs() < 1e-9);
-    let margins = curves::margins(&model, &[&run.sets[0].hard]);
+    let margins = curves::margins(&model, &[&run.targets[0].sets.hard]);
     let plan = run.planned.outcome.plan().expect("a plan");
     let arrival = plan.trajectory.end_time();
     let before = model.samples.iter().filter(|t| **t <= arrival).count();
@@ -388,7 +388,7 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
 fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
     let text = HEAD_ON.replace("[[targets]]", "[planner]\nmax_risk = 0.4\n[[targets]]");
     let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
-    let [peak] = run.risks[..] else {
+    let [peak] = run.risks()[..] else {
         panic!("one target");
     };
     assert!(run.uses_domains() && peak.risk > 0.1, "{peak:?}");
@@ -427,7 +427,7 @@ fn a_path_time_plan_has_its_diagram() {
             "[planner]\nkind = \"path-time\"\n[[targets]]",
         );
         let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
-        assert_eq!(run.released.iter().all(Option::is_none), clear);
+        assert_eq!(!run.enters(), clear);
         write_run(&run, &path).expect("writes");
         let entities = read(&path);
         let name = EntityPathPart::new(NAME).escaped_string();

@@ -143,7 +143,7 @@ fn seen(run: &Run) -> Seen {
         to_spare: run
             .planned
             .escape
-            .map(|e| run.sets[0].encounter.undisturbed_tcpa - e.latest),
+            .map(|e| run.targets[0].sets.encounter.undisturbed_tcpa - e.latest),
         violations: violations.iter().map(|b| b.rule).collect(),
         cost: plan.cost,
         milliseconds: run.plan_time.as_secs_f64() * 1e3,

@@ -119,7 +119,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     starts: usize,
 ) -> Vec<f64> {
     let (scenario, control) = (&run.scenario, &run.scenario.settings.optimal_control);
-    let keep_outs: Vec<KeepOut> = run.obstacles.iter().map(KeepOut::outer_of).collect();
+    let keep_outs: Vec<KeepOut> = run.obstacles().map(KeepOut::outer_of).collect();
     let own = &scenario.own_ship;
     let (place, heading) = (own.pose.position, own.pose.heading);
     let task = Task {

@@ -89,7 +89,7 @@ pub fn planned(seed: u64, drawn: RandomEncounter) -> Record {
     Record {
         seed,
         drawn,
-        roles: run.sets.iter().map(|s| s.encounter.role).collect(),
+        roles: run.targets.iter().map(|t| t.sets.encounter.role).collect(),
         plan: plan.map(|p| (p.trajectory.clone(), p.cost)),
         refusal,
         violations,
@@ -101,7 +101,7 @@ pub fn planned(seed: u64, drawn: RandomEncounter) -> Record {
             .collect(),
         shape_reduced: !run.relaxations.is_empty(),
         milliseconds: run.plan_time.as_secs_f64() * 1e3,
-        obstacles: run.obstacles,
+        obstacles: run.obstacles().cloned().collect(),
     }
 }
 

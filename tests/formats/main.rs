@@ -406,14 +406,14 @@ fn every_encounter_has_a_plan_clear_of_all_it_declares() {
         let run = pipeline::run(scenario);
         let name = situation.name();
         let plan = run.planned.outcome.plan().expect("a plan");
-        assert_eq!(run.sets.len(), situation.others(), "{name}");
+        assert_eq!(run.targets.len(), situation.others(), "{name}");
         assert_eq!(run.max_risk, 0.0, "{name}");
-        assert!(run.released.iter().all(Option::is_none), "{name}");
+        assert!(!run.enters(), "{name}");
         assert!(
             run.evaluation.as_ref().is_some_and(|e| e.verified()),
             "{name}"
         );
-        for sets in &run.sets {
+        for sets in run.targets.iter().map(|t| &t.sets) {
             for segment in plan.trajectory.segments() {
                 assert_eq!(sets.hard.first_contact(segment, 1e-6), None, "{name}");
             }

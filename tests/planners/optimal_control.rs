@@ -113,7 +113,11 @@ fn judged(run: &Run, change: impl Fn(&mut Vec<ForceNode>)) -> Vec<String> {
     let mut nodes = plan.trajectory.steered().expect("forces").nodes().to_vec();
     change(&mut nodes);
     let motion = Trajectory::from(Steered::new(nodes).expect("in order"));
-    words(&pipeline::judge(&run.scenario, &run.obstacles, &motion))
+    words(&pipeline::judge(
+        &run.scenario,
+        &run.obstacles().cloned().collect::<Vec<_>>(),
+        &motion,
+    ))
 }
 
 #[test]
@@ -443,7 +447,14 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     for k in 0..=1000 {
         let time = 0.1 * f64::from(k);
         let place = plan.trajectory.pose_at(time).position;
-        assert!(found.sets[0].hard.signed_distance(place, time).distance > 0.0);
+        assert!(
+            found.targets[0]
+                .sets
+                .hard
+                .signed_distance(place, time)
+                .distance
+                > 0.0
+        );
     }
 }
 

@@ -119,7 +119,7 @@ fn out_of_a_set_the_plan_goes_on_to_the_end() {
     let plan = run.planned.outcome.plan().expect("a plan");
     let off = (plan.trajectory.end().position - run.scenario.desired.end()).norm();
     assert!(plan.to_go == 0.0 && off < 1e-6, "{off}");
-    let until = run.released[0].expect("it starts inside");
+    let until = run.targets[0].released.expect("it starts inside");
     assert!(until > 0.0 && until < 20.0, "{until}");
 }
 
@@ -238,8 +238,8 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
         let run = pipeline::run(scenario);
         assert_eq!(run.level, RelaxationLevel::Inside);
         assert_eq!(faults(&document(&run)), "");
-        let until = run.released[0].expect("it is entered");
-        let hard = &run.sets[0].hard;
+        let until = run.targets[0].released.expect("it is entered");
+        let hard = &run.targets[0].sets.hard;
         let trajectory = trajectory(&run);
         let mut inside = 0;
         for time in trajectory.sample_times(0.5, 10_000) {

@@ -66,7 +66,7 @@ fn scenarios(each: u64) -> Vec<Scenario> {
 
 /// Whole sets of which the obstacles of a run are the level sets.
 fn whole_sets(run: &Run) -> Vec<&Obstacle> {
-    run.whole.iter().collect()
+    run.targets.iter().map(|t| &t.whole).collect()
 }
 
 /// Checks the claims of a plan by the obstacles' own queries at samples. This is weaker than the
@@ -86,7 +86,7 @@ fn assert_claims(name: &str, run: &Run) {
     let times: Vec<f64> = (0..=400)
         .map(|i| plan.trajectory.end_time() * f64::from(i) / 400.0)
         .collect();
-    for (i, set) in run.obstacles.iter().enumerate() {
+    for (i, set) in run.obstacles().enumerate() {
         let mut largest = 0.0_f64;
         for &time in &times {
             let position = plan.trajectory.pose_at(time).position;
@@ -96,7 +96,7 @@ fn assert_claims(name: &str, run: &Run) {
                 largest = largest.max(whole[i].risk(position, time));
             }
         }
-        let peak = run.risks[i];
+        let peak = run.targets[i].peak.expect("a plan");
         assert!(
             peak.risk >= largest - 1e-9,
             "{name}: {peak:?} below {largest}"

@@ -62,7 +62,7 @@ fn an_escape_exists_until_the_time_of_no_return_and_mostly_none_later() {
         let Some(NoReturn::At(reported)) = run.no_return() else {
             panic!("there is a time: {target:?}");
         };
-        let hard: Vec<Obstacle> = run.sets.iter().map(|s| s.hard.clone()).collect();
+        let hard: Vec<Obstacle> = run.targets.iter().map(|t| t.sets.hard.clone()).collect();
         let land_obstacle = land_obstacle(&run.scenario, &run.land);
         let asked = problem(&run.scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked).expect("a straight path");
@@ -86,16 +86,17 @@ fn a_ship_that_stands_on_escapes_at_the_latest_time() {
         let run = run(scenario(target.clone(), Compliance::Rules));
         let reported = run.planned.escape.expect("she stands on").latest;
         let land_obstacle = land_obstacle(&run.scenario, &run.land);
-        let asked = problem(&run.scenario, &run.obstacles, &land_obstacle);
+        let obstacles: Vec<Obstacle> = run.obstacles().cloned().collect();
+        let asked = problem(&run.scenario, &obstacles, &land_obstacle);
         let held = space_time::nominal_motion(&asked).expect("a straight path");
         let mut met = held
             .iter()
-            .filter_map(|s| run.obstacles[0].first_contact(s, 0.0));
+            .filter_map(|s| obstacles[0].first_contact(s, 0.0));
         let met = met.next().expect("she is in the way");
         // to starboard by a readily apparent turn within own ship's limit, every half degree
         let turns = degrees((-240..=-60).rev());
         let before = (0..).map(|k| met - 0.25 * f64::from(k));
-        let mut may_leave = before.filter(|time| escapes(&run.obstacles, &held, *time, &turns));
+        let mut may_leave = before.filter(|time| escapes(&obstacles, &held, *time, &turns));
         let latest = may_leave.next().expect("a way out");
         found.push((reported, latest));
     }

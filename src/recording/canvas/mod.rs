@@ -84,7 +84,7 @@ pub enum Palette {
 #[derive(Debug)]
 pub struct Canvas<'a> {
     pub scenario: &'a Scenario,
-    pub sets: &'a [TargetSets],
+    pub sets: Vec<&'a TargetSets>,
     /// Seconds: nothing is shown after that.
     pub end: f64,
     /// Seconds: the times at which something moves.
@@ -102,7 +102,7 @@ impl<'a> Canvas<'a> {
     /// All of `motions` is within the bounds.
     pub fn new(
         scenario: &'a Scenario,
-        sets: &'a [TargetSets],
+        sets: impl IntoIterator<Item = &'a TargetSets>,
         motions: &[ShownMotion],
         end: f64,
         palette: Palette,
@@ -113,7 +113,7 @@ impl<'a> Canvas<'a> {
         let bounds = bounds(scenario, motions, &cursor_times);
         Self {
             scenario,
-            sets,
+            sets: sets.into_iter().collect(),
             end,
             cursor_times,
             samples,

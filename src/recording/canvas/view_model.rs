@@ -27,10 +27,11 @@ impl<'a> ViewModel<'a> {
         let end = motion.end().max(desired.duration());
         let end = end.min(run.scenario.horizon);
         let palette = Palette::Targets;
+        let sets = run.targets.iter().map(|target| &target.sets);
         Self {
             run,
             motion,
-            canvas: Canvas::new(&run.scenario, &run.sets, &[motion], end, palette),
+            canvas: Canvas::new(&run.scenario, sets, &[motion], end, palette),
             conduct: run.judged_conduct(),
         }
     }

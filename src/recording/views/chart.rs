@@ -412,7 +412,7 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<
     }
     let inside = model.samples.iter().find_map(|&time| {
         let own = model.motion.pose_at(time).position;
-        let mut sets = model.run.obstacles.iter();
+        let mut sets = model.run.obstacles();
         let set = sets.find(|set| set.contains(own, time))?;
         Some((
             own,

@@ -199,7 +199,7 @@ pub fn margin_curves(model: &ViewModel) -> Vec<Series> {
         });
     }
     // level sets of an accepted risk, or ellipsoids around the others
-    let avoided: Vec<&Obstacle> = model.run.obstacles.iter().collect();
+    let avoided: Vec<&Obstacle> = model.run.obstacles().collect();
     if avoided != hard && avoided != with_domain {
         series.push(Series {
             name: "sets kept out of".to_owned(),
@@ -244,9 +244,9 @@ fn log_risks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
 /// The risks against the sets that were planned against, as the plan document reports them, and
 /// those against the hard sets where these differ.
 pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
-    let both = model.run.whole.iter().zip(model.sets).enumerate();
     let mut series = Vec::new();
-    for (index, (avoided, sets)) in both {
+    for (index, target) in model.run.targets.iter().enumerate() {
+        let (avoided, sets) = (&target.whole, &target.sets);
         let name = sets.hard.name();
         let curve = |name: String, width: f32, set: &Obstacle| Series {
             name,
@@ -273,7 +273,7 @@ pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
 /// The samples and the times of the largest risks, so that the curves reach the reported values.
 pub fn risk_times(model: &ViewModel) -> Vec<f64> {
     let mut times = model.samples.clone();
-    times.extend(model.run.risks.iter().map(|peak| peak.time));
+    times.extend(model.run.risks().into_iter().map(|peak| peak.time));
     times.sort_by(f64::total_cmp);
     times.dedup();
     times

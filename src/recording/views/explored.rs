@@ -109,9 +109,9 @@ impl<'a> Judge<'a> {
     }
 
     /// What an edge meets, when first, and the limit that it breaks. `obstacle` is an index of
-    /// [`Run::obstacles`], or behind the last for land.
+    /// [`Run::targets`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
-        let Some(set) = self.run.obstacles.get(obstacle) else {
+        let Some(set) = self.run.obstacles().nth(obstacle) else {
             let land_obstacle = self
                 .land_obstacle
                 .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land));
@@ -131,10 +131,10 @@ impl<'a> Judge<'a> {
     /// The limit of a target that an edge breaks.
     fn limit(&self, edge: &[Segment], obstacle: usize) -> String {
         let run = self.run;
-        let sets = &run.sets[obstacle];
+        let sets = &run.targets[obstacle].sets;
         let is_hard = |s: &Segment| sets.hard.first_contact(s, tolerance::DEPTH_M).is_some();
         let ship = run.scenario.targets[obstacle].ship();
-        let limit = if run.whole[obstacle] != sets.hard && !edge.iter().any(is_hard) {
+        let limit = if run.targets[obstacle].whole != sets.hard && !edge.iter().any(is_hard) {
             let role = sets.encounter.role;
             let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
             format!("its ship domain ({}{rule})", role.name())

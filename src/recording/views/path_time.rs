@@ -116,7 +116,7 @@ fn log_obstacles(
     diagram: &PathTimeDiagram,
     frame: &Frame,
 ) -> RecordingStreamResult<()> {
-    for (index, obstacle) in model.run.obstacles.iter().enumerate() {
+    for (index, obstacle) in model.run.obstacles().enumerate() {
         let outlines: Vec<Vec<[f32; 2]>> = diagram
             .obstacles
             .iter()

@@ -197,7 +197,7 @@ fn radius(style: &LineStyle) -> rerun::Radius {
 /// True where a method avoids sets that are not those of the scenario: ellipses around them, or
 /// level sets of a risk that it accepts.
 fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
-    let mut both = run.obstacles.iter().zip(sets);
+    let mut both = run.obstacles().zip(sets);
     both.any(|(kept, sets)| *kept != sets.hard && *kept != sets.with_domain)
 }
 
@@ -210,7 +210,7 @@ fn log_kept_out_of(
     [on_chart, in_volume]: &[EntityPath; 2],
 ) -> RecordingStreamResult<()> {
     let color = style::toward_background(candidate.own.color, SET_STRENGTH);
-    for set in &run.obstacles {
+    for set in run.obstacles() {
         let below = |folder: &EntityPath| folder.join(&path(&["", set.name()]));
         let name = format!("{} avoids: {}", candidate.own.name, set.name());
         let style = ships::set_style(color, ships::DOMAIN_RADIUS)

@@ -57,7 +57,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
             Some((entry, run, run.planned.path_time.as_deref()?))
         })
         .map(|(entry, run, diagram)| {
-            let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
+            let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
             let method = entry.candidate.method;
             let line = ProfileLine {
                 label: match run.planned.outcome.plan() {
@@ -321,7 +321,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
 /// Cost of a verified plan that respects the accepted risk and arrives.
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
     let run = entry.run.as_deref()?;
-    let enters = run.released.iter().any(Option::is_some);
+    let enters = run.enters();
     let is_left = run.planned.outcome.plan().is_some_and(|p| p.to_go > 0.0);
     if enters || is_left || run.max_risk > entry.candidate.max_risk {
         return None;

@@ -85,7 +85,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
         ));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {
-        let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
+        let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
         let line = ProfileLine {
             label: match plan {
                 Some(_) => "planned".to_owned(),
@@ -142,7 +142,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     // distant sets are clipped
     let within = |p: &Vector| reach.contains(*p);
     let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
-    for (index, obstacle) in run.obstacles.iter().enumerate() {
+    for (index, obstacle) in run.obstacles().enumerate() {
         for (k, time) in moments.iter().enumerate() {
             let boundary = sampled_boundary(&obstacle.section(*time));
             if boundary.iter().any(within) {
@@ -195,7 +195,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
         };
         panel.line_key("land", stroke);
     }
-    for (index, obstacle) in run.obstacles.iter().enumerate() {
+    for (index, obstacle) in run.obstacles().enumerate() {
         let stroke = Stroke {
             colour: target_colour(index),
             width: 3.0,

@@ -33,10 +33,10 @@ impl ComparedMotion {
     pub(super) fn of(run: &Run) -> Option<Self> {
         Some(Self {
             trajectory: run.planned.outcome.plan()?.trajectory.clone(),
-            obstacles: run.obstacles.clone(),
+            obstacles: run.obstacles().cloned().collect(),
             evaluation: run.evaluation.clone()?,
             safety: run.safety()?,
-            risks: run.risks.clone(),
+            risks: run.risks(),
             arrived: run.arrives(),
         })
     }
