@@ -231,7 +231,7 @@ fn control_lines(
         let names = control.enclosed_targets.join("', '");
         add(
             "sets",
-            format!("of '{names}' by the smallest ellipse around each"),
+            format!("'{names}' enclosed in the smallest ellipses"),
         );
     }
     let [first, last] = [control.start_intervals, control.intervals];
@@ -258,7 +258,7 @@ fn control_lines(
     add(
         "starts",
         format!(
-            "on {first} intervals: {feasible} of {all} led to a plan, in {steps} steps of the solver"
+            "on {first} intervals: {feasible} of {all} led to a plan, in {steps} solver iterations"
         ),
     );
     let mut names: Vec<&str> = plan.obstacles.iter().map(|o| o.name.as_str()).collect();

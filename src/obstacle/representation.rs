@@ -100,7 +100,7 @@ impl Obstacle {
         }
     }
 
-    /// Polygon that contains the section, metres: exact for polytopes and slabs, the circumscribed
+    /// Polygon that contains the section, metres: exact for polygons, the circumscribed
     /// 64-gon of an ellipse.
     pub fn outer_section(&self, time: f64) -> ConvexPolygon {
         self.section(time).outer_polygon(SECTION_SIDES)
@@ -108,7 +108,7 @@ impl Obstacle {
 
     /// The obstacle from `time` on, with a clock that starts then.
     ///
-    /// Exact for polytopes and slabs; an outer set for ellipsoids. A time below 0 or NaN counts as
+    /// Exact for polygons; an outer set for ellipses. A time below 0 or NaN counts as
     /// 0.
     pub fn remainder(&self, time: f64) -> Self {
         // negated so that a NaN counts as 0
@@ -129,7 +129,7 @@ impl Obstacle {
 
     /// The velocity obstacle as a union of convex regions.
     ///
-    /// `None` for ellipsoids: their velocity obstacle is one convex region without corners,
+    /// `None` for ellipsoids that are not flat: their velocity obstacle is one convex region without corners,
     /// [`EllipsoidObstacle::velocity_obstacle`].
     pub fn velocity_obstacles(
         &self,

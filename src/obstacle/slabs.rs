@@ -46,10 +46,10 @@ pub struct Slab {
     obstacle: Obstacle,
     /// Faces of a polytope, computed when alpha is first asked for.
     faces: OnceLock<Vec<SlabFace>>,
-    /// Displacement of the target until the slab's start, metres: with the central velocities, and
-    /// for ellipses with all velocities.
+    /// Displacement of the target until the slab's start with the central velocities, metres.
     nominal: Vector,
-    way: Option<Ellipse>,
+    /// The same with all velocities, for ellipses.
+    displacement: Option<Ellipse>,
 }
 
 impl Slab {
@@ -161,13 +161,14 @@ impl SlabObstacle {
         }
         let mut slabs: Vec<Slab> = Vec::with_capacity(sets.velocities.len());
         let (mut start, mut nominal) = (0.0, Vector::zeros());
-        let mut way = round.then(|| Ellipse::point(Vector::zeros()));
+        let mut displacement = round.then(|| Ellipse::point(Vector::zeros()));
         let mut section = sets.initial.clone();
         for set in &sets.velocities {
             let end = set.until;
             let obstacle = body(&name, &section, &set.velocities);
             let center = set.velocities.center();
-            let moved = way.map(|way| way_after(way, &set.velocities, end - start));
+            let moved = displacement
+                .map(|displacement| displacement_after(displacement, &set.velocities, end - start));
             if end.is_finite() {
                 section = obstacle.section(end - start);
             }
@@ -177,11 +178,11 @@ impl SlabObstacle {
                 obstacle,
                 faces: OnceLock::new(),
                 nominal,
-                way,
+                displacement,
             });
             if end.is_finite() {
                 nominal += center * (end - start);
-                (start, way) = (end, moved);
+                (start, displacement) = (end, moved);
             }
         }
         Self {
@@ -241,11 +242,11 @@ impl SlabObstacle {
         slab.obstacle.section(time - slab.start)
     }
 
-    /// Index of the slab at `time`; the first one before 0 and for a NaN.
     fn slab_at(&self, time: f64) -> &Slab {
         &self.slabs()[self.index_at(time)]
     }
 
+    /// Index of the slab at `time`; the first one before 0 and for a NaN.
     fn index_at(&self, time: f64) -> usize {
         let after = self.slabs().partition_point(|s| s.end <= time);
         after.min(self.slabs().len() - 1)
@@ -308,12 +309,12 @@ impl SpaceTimeObstacle for SlabObstacle {
         let slab = &self.slabs()[index];
         let elapsed = time - slab.start;
         let velocities = &self.sets().velocities[index].velocities;
-        let obstacle = match (&slab.obstacle, slab.way, &self.sets().initial) {
+        let obstacle = match (&slab.obstacle, slab.displacement, &self.sets().initial) {
             (Obstacle::Polytope(obstacle), ..) => obstacle,
-            // the section is that of one ellipsoid after a second, in which it moves all the way
-            (_, Some(way), ConvexSet::Ellipse(initial)) if time.is_finite() => {
-                let way = way_after(way, velocities, elapsed);
-                return EllipsoidObstacle::new("", *initial, way).alpha(position, 1.0);
+            // the section is that of one ellipsoid after a second, in which it moves by the displacement
+            (_, Some(displacement), ConvexSet::Ellipse(initial)) if time.is_finite() => {
+                let displacement = displacement_after(displacement, velocities, elapsed);
+                return EllipsoidObstacle::new("", *initial, displacement).alpha(position, 1.0);
             }
             _ => return 0.0,
         };
@@ -423,11 +424,11 @@ fn body(name: &str, initial: &ConvexSet, velocity: &ConvexSet) -> Obstacle {
 }
 
 /// Ellipse of least trace around a displacement and a further one with these velocities, metres.
-fn way_after(way: Ellipse, velocities: &ConvexSet, duration: f64) -> Ellipse {
+fn displacement_after(displacement: Ellipse, velocities: &ConvexSet, duration: f64) -> Ellipse {
     match velocities {
         ConvexSet::Ellipse(velocity) if duration.is_finite() => {
-            EllipsoidObstacle::new("", way, *velocity).outer_section(duration)
+            EllipsoidObstacle::new("", displacement, *velocity).outer_section(duration)
         }
-        _ => way,
+        _ => displacement,
     }
 }

@@ -67,7 +67,7 @@ pub(super) struct Attempt {
     /// Seconds, per target: nothing is claimed of its set before.
     pub released: Vec<Option<f64>>,
     pub planned: Planned,
-    /// Why the levels above have no plan.
+    /// Why the first level has no plan.
     pub why: Option<NoPlan>,
 }
 
@@ -90,12 +90,13 @@ pub(super) struct Relaxer<'a> {
 }
 
 impl Relaxer<'_> {
-    /// The levels below [`RelaxationLevel::Compliant`], in the order in which they are tried.
+    /// The attempts after the first, in the order in which they are made. Several may belong to one
+    /// level.
     ///
     /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
     /// without a plan says that the time ran out. The flag is true where ship domains are asked
     /// for. When all fail, [`Self::leaving_sets`] answers.
-    const RELAXED_LEVELS: [fn(&Self, bool) -> Option<Attempt>; 7] = [
+    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 7] = [
         Self::by_the_rules,
         Self::clear_of_domains,
         Self::clear_of_hard_sets,
@@ -127,7 +128,7 @@ impl Relaxer<'_> {
         Attempt { why, ..relaxed }
     }
 
-    /// The answer of the first of [`Self::RELAXED_LEVELS`] that has one.
+    /// The answer of the first of [`Self::ATTEMPTS`] that has one.
     fn relaxed(&self, first: Attempt, why: &NoPlan, with_domain: bool) -> Attempt {
         if matches!(
             why,
@@ -138,7 +139,7 @@ impl Relaxer<'_> {
         if !why.is_for_the_sets() {
             return first;
         }
-        let found = Self::RELAXED_LEVELS
+        let found = Self::ATTEMPTS
             .iter()
             .find_map(|plan| plan(self, with_domain));
         match found {
@@ -307,8 +308,7 @@ impl Relaxer<'_> {
         Some(best)
     }
 
-    /// [`RelaxationLevel::Inside`]: the motion that leaves every set soonest for good, or continues
-    /// where none was found. Along paths: the motion with the least harm. Without a motion the
+    /// [`RelaxationLevel::Inside`]: the motion with the least harm. Without a motion the
     /// attempt is returned unchanged.
     fn leaving_sets(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();

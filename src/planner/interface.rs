@@ -43,7 +43,7 @@ pub trait Planner: Sync {
 pub struct PlanRequest<'a> {
     /// The problem. Its obstacles are the level sets of `whole` at `max_risk`.
     pub problem: Problem<'a>,
-    /// The whole sets.
+    /// The sets before the accepted risk is applied.
     pub whole: &'a [Obstacle],
     /// Accepted risk, in `[0, 1)`.
     pub max_risk: f64,

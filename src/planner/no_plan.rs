@@ -85,7 +85,7 @@ pub enum NoPlan {
     },
     /// A motion along the path is clear of the sets, but not within the horizon.
     #[error(
-        "no motion along the path is clear of every set, that of '{target}' on the way, and at the end before the horizon of {horizon:.1} s"
+        "no motion along the path is clear of every set ('{target}' is met first) and arrives before the horizon of {horizon:.1} s"
     )]
     OutOfTime {
         /// Name of the obstacle met first on the shortest path at the greatest speed.
@@ -117,7 +117,7 @@ pub enum NoPlan {
     },
     /// The search produced no candidate, although the nominal motion meets no set.
     #[error(
-        "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: the numbers leave no digits for it"
+        "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: rounding errors are too large for these numbers"
     )]
     NoTrajectory,
     /// No initial guess of the optimal-control planner led to a motion clear of every set.

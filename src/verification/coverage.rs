@@ -27,11 +27,11 @@ use crate::tolerance;
 
 /// Parts of the known set that a set may fail to contain.
 const HULL: &str = "the hull, the margin and the uncertainty";
-const VELOCITIES: &str = "her velocities";
+const VELOCITIES: &str = "the velocities of the target";
 const INITIAL: &str = "the initial set";
 const VELOCITY: &str = "the velocity set";
 const LEVEL: &str = "the velocities at the accepted risk";
-const LEFT: &str = "where she may be when it has been left";
+const LEFT: &str = "the positions possible when own ship has left the set";
 
 /// Number of directions in which two ellipses are compared.
 pub(super) const SAMPLED_DIRECTIONS: usize = 720;

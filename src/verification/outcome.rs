@@ -91,17 +91,13 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         };
         if !asked {
             let so = format!(
-                "no part of compliance '{}' of this planner",
-                file.compliance
+                "not possible with compliance '{}' and planner '{}'",
+                file.compliance, file.planner
             );
             found.push(mismatch(&what, &relaxation.kind, so));
         }
         if relaxation.kind == "domain" && relaxation.amount == 0.0 {
-            found.push(mismatch(
-                &what,
-                "a domain drawn back by 0",
-                "nothing given up",
-            ));
+            found.push(mismatch(&what, "a domain reduced by 0", "nothing given up"));
         }
         let again = |r: &&super::file::RelaxationFile| {
             r.kind == relaxation.kind && r.target == relaxation.target

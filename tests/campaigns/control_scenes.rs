@@ -51,8 +51,8 @@ pub fn figure_9() -> Vec<KeepOut> {
     ]
 }
 
-/// Ellipsoids that each meet own ship on her way, or miss it by less than a metre, and are clear of
-/// her start.
+/// Ellipsoids that each meet own ship on its way, or miss it by less than a metre, and are clear of
+/// its start.
 pub fn random_ellipsoids(count: usize, rng: &mut ChaCha8Rng) -> Vec<KeepOut> {
     let desired = desired();
     let mut found = Vec::new();

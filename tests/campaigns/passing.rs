@@ -1,4 +1,4 @@
-//! How a trajectory passes a ship on her nominal track.
+//! How a trajectory passes a ship on its nominal track.
 
 use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;

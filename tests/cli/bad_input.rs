@@ -59,7 +59,7 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
         .collect();
     scenario += &format!("[mission]\nwaypoints = [{}]\n", zigzag.join(", "));
     for k in 0..60 {
-        // across the route from either side, so that she would be met there
+        // across the route from either side, so that it would be met there
         let (time, speed) = (f64::from(k) * 60.0 + 200.0, f64::from(k % 5) + 3.0);
         let side = if k % 2 == 0 { 1.0 } else { -1.0 };
         scenario += &format!(

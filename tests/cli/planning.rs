@@ -433,7 +433,7 @@ fn no_plan_is_an_answer() {
     }
     check(&small.to_string())
         .code(1)
-        .stdout(contains("where she may be"));
+        .stdout(contains("the positions possible"));
 }
 
 /// Behind a slower ship, on a path without a way past: clear up to the horizon, which is no plan to

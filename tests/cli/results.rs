@@ -725,7 +725,7 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     assert_eq!(of("path-time", &usual), json!([]));
     // the hulls meet
     assert_eq!(of("hold course", &usual), json!(["17(b)", "R1", "S"]));
-    // who need not hold her course has nothing to be violated
+    // a ship that need not hold its course has nothing to be violated
     let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nhold_deg = 180";
     let file = write(folder.path(), "mine.toml", text);
     let mine = compared(&["--thresholds", &file]);

@@ -110,7 +110,7 @@ fn plans_on_random_networks_pass_their_checks() {
     assert!(20 * none < read, "{told}");
 }
 
-/// A start in a set, on a network that is cut where its path meets itself: she leaves it, and
+/// A start in a set, on a network that is cut where its path meets itself: own ship leaves it, and
 /// arrives at the end.
 #[test]
 fn out_of_a_set_the_plan_goes_on_to_the_end() {

@@ -27,13 +27,13 @@ another mission | /mission/waypoints/1/north_m + 1 | arrival
 a target elsewhere | /targets/0/ship/position/north_m + 100 | encounter
 a longer target | /targets/0/ship/length_m + 200 | too small for the hull
 a target less well known | /targets/0/ship/position_std_m + 40 | too small for the hull
-a target on another course | /targets/0/ship/course_deg + 1 | too small for her velocities
-a faster target | /targets/0/ship/speed_mps + 0.1 | too small for her velocities
-more course spread | /targets/0/ship/course_spread_deg + 1 | too small for her velocities
-more speed spread | /targets/0/ship/speed_spread_mps + 0.1 | too small for her velocities
-a target that may turn | /targets/0/ship/turn_rate_deg_per_s + 0.1 | too small for her velocities
+a target on another course | /targets/0/ship/course_deg + 1 | too small for the velocities of the target
+a faster target | /targets/0/ship/speed_mps + 0.1 | too small for the velocities of the target
+more course spread | /targets/0/ship/course_spread_deg + 1 | too small for the velocities of the target
+more speed spread | /targets/0/ship/speed_spread_mps + 0.1 | too small for the velocities of the target
+a target that may turn | /targets/0/ship/turn_rate_deg_per_s + 0.1 | too small for the velocities of the target
 a set over the plan | /obstacles/0/initial_set/vertices_m/*/0 * 1.2; /obstacles/0/initial_set/vertices_m/*/1 * 5 | set of 'target'
-fewer velocities | /obstacles/0/velocity_set/vertices_mps/*/1 * 0.9 | too small for her velocities
+fewer velocities | /obstacles/0/velocity_set/vertices_mps/*/1 * 0.9 | too small for the velocities of the target
 one encounter less | /encounters/0 remove | encounters
 another side | /encounters/0/passing_side = "starboard" | passing_side
 a mission that was not fulfilled | /cost/arrived = false | cost.arrived
@@ -49,7 +49,7 @@ a slab less | /obstacles/1 remove | valid from
 the last slab less | /obstacles/last remove | valid until
 a slab elsewhere | /obstacles/1/initial_set/vertices_m/0/0 + 0.1 |
 a slab that lags | /obstacles/1/initial_set/vertices_m/*/1 + 5 | does not begin with the final section
-a target that turns faster | /targets/0/ship/turn_rate_deg_per_s * 1.2 | too small for her velocities
+a target that turns faster | /targets/0/ship/turn_rate_deg_per_s * 1.2 | too small for the velocities of the target
 "#;
 const TIMED_SETS: &str = r#"
 velocities that begin earlier | /targets/0/velocity_sets/0/until_s + -20 | too small for the velocity set
@@ -254,7 +254,7 @@ fn every_claim_of_a_document_is_held() {
             &[("domain", 1.0), ("domain", 2.0)],
             "'domain' twice",
         ),
-        ("shape", &[("domain", 0.0)], "drawn back by 0"),
+        ("shape", &[("domain", 0.0)], "reduced by 0"),
     ] {
         let mut document = clear.clone();
         document["compliance"] = json!(compliance);

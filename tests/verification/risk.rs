@@ -233,7 +233,7 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [east + half, middle[1] + half],
         [east - half, middle[1] + half]
     ]);
-    said(&lopsided, "too small for her velocities");
+    said(&lopsided, "too small for the velocities of the target");
     said(&lopsided, "the velocities at the accepted risk");
 }
 

@@ -63,7 +63,7 @@ fn unsound_documents_are_rejected() {
     }
 }
 
-/// At any risk: the set does not go where she does, and was said to be the level set.
+/// At any risk: the set does not go where the target does, and was said to be the level set.
 #[test]
 fn sets_under_forces_hold_the_velocities_at_a_risk() {
     let mut plan = document(scenario("forces/give-way.toml"));
@@ -272,7 +272,7 @@ fn what_is_entered_after_a_release_is_found() {
     assert!(checked(&plan).verified());
     for later in [3.0, 30.0] {
         let (place, time) = after_release(&plan, later);
-        // the set fast across her way
+        // the set fast across its way
         let mut set = plan.clone();
         let obstacle = &mut set["obstacles"][0];
         let from = obstacle["valid_s"][0].as_f64().expect("a start");
@@ -292,7 +292,7 @@ fn what_is_entered_after_a_release_is_found() {
             entered.is_some_and(|v| (v.time - time).abs() < 1.0),
             "{found:#?}"
         );
-        // her hull fast across her way
+        // its hull fast across its way
         let mut hull = plan.clone();
         let ship = &mut hull["targets"][0]["ship"];
         ship["position"] = json!({ "east_m": place[0], "north_m": place[1] - 50.0 * time });
@@ -375,7 +375,7 @@ fn each_target_has_its_own_clearance_in_every_view() {
 
 /// Plans that are what they say: something given up when the time was out, a node at a rounding
 /// past a whole second, ellipses and sets at the ends of the numbers, an arc of a millimetre at the
-/// end of a long way; a ship that stands on from beside her leg by a rounding; one that has arrived
+/// end of a long way; a ship that stands on from beside its leg by a rounding; one that has arrived
 /// within a set; a plan until the horizon near a ship that turns.
 #[test]
 fn sound_plans_at_the_ends_of_the_numbers_are_verified() {

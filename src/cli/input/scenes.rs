@@ -157,7 +157,6 @@ pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
         Contents::Scenario => return Scenario::read(file).map_err(|error| error.to_string()),
         Contents::Situations { format, .. } => {
             let other = match format {
-                Format::Scenario => "situations",
                 Format::Dnv => "a DNV traffic situation",
                 Format::Imazu => "Imazu's cases",
                 Format::CommonOcean => "a CommonOcean scenario",

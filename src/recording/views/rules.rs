@@ -19,7 +19,7 @@ use crate::recording::{MAP, TIMELINE, VOLUME, path};
 pub const ROLES: &str = "rules/roles";
 
 /// Strength of a colour behind white letters.
-const LANE: f32 = 0.55;
+const LANE_STRENGTH: f32 = 0.55;
 
 /// One lane of the view: states from a time on, in order of time; an empty text ends one.
 struct Lane {
@@ -38,7 +38,8 @@ impl Lane {
 
     fn add(&mut self, time: f64, text: String, color: Color) {
         self.states.push((time, text));
-        self.colors.push(style::toward_background(color, LANE));
+        self.colors
+            .push(style::toward_background(color, LANE_STRENGTH));
     }
 
     fn end(&mut self, time: f64) {
@@ -113,7 +114,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
             if !rules.contains(&each.rule) {
                 rules.push(each.rule);
             }
-            let text = format!("{name}: breaks {}", rules.join(", "));
+            let text = format!("{name}: violates {}", rules.join(", "));
             breaks.add(each.time, text, style::alarm());
         }
         if !rules.is_empty() {

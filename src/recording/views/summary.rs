@@ -9,7 +9,6 @@ use crate::evaluation::Evaluation;
 use crate::recording::SUMMARY;
 use crate::recording::canvas::{ShownMotion, ViewModel};
 use crate::recording::write::Recorder;
-use crate::scenario::Compliance;
 
 /// Logs the text, which holds at all times.
 pub fn log_summary(
@@ -29,16 +28,17 @@ fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
     let rows = rows.map(|(name, value)| format!("\n| {name} | {} |", value.replace('|', "\\|")));
+    let shown = match plan.trajectory {
+        Some(_) => graph(drawn),
+        None => "The views show own ship as if it followed the desired trajectory.".to_owned(),
+    };
     let mut parts = vec![
         format!("# {}", headline(plan)),
         format!("| | |\n|---|---|{}", rows.collect::<String>()),
-        graph(drawn),
+        shown,
         claim(model),
         key(model),
     ];
-    if plan.trajectory.is_none() {
-        parts[2] = "The views show own ship as if it followed the desired trajectory.".to_owned();
-    }
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
 }
@@ -69,10 +69,6 @@ fn claim(model: &ViewModel) -> String {
             "The plan is {safe}, and enters sets: nothing more is claimed about these than above."
         );
     }
-    let sets = match run.scenario.compliance {
-        Compliance::Shape | Compliance::Rules => "hard sets and those with ship domains",
-        Compliance::None => "hard sets",
-    };
     let ships = run.scenario.targets.iter().filter(|t| t.ship().is_some());
     let margin = format!(
         "so at least {:.0} m remain between the hulls, ",
@@ -83,10 +79,15 @@ fn claim(model: &ViewModel) -> String {
         n if n == run.scenario.targets.len() => margin,
         _ => format!("{margin}except of targets whose sets are given, "),
     };
+    let end = if run.arrives() {
+        "arrival"
+    } else {
+        "the horizon"
+    };
     format!(
-        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, \
+        "**Claimed** until {end} at {:.0} s: own ship's centre stays out of all hard sets, \
          {hulls}wherever in its initial set a target starts and however its velocity varies within \
-         its velocity set. **Not claimed:** anything after arrival, or about a target that leaves \
+         its velocity set. **Not claimed:** anything after that, or about a target that leaves \
          its sets.",
         trajectory.end_time(),
     )

@@ -1,4 +1,4 @@
-//! Writes a run or a comparison as one file.
+//! Writes a run or a comparison as one Rerun recording (`.rrd`).
 
 mod comparison;
 mod encoding;

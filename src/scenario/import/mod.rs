@@ -25,8 +25,6 @@ use crate::input::{Fault, Faults, Field, InputError, from_json, read_text};
 /// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// A scenario file.
-    Scenario,
     /// A DNV traffic situation.
     Dnv,
     /// Imazu's cases.

@@ -4,8 +4,8 @@
 //! (formulas section 7). Three facts bound its integral from below over steps of equal length:
 //! - *across* cannot shrink faster than the ship can turn toward the path and run there at full
 //!   speed;
-//! - *lag* cannot shrink faster than she can turn along the path and run there at full speed;
-//! - at every instant the ship is outside every set, so her error is at least the least error
+//! - *lag* cannot shrink faster than own ship can turn along the path and run there at full speed;
+//! - at every instant the ship is outside every set, so its error is at least the least error
 //!   outside. Her error changes at a bounded rate, so this also holds, less the rate, before and
 //!   after.
 //!
@@ -71,7 +71,7 @@ impl Bound {
         let toward = if across > 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 };
         let (inward, ahead) = (self.row(wrap(heading - toward)), self.row(heading));
         let lag = self.leg.speed * self.step * index as f64 - along;
-        // she cannot arrive before these many whole steps
+        // it cannot arrive before these many whole steps
         let at_sea = ((self.leg.length - along) / self.fastest / self.step).max(0.0) as usize;
         let across_at = |k: usize| across.abs() - inward[k];
         let lag_at = |k: usize| {
@@ -180,7 +180,7 @@ impl Bound {
 }
 
 /// Metres made good in a wished direction within `length` metres by a ship that first points `away`
-/// (radians) from it, turns at once on her smallest circle and then runs on; not below 0: she may
+/// (radians) from it, turns at once on its smallest circle and then runs on; not below 0: it may
 /// also stay. Convex in `length`.
 fn progress(away: f64, length: f64, radius: f64) -> f64 {
     let turning = length.min(away * radius);

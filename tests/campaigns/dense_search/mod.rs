@@ -1,7 +1,7 @@
 //! A search over (east, north, heading, time) that is small, slow and obviously right: what the
 //! space-time planner's cost is measured against.
 //!
-//! Own ship steps `step` seconds at a time at one of her speeds, straight on or on her smallest
+//! Own ship steps `step` seconds at a time at one of its speeds, straight on or on its smallest
 //! circle to either side. States stay continuous; of those that fall into one cell at one time only
 //! the most promising few go on. From every state that goes on the ship also tries to close: back
 //! to the desired path, recover the lag, steer to the end. What comes out is a trajectory of the

@@ -59,6 +59,11 @@ pub fn run(first: u64, count: u64, planner: Option<&str>, keep: Option<&Path>) -
     let mut outcomes: BTreeMap<(&str, String), u64> = BTreeMap::new();
     let (mut counts, mut slowest) = ([0_u64; FAULTS.len()], [(0.0, 0); 3]);
     let (mut scenes, mut seed) = (0, first);
+    for (name, _) in searoom::planner::planner_words() {
+        report.require(PLANNERS.contains(&name), || {
+            format!("no scenes of the {name} planner")
+        });
+    }
     while scenes < count {
         let text = anything(seed, planner, maps);
         if let Some(found) = best_of_tries(&text) {
