@@ -195,6 +195,8 @@ fn plans_are_verified_and_a_later_set_that_is_too_small_is_rejected() {
             ("/obstacles/1/initial_set/shape_m2/0/0", 0.99),
             ("/obstacles/1/velocity_set/shape_m2_per_s2/0/0", 0.99),
             ("/obstacles/1/velocity_set/center_mps/1", 1.01),
+            // less than a micrometre per second too slow, but a tenth of a millimetre later
+            ("/obstacles/1/velocity_set/center_mps/1", 1.0 - 1e-7),
             ("/obstacles/0/valid_s/1", 1.1),
             ("/targets/0/velocity_sets/1/shape_m2_per_s2/0/0", 1.02),
             ("/targets/0/velocity_sets/0/until_s", 0.9),

@@ -23,6 +23,7 @@ pub(crate) use distance::turned_hull::TurnedHull;
 pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
+pub(crate) use sets::moving_ellipse::shape_rounding;
 pub(crate) use sets::moving_slabs::MovingSlabs;
 pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};

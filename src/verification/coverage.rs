@@ -19,7 +19,7 @@
 
 use super::claim::Claim;
 use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
-use crate::evaluation::{SpaceTimeSet, TurnedHull, Violation};
+use crate::evaluation::{SpaceTimeSet, TurnedHull, Violation, shape_rounding};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::target::{Motion, Target, TimedVelocitySet};
@@ -179,7 +179,7 @@ fn of_ellipses(
     let mut need = |what: &str, short: f64| {
         // Negated on purpose: a NaN counts as too small.
         if !(short <= tolerance::DEPTH_M) {
-            lacks.push((format!("too small for {what}: by {short:.3e}"), from));
+            lacks.push((format!("too small for {what}: by {short:.3e} m"), from));
         }
     };
     if from > 0.0 {
@@ -211,7 +211,8 @@ fn of_ellipses(
                 };
                 let whole = whole.scaled_about_center(scale);
                 let points = outer_velocities(ship, horizon).into_iter();
-                largest(points.map(|p| whole.signed_distance(p).distance))
+                let short = largest(points.map(|p| whole.signed_distance(p).distance));
+                (short - rounding_of(&whole)) * horizon
             })),
             Motion::Sets(known) => velocities_beyond(set, &known.velocities, scale, horizon),
         };
@@ -224,19 +225,16 @@ fn of_ellipses(
     lacks
 }
 
-/// Largest excess of known velocities over the velocity ellipses of a set that hold at a common
-/// time until the horizon, m/s. The ellipses are scaled by `scale` about their centres.
-///
-/// Time intervals that overlap by rounding alone need not agree. The excess over them counts as a
-/// distance, in metres.
+/// Distance by which known velocities can exceed the velocity ellipses of a set until the horizon,
+/// metres: the excess at each time, beyond the rounding of shape matrices, times its duration. The
+/// ellipses are scaled by `scale` about their centres.
 fn velocities_beyond(
     set: &SpaceTimeSet,
     known: &[TimedVelocitySet],
     scale: f64,
     horizon: f64,
 ) -> f64 {
-    let rounding = 16.0 * f64::EPSILON * horizon;
-    let (mut most, mut way) = (f64::NEG_INFINITY, 0.0);
+    let mut excess = 0.0;
     let mut start = set.from;
     for timed in &set.sets.velocities {
         let end = (set.from + timed.until).min(horizon);
@@ -248,20 +246,21 @@ fn velocities_beyond(
         for known in known {
             let overlap = end.min(known.until) - start.max(known_start);
             known_start = known.until;
-            if overlap < 0.0 {
-                continue;
-            }
-            let short = beyond(&ellipse, &known.velocities);
+            let short = beyond(&ellipse, &known.velocities) - rounding_of(&ellipse);
             // Negated on purpose: a NaN is included.
-            if !(overlap <= rounding) {
-                most = largest([most, short].into_iter());
-            } else if !(short <= 0.0) {
-                way += overlap * short;
+            if overlap > 0.0 && !(short <= 0.0) {
+                excess += overlap * short;
             }
         }
         start = end;
     }
-    largest([most, way].into_iter())
+    excess
+}
+
+/// Largest change of an ellipse's support by the rounding of its shape matrix.
+fn rounding_of(ellipse: &Ellipse) -> f64 {
+    let [long, short] = ellipse.semi_axes().map(|axis| axis.norm());
+    shape_rounding(long, short)
 }
 
 /// Largest distance by which a set extends beyond an ellipse.

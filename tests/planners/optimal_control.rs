@@ -438,7 +438,7 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     );
     let found = run(&text);
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
-    assert!(plan_text(&found).contains("of 'box' by the smallest ellipse"));
+    assert!(plan_text(&found).contains("'box' enclosed in the smallest ellipse"));
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");
     assert_eq!(control.enclosed_targets, ["box"]);

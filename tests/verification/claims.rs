@@ -246,9 +246,13 @@ fn every_claim_of_a_document_is_held() {
         (
             "shape",
             &[("compliance", 1.0)],
-            "no part of compliance 'shape'",
+            "not possible with compliance 'shape'",
         ),
-        ("none", &[("domain", 1.0)], "no part of compliance 'none'"),
+        (
+            "none",
+            &[("domain", 1.0)],
+            "not possible with compliance 'none'",
+        ),
         (
             "shape",
             &[("domain", 1.0), ("domain", 2.0)],

@@ -12,7 +12,7 @@ use super::super::output::status::ExitStatus;
 use super::read;
 
 /// Maximum number of plan document differences listed; the rest is counted.
-const LISTED: usize = 20;
+const LISTED: usize = 40;
 
 /// Entities excluded from the row-by-row comparison: the title and the documents. Documents are
 /// compared field by field, without the planning time.

@@ -72,6 +72,17 @@ impl Term {
     }
 }
 
+/// Largest change of an ellipse's support by rounding of its shape matrix, for the semi-axes
+/// `long >= short`: some epsilons of `long² / short`, or of `long²` by the square root where
+/// `short` is smaller still.
+pub(crate) fn shape_rounding(long: f64, short: f64) -> f64 {
+    if long > 0.0 {
+        ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
+    } else {
+        0.0
+    }
+}
+
 /// Supporting line in a direction: its offset, and its outward speed.
 #[derive(Debug, Clone, Copy)]
 struct Line {
@@ -115,19 +126,24 @@ impl MovingEllipse {
     /// Largest effect of the rounding of the shape matrices on a distance at a time, metres.
     ///
     /// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of
-    /// the entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or
-    /// of `a²` by the square root where `b` is smaller still.
+    /// the entries changes `n' Q n` by some epsilons of `a²`. The section's support then changes by
+    /// [`shape_rounding`] of its own lesser semi-axis.
     pub fn rounding(&self, time: f64) -> f64 {
-        let [long, short] = [0, 1].map(|axis| {
-            let terms = self.earlier.iter();
-            let still = terms.map(|(e, factor)| e.axes[axis].norm() * factor);
-            still.sum::<f64>() + self.velocity.axes[axis].norm() * time
-        });
-        if long > 0.0 {
-            ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
-        } else {
-            0.0
+        let terms = self.earlier.iter().copied();
+        let terms = terms.chain([(self.velocity, time)]);
+        let reach = self.reach + self.velocity.root * time;
+        let [mut xx, mut xy, mut yy, mut long] = [0.0; 4];
+        for (term, factor) in terms.filter(|(term, _)| term.root > 0.0) {
+            let weight = reach * factor / term.root;
+            for axis in term.axes {
+                xx += weight * axis.x * axis.x;
+                xy += weight * axis.x * axis.y;
+                yy += weight * axis.y * axis.y;
+            }
+            long += weight * term.axes[0].norm_squared();
         }
+        let least = 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy);
+        shape_rounding(long.sqrt(), least.max(0.0).sqrt())
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {

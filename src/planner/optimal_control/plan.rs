@@ -136,7 +136,8 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
             // negated on purpose: a NaN is inside
             (!(distance >= -tolerance::LENGTH_M)).then(|| NoPlan::StartInside {
                 target: keep.set().name().to_owned(),
-                depth: -distance,
+                // the distance from a point is not defined at the point
+                depth: (-distance).max(0.0),
             })
         })
     }
