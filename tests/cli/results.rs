@@ -431,7 +431,7 @@ mod recordings {
         }
         let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
         assert!(
-            lanes.contains("target: stand-on") && lanes.contains("target: breaks"),
+            lanes.contains("target: stand-on") && lanes.contains("target: violates"),
             "{lanes}"
         );
         searoom(&["plan", scenario, "--compliance", "rules", "--rrd", file]).success();
@@ -620,8 +620,9 @@ mod recordings {
             .success()
             .stdout(contains("the same"));
         searoom(&["inspect", &first, &other]).code(1).stdout(
-            contains("encounters[0].target: \"target\" | \"turning\"")
-                .and(contains("only in the second: /chart/map/hard_sets/turning")),
+            contains("encounters[0].target: \"target\" | \"turning\"").and(contains(
+                "only in the second: /chart/map/domain_sets/turning",
+            )),
         );
         let found = document(&searoom(&["inspect", "--json", &first, &other]).code(1));
         assert_eq!(found["equal"], false);
