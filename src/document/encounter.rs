@@ -114,7 +114,7 @@ pub(crate) fn is_crossing(role: &str) -> bool {
 }
 
 /// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.
-/// Of several crossings, the one nearest in time to `tcpa` counts.
+/// Among several crossings, the one nearest in time to `tcpa` counts.
 pub(crate) fn crosses_astern(trajectory: &Trajectory, ship: &ShipTrack, tcpa: f64) -> Option<bool> {
     let relative = |ship: &ShipTrack, time: f64| {
         ship.pose_at(time)

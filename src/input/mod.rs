@@ -22,9 +22,9 @@ use std::path::{Path, PathBuf};
 pub struct Fault {
     /// The field, as in `targets[0].speed_mps`; empty if the fault concerns the whole file.
     pub path: String,
-    /// What the file contains there.
+    /// Content of the file there.
     pub found: String,
-    /// What it may contain.
+    /// Allowed content.
     pub allowed: String,
     /// Line in the file, from 1, where one can be named.
     pub line: Option<usize>,

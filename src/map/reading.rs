@@ -205,7 +205,7 @@ impl Reading<'_> {
         ))
     }
 
-    /// What was found in a faulty polygon, and what is allowed.
+    /// Fault of a polygon: the content found and the content allowed.
     fn described(&self, error: &PolygonError) -> (String, String) {
         match error {
             PolygonError::Crosses { crossing } => {

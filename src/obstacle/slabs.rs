@@ -48,7 +48,7 @@ pub struct Slab {
     faces: OnceLock<Vec<SlabFace>>,
     /// Displacement of the target until the slab's start with the central velocities, metres.
     nominal: Vector,
-    /// The same with all velocities, for ellipses.
+    /// Displacement with any of the velocities, for ellipses.
     displacement: Option<Ellipse>,
 }
 

@@ -1,4 +1,4 @@
-//! What the rest of the program knows of a planner: its facts, and what it can be asked for.
+//! Interface between planners and the rest of the program: facts and requests.
 
 use super::{Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
 use crate::obstacle::Obstacle;
@@ -10,7 +10,7 @@ use crate::vessel::Hull;
 /// Only [`Planner::facts`] and [`Planner::plan`] are required. The other methods serve relaxation
 /// levels; a planner without them skips these levels.
 pub trait Planner: Sync {
-    /// What other modules have to know of this planner.
+    /// Facts that other modules need.
     fn facts(&self) -> &'static PlannerFacts;
 
     /// Plans one problem. A plan is clear of every obstacle and keeps own ship's limits.
@@ -71,7 +71,7 @@ pub struct PlannerFacts {
     pub name: &'static str,
     /// Name in tables and figures.
     pub label: &'static str,
-    /// What it minimises.
+    /// Quantity that it minimises.
     pub minimises: Minimises,
     /// It keeps to the mission's paths and their alternatives, which are clear of land. It turns on
     /// the spot at their corners, may wait, and has a plan for every subset of the sets that it
@@ -83,7 +83,7 @@ pub struct PlannerFacts {
     pub keeps_rules: bool,
     /// It replaces sets by ellipses, whatever represents the targets.
     pub uses_ellipses: bool,
-    /// Of all requirements only the ship domains are given up, all at once.
+    /// Only ship domains are relaxed, all at once.
     pub relaxes_domains_only: bool,
     /// The time of no return is defined by its plans.
     pub has_no_return: bool,

@@ -14,7 +14,7 @@ use rerun::external::re_log_types::{
 
 use super::APPLICATION;
 
-/// What stands before the checksum in the name of its store.
+/// Prefix of the checksum in the name of its store.
 const PREFIX: &str = "checksum_";
 
 /// Length of the checksum in hexadecimal.

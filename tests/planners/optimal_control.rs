@@ -486,3 +486,18 @@ fn a_judge_without_its_ship_knows_no_plan() {
     let found = searoom::evaluation::evaluate_steered(&request, &steering);
     assert_eq!(words(&found), ["vessel"]);
 }
+
+/// Own ship starts on the only position of a target: the depth is 0, and not undefined.
+#[test]
+fn a_start_on_a_point_is_refused_with_a_number() {
+    let found = run(&with_targets(
+        r#"
+[[targets]]
+name = "point"
+initial_set = { center_m = [0.0, 0.0], shape_m2 = [[0.0, 0.0], [0.0, 0.0]] }
+velocity_set = { center_mps = [0.0, 0.0], shape_m2_per_s2 = [[0.01, 0.0], [0.0, 0.01]] }
+"#,
+    ));
+    let reason = found.reason().expect("no plan");
+    assert!(reason.contains(", 0.0 m deep"), "{reason}");
+}

@@ -281,50 +281,37 @@ fn every_claim_of_a_document_is_held() {
 /// A ship at rest on the last waypoint is neither to port nor to starboard of an arriving own ship.
 #[test]
 fn a_ship_on_the_last_waypoint_may_lie_on_either_side() {
-    let rules = r#"
+    let berth = |horizon: f64, [margin, course]: [f64; 2], at: [f64; 2], of_target: f64| {
+        let (east, north) = (at[0], at[1]);
+        format!(
+            r#"
         title = "berth"
-        horizon_s = 863.0
+        horizon_s = {horizon}
         [own_ship]
-        position = { east_m = 0.0, north_m = 0.0 }
-        course_deg = 351.0
+        position = {{ east_m = 0.0, north_m = 0.0 }}
+        course_deg = {course}
         speed_mps = 5.0
         length_m = 30.0
         beam_m = 8.0
         turning_radius_m = 100.0
-        safety_margin_m = 0.0
+        safety_margin_m = {margin}
         [mission]
-        waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }, { east_m = 1371.0, north_m = -647.0 }]
+        waypoints = [{{ east_m = 0.0, north_m = 0.0 }}, {{ east_m = 1500.0, north_m = 0.0 }},
+            {{ east_m = {east}, north_m = {north} }}]
         [[targets]]
         name = "t0"
-        position = { east_m = 1371.0, north_m = -647.0 }
-        course_deg = 136.0
+        position = {{ east_m = {east}, north_m = {north} }}
+        course_deg = {of_target}
         speed_mps = 0.0
         length_m = 60
         beam_m = 12
-    "#;
-    let shape = r#"
-        title = "berth"
-        horizon_s = 1008.0
-        [own_ship]
-        position = { east_m = 0.0, north_m = 0.0 }
-        course_deg = 90.0
-        speed_mps = 5.0
-        length_m = 30.0
-        beam_m = 8.0
-        turning_radius_m = 100.0
-        safety_margin_m = 20.0
-        [mission]
-        waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }, { east_m = 1098.0, north_m = -938.0 }]
-        [[targets]]
-        name = "t0"
-        position = { east_m = 1098.0, north_m = -938.0 }
-        course_deg = 342.0
-        speed_mps = 0.0
-        length_m = 60
-        beam_m = 12
-    "#;
+    "#
+        )
+    };
+    let rules = berth(863.0, [0.0, 351.0], [1371.0, -647.0], 136.0);
+    let shape = berth(1008.0, [20.0, 90.0], [1098.0, -938.0], 342.0);
     for (text, compliance) in [(rules, Compliance::Rules), (shape, Compliance::Shape)] {
-        let mut scenario = Scenario::parse(text).expect("a scenario");
+        let mut scenario = Scenario::parse(&text).expect("a scenario");
         scenario.compliance = compliance;
         let found = checked(&document(scenario));
         assert!(found.violations.is_empty(), "{:#?}", found.violations);

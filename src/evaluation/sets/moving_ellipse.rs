@@ -253,3 +253,26 @@ fn golden_maximum(place: f64, reach: f64, value: impl Fn(f64) -> f64) -> (f64, f
         .into_iter()
         .fold((place, value(place)), |a, b| if b.1 > a.1 { b } else { a })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    /// Two segments across one another: each is thin, their sum is not.
+    #[test]
+    fn rounding_is_that_of_the_section_and_not_of_its_parts() {
+        let segment = |a: f64, b: f64| {
+            Ellipse::new(
+                Vector::zeros(),
+                nalgebra::Matrix2::new(a * a, 0.0, 0.0, b * b),
+            )
+            .expect("a segment")
+        };
+        let crossed = MovingEllipse::new(&[(segment(1500.0, 0.0), 1.0)], &segment(0.0, 5.0));
+        assert!(crossed.rounding(0.0) > 1e-5);
+        assert!(
+            crossed.rounding(100.0) < 1e-9,
+            "{}",
+            crossed.rounding(100.0)
+        );
+    }
+}

@@ -1,4 +1,4 @@
-//! What all views of a recording share: the scenario with its sets, the times that are shown, the
+//! Data that all views of a recording share: the scenario with its sets, the times that are shown, the
 //! part of the sea that is shown, colours.
 
 mod motion;

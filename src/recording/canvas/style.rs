@@ -75,7 +75,7 @@ pub fn grey_target(index: usize) -> Color {
     rgb(GREYS[index % GREYS.len()])
 }
 
-/// The same colour at a fraction of its strength on the [`BACKGROUND`].
+/// Colour at a fraction of its strength on the [`BACKGROUND`].
 pub fn toward_background(color: Color, strength: f32) -> Color {
     let [r, g, b, _] = color.to_array();
     let mix = |c: u8, under: u8| {

@@ -12,7 +12,7 @@ const AXES: [&str; 4] = ["x", "y", "z", "w"];
 pub struct Columns {
     /// One per column.
     pub header: Vec<String>,
-    /// As long as the header; empty where there is nothing.
+    /// One value per column of the header; empty where there is none.
     pub rows: Vec<Vec<String>>,
 }
 

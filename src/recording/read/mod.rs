@@ -32,7 +32,7 @@ pub enum ReadError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system reports.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file is no recording of Searoom, or not a whole one.
@@ -40,7 +40,7 @@ pub enum ReadError {
     Broken {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// Fault that was found.
         reason: String,
     },
 }

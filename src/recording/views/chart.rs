@@ -1,4 +1,4 @@
-//! What does not move on the chart: grid, legend, desired and planned trajectory, closest points.
+//! Static parts of the chart: grid, legend, desired and planned trajectory, closest points.
 
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
 

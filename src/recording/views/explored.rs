@@ -108,7 +108,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// What an edge meets, when first, and the limit that it breaks. `obstacle` is an index of
+    /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle` is an index of
     /// [`Run::targets`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles().nth(obstacle) else {

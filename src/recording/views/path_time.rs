@@ -19,7 +19,7 @@ const AFTER: f64 = 0.15;
 /// Least number of grid lines in each direction.
 const LINES: f64 = 3.0;
 
-/// What the view shows, and how many metres one second is drawn as.
+/// Window of the view, and the number of metres that one second is drawn as.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     /// Metres.

@@ -1,4 +1,4 @@
-//! What moves on the chart: ships and the sections of their sets.
+//! Moving parts of the chart: ships and the sections of their sets.
 
 use rerun::{
     AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius,

@@ -31,7 +31,7 @@ pub enum RecordingError {
     Encode {
         /// The file that was to be written.
         path: PathBuf,
-        /// What Rerun reports.
+        /// Error of Rerun.
         source: Failure,
     },
     /// The file could not be written; nothing was left of it.
@@ -39,7 +39,7 @@ pub enum RecordingError {
     Write {
         /// The file that was to be written.
         path: PathBuf,
-        /// What the system reports.
+        /// Error of the system.
         source: std::io::Error,
     },
 }
