@@ -18,6 +18,7 @@ use campaigns::{
     path_time, wild,
 };
 use clap::{Args, Parser, Subcommand};
+use searoom::simulation::Meeting;
 
 #[derive(Parser)]
 #[command(about = "Runs a campaign over random scenes, prints its table, and checks its bounds")]
@@ -34,8 +35,14 @@ enum Campaign {
     Traffic(Scenes<3_000>),
     /// Costs against a dense search over east, north, heading and time
     DenseSearch(Scenes<200>),
-    /// Plans that keep to the rules, a quarter of each kind of encounter
-    Compliance(Scenes<12_000>),
+    /// Plans that keep to the rules, a fifth of each kind of encounter
+    Compliance {
+        #[command(flatten)]
+        scenes: Scenes<15_000>,
+        /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
+        #[arg(long)]
+        far: bool,
+    },
     /// Traffic among land, as many scenes in each of three waters
     Harbour(Scenes<100>),
     /// The path-time planner against a fine grid
@@ -92,7 +99,10 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Encounters(scenes) => encounters::run(scenes.of_each(4)),
         Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
         Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(4)),
-        Campaign::Compliance(scenes) => compliance::run(scenes.of_each(4)),
+        Campaign::Compliance { scenes, far } => {
+            let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
+            compliance::run(scenes.of_each(5), &meeting)
+        }
         Campaign::Harbour(scenes) => harbour::run(scenes.of_each(1)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
         Campaign::Control { count, starts } => {

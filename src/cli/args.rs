@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use searoom::colregs::Thresholds;
+use searoom::document::{PlanDocument, breaks};
+use searoom::pipeline::Run;
 use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
@@ -13,6 +15,7 @@ use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::input::rows;
 use super::output::products::Wanted;
+use super::output::status::ExitStatus;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
@@ -119,7 +122,7 @@ pub struct SuiteArgs {
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
     /// Plan nothing: report where ships would meet, and faults of the scenarios
-    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds"])]
+    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds", "strict"])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
     #[command(flatten)]
@@ -249,6 +252,9 @@ pub struct Shared {
     /// Risk that the plan may accept instead of the scenario's: 0 to below 1
     #[arg(long, value_name = "R", value_parser = max_risk)]
     pub max_risk: Option<f64>,
+    /// Exit status 1 also where a plan breaks a rule
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub written: Written,
 }
@@ -331,10 +337,25 @@ impl Written {
 }
 
 impl Shared {
+    /// Exit status of a run: with `--strict`, a broken rule is no plan.
+    pub fn status(&self, run: &Run, plan: &PlanDocument) -> ExitStatus {
+        let broken = breaks(&plan.encounters).is_some_and(|broken| !broken.is_empty());
+        let strict = if self.strict && broken {
+            ExitStatus::NoPlan
+        } else {
+            ExitStatus::Good
+        };
+        strict.max(ExitStatus::of(run))
+    }
+
     /// Replaces settings of the scenario; fails where the planner cannot use them.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
         if let Some(planner) = self.asked.planner {
             scenario.planner = planner;
+            // ship domains replace the rules for a planner that keeps none
+            if !planner.facts().keeps_rules && scenario.compliance == Compliance::Rules {
+                scenario.compliance = Compliance::Shape;
+            }
         }
         if let Some(search) = self.asked.search {
             scenario.search = search;

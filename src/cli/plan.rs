@@ -79,7 +79,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> ExitStatus {
                         status
                     }
                 };
-                shown.max(written).max(ExitStatus::of(&run))
+                shown.max(written).max(args.shared.status(&run, &document))
             }
             Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => {
                 output.error(&error);

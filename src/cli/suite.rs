@@ -134,7 +134,7 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
         Attempt::Run(run, notes) => {
             let plan = PlanDocument::of(&run);
             let name = file.display().to_string();
-            tally.reach(ExitStatus::of(&run));
+            tally.reach(args.shared.status(&run, &plan));
             tally.runs.push(SuiteRunDocument::of(name, &plan, notes));
             if let Err((status, error)) = products.write(&scene.found.stem, &run, &plan) {
                 tally.reach(status);

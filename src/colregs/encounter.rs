@@ -15,6 +15,8 @@ const NO_RELATIVE_SPEED: f64 = 1e-9;
 pub struct Encounter {
     /// Own ship's role.
     pub role: Role,
+    /// First instant of risk; `None` without a role.
+    pub risk: Option<Risk>,
     /// Least distance of the hulls along the desired trajectory, metres; negative in overlap.
     pub undisturbed_dcpa: f64,
     /// Time of the least distance, seconds.
@@ -34,6 +36,15 @@ pub struct Risk {
     pub target: SteadyShip,
 }
 
+impl Risk {
+    /// Seconds at which the centres are closest if both ships hold course and speed.
+    pub fn tcpa(&self) -> f64 {
+        let relative = self.own.velocity() - self.target.velocity();
+        let offset = self.target.pose.position - self.own.pose.position;
+        self.time + offset.dot(&relative) / relative.norm_squared()
+    }
+}
+
 /// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
 /// of own safety margin if that is more (docs/colregs.md 1.3).
 pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
@@ -43,7 +54,7 @@ pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
 
 /// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
 /// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
-/// [`risk_distance`] and `horizon` seconds. Searched from 0 to the horizon or the desired arrival,
+/// [`risk_distance`] and [`RiskLimits::time_of`] seconds. Searched from 0 to the horizon or the desired arrival,
 /// whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
 /// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
@@ -55,6 +66,7 @@ pub fn first_risk(
     horizon: f64,
 ) -> Option<Risk> {
     let allowed = risk_distance(own, target);
+    let soon = RiskLimits::STANDARD.time_of(own.hull.length);
     desired.legs().iter().find_map(|leg| {
         let from = leg.start_time;
         let until = leg.end_time().min(horizon);
@@ -66,7 +78,7 @@ pub fn first_risk(
         let offset = target.pose_at(from).position - leg.start;
         let closest = from + offset.dot(&relative) / (speed * speed);
         let distance = cross(relative, offset).abs() / speed;
-        let time = from.max(closest - horizon);
+        let time = from.max(closest - soon);
         if !(time < closest && time < until && distance <= allowed) {
             return None;
         }
@@ -97,6 +109,7 @@ pub fn encounter(
         .and_then(|ship| first_risk(own, desired, ship, horizon));
     let mut found = Encounter {
         role: risk.map_or(Role::None, |risk| risk.role),
+        risk,
         undisturbed_dcpa: f64::INFINITY,
         undisturbed_tcpa: 0.0,
     };
@@ -293,7 +306,7 @@ mod tests {
                     let r = other.pose_at(*t).position - x;
                     let w = leg.direction * leg.speed - other.velocity();
                     let tcpa = r.dot(&w) / w.dot(&w);
-                    tcpa > 0.0 && tcpa <= horizon && (r - w * tcpa).norm() <= 100.0
+                    tcpa > 0.0 && tcpa <= 420.0 && (r - w * tcpa).norm() <= 100.0
                 });
             match (risk, scan) {
                 (None, None) => {}

@@ -4,6 +4,7 @@
 use super::role::{Role, SteadyShip};
 use super::thresholds::{MonitorLimits, ScoreLimits};
 use crate::frame::Side;
+use crate::vessel::Hull;
 
 /// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b) (docs/colregs.md
 /// 2.2).
@@ -145,8 +146,14 @@ pub struct Encountered {
     pub role: Role,
     /// The target at t = 0.
     pub ship: SteadyShip,
-    /// Length of the target, metres.
-    pub length: f64,
+    /// Hull of the target.
+    pub hull: Hull,
+    /// Own ship when the risk began: its first course and speed.
+    pub own: SteadyShip,
+    /// Seconds at which the risk began.
+    pub latched: f64,
+    /// Seconds at which the centres are closest if both ships hold course and speed.
+    pub tcpa: f64,
 }
 
 impl Encountered {
@@ -154,7 +161,9 @@ impl Encountered {
     pub fn bow_room(&self) -> f64 {
         match self.role.duties().crossing_ahead {
             CrossingAhead::Forbidden => f64::INFINITY,
-            CrossingAhead::Far => ScoreLimits::STANDARD.room_ahead(self.length, self.ship.speed),
+            CrossingAhead::Far => {
+                ScoreLimits::STANDARD.room_ahead(self.hull.length, self.ship.speed)
+            }
             CrossingAhead::Allowed => 0.0,
         }
     }

@@ -33,10 +33,12 @@ pub struct Thresholds {
 pub struct RiskLimits {
     /// Longest time to the closest approach, seconds.
     pub time: f64,
+    /// The same for own ships of [`LARGE_M`] and more.
+    pub large_time: f64,
     /// Longest distance of the centres at the closest approach, in lengths.
     pub lengths: f64,
-    /// Distance that ends a risk, in multiples of the one that begins it.
-    pub release_factor: f64,
+    /// Distance of the hulls, in lengths, at which a target that opens is past and clear.
+    pub release_lengths: f64,
     /// Consecutive samples that must agree.
     pub evaluations: usize,
 }
@@ -88,6 +90,15 @@ pub struct ScoreLimits {
     pub hold: f64,
     /// Rule 17(a)(ii): distance in lengths at which the stand-on ship may act.
     pub stage_3_lengths: f64,
+    /// Rule 17(b): distance in lengths at which it must.
+    pub stage_4_lengths: f64,
+    /// Stage 3 of an overtaken ship: the time left to the closest approach, in lengths of way that
+    /// own ship makes good in it. The ships come near slowly, so a distance would be soon reached.
+    pub overtaken_lengths: f64,
+    /// Rule 8(a): action is in ample time up to this many seconds before the closest approach.
+    pub ample_time: f64,
+    /// The same for own ships of [`LARGE_M`] and more.
+    pub large_ample_time: f64,
 }
 
 /// Thresholds of the compliance monitors.
@@ -95,10 +106,6 @@ pub struct ScoreLimits {
 pub struct MonitorLimits {
     /// The least avoiding turn; smaller turns are small alterations.
     pub turn: f64,
-    /// Radius in target lengths of the disc that the relative velocity must not hit.
-    pub lengths: f64,
-    /// within this time, seconds.
-    pub time: f64,
     /// Time to react, seconds.
     pub react: f64,
     /// Time to manoeuvre, seconds.
@@ -109,10 +116,22 @@ impl RiskLimits {
     /// Part of [`Thresholds::STANDARD`].
     pub const STANDARD: Self = Self {
         time: 420.0,
+        large_time: 1260.0,
         lengths: 2.0,
-        release_factor: 1.5,
+        release_lengths: 1.5,
         evaluations: 2,
     };
+}
+
+impl RiskLimits {
+    /// Longest time to the closest approach for an own ship of a length, seconds.
+    pub fn time_of(&self, own_length: f64) -> f64 {
+        if own_length < LARGE_M {
+            self.time
+        } else {
+            self.large_time
+        }
+    }
 }
 
 impl ScoreLimits {
@@ -140,7 +159,20 @@ impl ScoreLimits {
         weight_ahead_crossing: 0.5,
         hold: radians_from_deg(10.0),
         stage_3_lengths: 12.0,
+        stage_4_lengths: 4.0,
+        overtaken_lengths: 28.0,
+        ample_time: 240.0,
+        large_ample_time: 720.0,
     };
+
+    /// Rule 8(a): action is in ample time up to this many seconds before the closest approach.
+    pub fn ample_time_of(&self, own_length: f64) -> f64 {
+        if own_length < LARGE_M {
+            self.ample_time
+        } else {
+            self.large_ample_time
+        }
+    }
 
     /// Distance ahead of a ship, metres, within which its course line must not be crossed.
     pub fn room_ahead(&self, length: f64, speed: f64) -> f64 {
@@ -152,12 +184,13 @@ impl MonitorLimits {
     /// Part of [`Thresholds::STANDARD`].
     pub const STANDARD: Self = Self {
         turn: radians_from_deg(20.0),
-        lengths: 3.0,
-        time: 420.0,
         react: 60.0,
         manoeuvre: 70.0,
     };
 }
+
+/// Metres: own ships of this length and more act earlier.
+pub const LARGE_M: f64 = 100.0;
 
 /// Largest error of the sum of weights.
 const WEIGHT_SUM_ERROR: f64 = 1e-9;
@@ -174,7 +207,7 @@ const FRACTION: Range = Range::between(0.0, 1.0);
 /// A number: its key in files, its range, its place. A key in degrees stands for radians here.
 type Number = (&'static str, Range, fn(&mut Thresholds) -> &mut f64);
 
-const NUMBERS: [Number; 33] = [
+const NUMBERS: [Number; 36] = [
     ("head_on_deg", DEGREES, |t| &mut t.sectors.head_on),
     ("abaft_the_beam_deg", DEGREES, |t| {
         &mut t.sectors.abaft_the_beam
@@ -182,10 +215,9 @@ const NUMBERS: [Number; 33] = [
     ("at_rest_mps", SPEED, |t| &mut t.sectors.at_rest),
     ("closing_mps", SPEED, |t| &mut t.sectors.closing),
     ("risk_time_s", SECONDS, |t| &mut t.risk.time),
+    ("large_risk_time_s", SECONDS, |t| &mut t.risk.large_time),
     ("risk_lengths", LENGTHS, |t| &mut t.risk.lengths),
-    ("release_factor", Range::between(1.0, 100.0), |t| {
-        &mut t.risk.release_factor
-    }),
+    ("release_lengths", LENGTHS, |t| &mut t.risk.release_lengths),
     ("collision_lengths", LENGTHS, |t| {
         &mut t.score.collision_lengths
     }),
@@ -223,9 +255,15 @@ const NUMBERS: [Number; 33] = [
     }),
     ("hold_deg", DEGREES, |t| &mut t.score.hold),
     ("stage_3_lengths", LENGTHS, |t| &mut t.score.stage_3_lengths),
+    ("stage_4_lengths", LENGTHS, |t| &mut t.score.stage_4_lengths),
+    ("overtaken_lengths", LENGTHS, |t| {
+        &mut t.score.overtaken_lengths
+    }),
+    ("ample_time_s", SECONDS, |t| &mut t.score.ample_time),
+    ("large_ample_time_s", SECONDS, |t| {
+        &mut t.score.large_ample_time
+    }),
     ("monitor_turn_deg", DEGREES, |t| &mut t.monitor.turn),
-    ("monitor_lengths", LENGTHS, |t| &mut t.monitor.lengths),
-    ("monitor_time_s", SECONDS, |t| &mut t.monitor.time),
     ("react_s", SECONDS, |t| &mut t.monitor.react),
     ("manoeuvre_s", SECONDS, |t| &mut t.monitor.manoeuvre),
 ];
@@ -394,6 +432,13 @@ fn disagreements(read: &Thresholds, faults: &Faults) {
                 format_args!("more than {lower} = {low}"),
             ));
         }
+    }
+    if !(s.stage_4_lengths < s.stage_3_lengths) {
+        faults.note(Fault::new(
+            "stage_3_lengths",
+            s.stage_3_lengths,
+            format_args!("more than stage_4_lengths = {}", s.stage_4_lengths),
+        ));
     }
     let sum = s.weight_least + s.weight_near_miss + s.weight_collision;
     if !((sum - 1.0).abs() <= WEIGHT_SUM_ERROR) {

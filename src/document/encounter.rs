@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::finite;
 use crate::colregs::Role;
-use crate::colregs::compliance::{ComplianceReport, Measure};
+use crate::colregs::compliance::{ComplianceReport, Measure, MonitorVerdict};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
 use crate::target::ShipTrack;
@@ -71,6 +71,37 @@ pub struct ConductDocument {
     pub scores: BTreeMap<String, f64>,
     pub breaches: Vec<BreachDocument>,
     pub monitors: Vec<MonitorDocument>,
+    /// Null without a role.
+    #[serde(default)]
+    pub manoeuvre: Option<ManoeuvreDocument>,
+}
+
+/// Own ship's alterations in its first role toward a target, until the closest approach.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ManoeuvreDocument {
+    /// Time from the first alteration to the closest approach that it changes; null without one.
+    pub lead_s: Option<f64>,
+    pub turns: usize,
+    pub smallest_turn_deg: Option<f64>,
+    pub speed_changes: usize,
+}
+
+/// The rules and monitors that a plan breaks toward any target, sorted, each once. `None` where
+/// nothing is judged: without a plan, and without a target that is a ship.
+pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
+    let judged = || encounters.iter().filter_map(|e| e.conduct.as_ref());
+    judged().next()?;
+    let mut broken: Vec<&str> = judged()
+        .flat_map(|conduct| {
+            let violated = conduct.monitors.iter();
+            let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.name());
+            let rules = conduct.breaches.iter().map(|breach| breach.rule.as_str());
+            rules.chain(violated.map(|m| m.monitor.as_str()))
+        })
+        .collect();
+    broken.sort_unstable();
+    broken.dedup();
+    Some(broken)
 }
 
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
@@ -171,6 +202,12 @@ impl ConductDocument {
                 .collect(),
             breaches: breaches.collect(),
             monitors: monitors.collect(),
+            manoeuvre: conduct.manoeuvre.map(|m| ManoeuvreDocument {
+                lead_s: m.lead.filter(|lead| lead.is_finite()),
+                turns: m.turns,
+                smallest_turn_deg: m.smallest_turn.map(deg_from_radians),
+                speed_changes: m.speed_changes,
+            }),
         }
     }
 }

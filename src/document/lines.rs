@@ -2,8 +2,8 @@
 //! recording.
 
 use super::{
-    ControlDocument, CostDocument, EncounterDocument, EscapeDocument, PlanDocument,
-    RelaxationDocument,
+    ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
+    PlanDocument, RelaxationDocument,
 };
 use crate::evaluation::facts;
 use crate::text::{printable, signed, square_metres, tenths};
@@ -88,7 +88,7 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
 /// Time until which own ship holds course and speed, and the subsequent manoeuvre.
 fn stand_on(escape: &EscapeDocument) -> String {
     let EscapeDocument {
-        latest_s,
+        held_until_s,
         turn_deg,
         speed_mps,
         ..
@@ -101,7 +101,7 @@ fn stand_on(escape: &EscapeDocument) -> String {
         }
     };
     format!(
-        "course and speed are held until {latest_s:.1} s, the latest time at which an escape is known to be clear: {turn}{speed_mps:.2} m/s"
+        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: {turn}{speed_mps:.2} m/s"
     )
 }
 
@@ -141,6 +141,9 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
         let scores = scores.map(|(name, score)| format!("{} {score:.2}", name.replace('_', " ")));
         let scores = scores.collect::<Vec<_>>().join(", ");
         add("", format!("scores: {scores}"));
+        if let Some(manoeuvre) = &conduct.manoeuvre {
+            add("", manoeuvre_text(manoeuvre));
+        }
         for breach in &conduct.breaches {
             let (rule, time, what) = (&breach.rule, breach.t_s, &breach.what);
             add("", format!("violates {rule} at {time:.0} s: {what}"));
@@ -161,6 +164,30 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
             );
         }
     }
+}
+
+/// The manoeuvre as a navigator looks at it.
+fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
+    let count = |count: usize, what: &str| match count {
+        0 => format!("no {what}"),
+        1 => format!("1 {what}"),
+        _ => format!(
+            "{count} {}",
+            what.replacen("change", "changes", 1)
+                .replace("turn", "turns")
+        ),
+    };
+    let first = match manoeuvre.lead_s {
+        None => "no alteration".to_owned(),
+        Some(lead) => format!("first alteration {lead:.0} s before the closest approach"),
+    };
+    let smallest = match manoeuvre.smallest_turn_deg {
+        Some(degrees) if manoeuvre.turns > 0 => format!(" of {degrees:.0}° or more"),
+        _ => String::new(),
+    };
+    let turns = count(manoeuvre.turns, "turn");
+    let speeds = count(manoeuvre.speed_changes, "change of speed");
+    format!("manoeuvre: {first}, {turns}{smallest}, {speeds}")
 }
 
 fn cost_lines(

@@ -28,7 +28,8 @@ pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
 pub use encounter::{
-    BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
+    BreachDocument, ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument,
+    RoleDocument, breaks,
 };
 pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};

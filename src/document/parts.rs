@@ -54,7 +54,7 @@ pub struct RelaxationDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EscapeDocument {
     pub policy: String,
-    pub latest_s: f64,
+    pub held_until_s: f64,
     pub first_segment: usize,
     pub turn_deg: f64,
     pub speed_mps: f64,

@@ -216,10 +216,10 @@ fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
 
 fn escape(run: &Run) -> Option<EscapeDocument> {
     let (escape, plan) = (run.planned.escape?, run.planned.outcome.plan()?);
-    let held = |s: &&Segment| s.start_time < escape.latest - tolerance::TIME_S;
+    let held = |s: &&Segment| s.start_time < escape.held_until - tolerance::TIME_S;
     Some(EscapeDocument {
         policy: "stand-on-hold".to_owned(),
-        latest_s: escape.latest,
+        held_until_s: escape.held_until,
         first_segment: plan.trajectory.segments().iter().take_while(held).count(),
         turn_deg: clockwise_deg(escape.turn),
         speed_mps: escape.speed,

@@ -130,7 +130,13 @@ impl Run {
     /// The outcome in words, for reports.
     pub fn word(&self) -> String {
         let ended = Verdict::of(self).word();
-        outcome_word(ended, self.safety(), self.greatest_risk())
+        let gives_up_rules = |r: &Relaxation| matches!(r, Relaxation::Compliance { .. });
+        match outcome_word(ended, self.safety(), self.greatest_risk()) {
+            word if word == "relaxed" && self.relaxations.iter().any(gives_up_rules) => {
+                "not by the rules".to_owned()
+            }
+            word => word,
+        }
     }
 
     /// The title, the outcome, and for a plan whether it is verified and safe.

@@ -59,9 +59,17 @@ fn asking<'a>(
             pose: track.pose,
             speed: track.speed,
         };
-        let length = track.hull.length;
+        let risk = sets.encounter.risk?;
+        let encountered = Encountered {
+            role,
+            ship,
+            hull: track.hull,
+            own: risk.own,
+            latched: risk.time,
+            tcpa: risk.tcpa(),
+        };
         let asks = !Duty::of(std::iter::once(role)).is_none();
-        asks.then_some((sets, Encountered { role, ship, length }))
+        asks.then_some((sets, encountered))
     })
 }
 
@@ -72,8 +80,8 @@ impl Run {
     /// trajectory and the nominal track alone. O(targets × seconds), less for distant targets.
     pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
         let plan = self.planned.outcome.plan();
-        let own = self.scenario.own_ship.hull;
-        let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own));
+        let own = &self.scenario.own_ship;
+        let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own.hull, own.speed));
         let judge = |target: &crate::target::Target| {
             Some(ComplianceReport::along(
                 track.as_ref()?,

@@ -98,8 +98,7 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
     };
     match &target.motion {
         Motion::Ship(ship) => {
-            let risk = colregs::first_risk(own, desired, ship, horizon);
-            let shapes = colregs::shapes(own, ship, risk.as_ref(), horizon);
+            let shapes = colregs::shapes(own, ship, encounter.risk.as_ref(), horizon);
             let sets = Uncertainty {
                 initial: shapes.hard.clone().into(),
                 velocities: ship.outer_velocity_sets(ship.turn_rate, horizon),

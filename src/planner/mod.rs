@@ -205,12 +205,12 @@ impl Plan {
     }
 }
 
-/// Escape manoeuvre of a stand-on ship. Own ship holds course and speed until `latest`, then
+/// Escape manoeuvre of a stand-on ship. Own ship holds course and speed until `held_until`, then
 /// escapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Escape {
-    /// Latest time at which an escape is known to be clear, seconds.
-    pub latest: f64,
+    /// End of the hold, seconds. The escape from there on is clear of every set.
+    pub held_until: f64,
     /// First turn, radians, to port positive; 0 where the escape reduces speed.
     pub turn: f64,
     /// Speed at the start of the escape, m/s.

@@ -1,7 +1,7 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::TIME_COLUMN;
-use super::table::{Grid, Styled, Tone, in_cell, or_dash, plain, verdict, verified, yes_or_no};
+use super::plan::{TIME_COLUMN, rules_broken};
+use super::table::{Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
@@ -93,11 +93,9 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
         ),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
         yes_or_no(safe),
-        match &entry.breaks {
-            None => or_dash(None),
-            Some(rules) if rules.is_empty() => ("nothing".to_owned(), Tone::Good),
-            Some(rules) => (rules.join(", "), Tone::Fair),
-        },
+        rules_broken(
+            (entry.breaks.as_ref()).map(|rules| rules.iter().map(String::as_str).collect()),
+        ),
     ]
 }
 

@@ -1,8 +1,9 @@
 //! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
-use super::table::{Grid, Styled, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
-    EncounterDocument, PlanDocument, SuiteRunDocument, headline, met, passing, plan_lines, turn,
+    EncounterDocument, PlanDocument, SuiteRunDocument, breaks, headline, met, passing, plan_lines,
+    turn,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -31,12 +32,13 @@ pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
             "delay\n[s]",
             "clearance\n[m]",
             "risk",
+            "breaks",
             "nodes\nexpanded",
             TIME_COLUMN,
             "verified",
             "safe",
         ],
-        numbers: 5..11,
+        numbers: 5..12,
         rows: runs.iter().map(suite_row).collect(),
     }
 }
@@ -68,6 +70,7 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
         or_dash(cost.and_then(|c| c.delay_s).map(signed)),
         or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
         or_dash(risks.max_by(f64::total_cmp).map(risk_figure)),
+        rules_broken(breaks(&run.encounters)),
         or_dash(run.search_stats.map(|stats| stats.expanded.to_string())),
         or_dash(
             run.timing
@@ -76,6 +79,15 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
         verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
         yes_or_no(cost.map(|_| run.safe)),
     ]
+}
+
+/// The broken rules of both judges.
+pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
+    match broken {
+        None => or_dash(None),
+        Some(broken) if broken.is_empty() => ("none".to_owned(), Tone::Good),
+        Some(broken) => (broken.join(", "), Tone::Bad),
+    }
 }
 
 /// Formats the verdict and the costs of a run in aligned lines.
@@ -122,7 +134,6 @@ pub fn no_return_reason(run: &Run) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::Tone;
     use super::*;
     use crate::document::NOT_APPLICABLE;
     use crate::pipeline;

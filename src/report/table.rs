@@ -106,7 +106,7 @@ pub(super) fn verdict(word: &str) -> Styled {
     let tone = match word {
         _ if word.contains("deadline") => Tone::Bad,
         "solved" | "clear" => Tone::Good,
-        "relaxed" => Tone::Fair,
+        "relaxed" | "not by the rules" => Tone::Fair,
         "not applicable" => Tone::Plain,
         _ if word.starts_with("at risk") => Tone::Fair,
         _ => Tone::Bad,

@@ -77,6 +77,14 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         own_ship,
     ) = (mission?, own_ship?);
     let mean_speed = desired.length() / desired.duration();
+    let kind = planner.kind.unwrap_or(DEFAULT_PLANNER);
+    let tracked =
+        (targets.iter().flatten()).any(|target: &crate::target::Target| target.ship().is_some());
+    let default_compliance = if kind.facts().keeps_rules && tracked {
+        Compliance::Rules
+    } else {
+        Compliance::Shape
+    };
     Some(Scenario {
         title: title?.to_owned(),
         horizon: horizon?,
@@ -86,11 +94,11 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         desired,
         alternatives,
         targets: targets?,
-        planner: planner.kind.unwrap_or(DEFAULT_PLANNER),
+        planner: kind,
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
         settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),
         search: planner.search.unwrap_or(SearchKind::AStar),
-        compliance: planner.compliance.unwrap_or(Compliance::Shape),
+        compliance: planner.compliance.unwrap_or(default_compliance),
         max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
         thresholds: None,

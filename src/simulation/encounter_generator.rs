@@ -19,8 +19,6 @@ use crate::vessel::{Hull, OwnShip};
 const OWN_SPEED: f64 = 5.0;
 /// m/s, own ship's finite set of speeds.
 const OWN_SPEEDS: [f64; 3] = [2.5, 5.0, 6.0];
-/// Metres: length of the straight desired path, on which the slowest overtaking ends.
-const PATH_LENGTH: f64 = 2500.0;
 /// Metres, smallest turning radius.
 const TURNING_RADIUS: f64 = 100.0;
 /// Own hull.
@@ -30,15 +28,11 @@ const OWN_HULL: Hull = Hull {
 };
 /// Metres between hulls.
 const SAFETY_MARGIN: f64 = 20.0;
-/// Seconds.
-const HORIZON: f64 = 1000.0;
 /// m²/s².
 const TIME_WEIGHT: f64 = 25.0;
 /// Wall-clock seconds of one plan, far more than needed: outcomes must not depend on it.
 const DEADLINE: f64 = 60.0;
 
-/// Seconds from the start to the closest approach on nominal tracks.
-const MEETING_TIME: RangeInclusive<f64> = 100.0..=220.0;
 /// Metres.
 const TARGET_LENGTH: RangeInclusive<f64> = 30.0..=100.0;
 /// Length over beam.
@@ -65,6 +59,33 @@ const EARLIER: f64 = 30.0;
 /// Draws of one target before the generator gives up on its kind.
 const MAX_DRAWS: usize = 10_000;
 
+/// When the ships of random encounters meet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Meeting {
+    /// Seconds from the start to the closest approach on nominal tracks.
+    pub time: RangeInclusive<f64>,
+    /// Metres: length of the straight desired path, on which the slowest overtaking ends.
+    pub path_length: f64,
+    /// Seconds.
+    pub horizon: f64,
+}
+
+impl Meeting {
+    /// The risk exists when the scene begins: 100 to 220 s before the closest approach.
+    pub const NEAR: Self = Self {
+        time: 100.0..=220.0,
+        path_length: 2500.0,
+        horizon: 1000.0,
+    };
+
+    /// The risk arises later: 300 to 900 s before the closest approach.
+    pub const FAR: Self = Self {
+        time: 300.0..=900.0,
+        path_length: 7500.0,
+        horizon: 3000.0,
+    };
+}
+
 /// Kind of encounter: own ship's role toward the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EncounterKind {
@@ -76,11 +97,22 @@ pub enum EncounterKind {
     StandOn,
     /// Own ship comes up from astern.
     Overtaking,
+    /// The target comes up from astern.
+    Overtaken,
 }
 
 impl EncounterKind {
     /// Every kind.
-    pub const ALL: [Self; 4] = [Self::HeadOn, Self::GiveWay, Self::StandOn, Self::Overtaking];
+    pub const ALL: [Self; 5] = [
+        Self::HeadOn,
+        Self::GiveWay,
+        Self::StandOn,
+        Self::Overtaking,
+        Self::Overtaken,
+    ];
+
+    /// The kinds of random traffic.
+    const TRAFFIC: [Self; 4] = [Self::HeadOn, Self::GiveWay, Self::StandOn, Self::Overtaking];
 
     /// Own ship's role toward the target.
     pub fn role(self) -> Role {
@@ -89,6 +121,7 @@ impl EncounterKind {
             Self::GiveWay => Role::GiveWay,
             Self::StandOn => Role::StandOn,
             Self::Overtaking => Role::Overtaking,
+            Self::Overtaken => Role::Overtaken,
         }
     }
 
@@ -104,14 +137,17 @@ impl EncounterKind {
             Self::GiveWay => HEAD_ON..=ABAFT,
             Self::StandOn => -ABAFT..=-HEAD_ON,
             Self::Overtaking => -OVERTAKEN_BEARING..=OVERTAKEN_BEARING,
+            Self::Overtaken => PI - OVERTAKEN_BEARING..=PI + OVERTAKEN_BEARING,
         }
     }
 
-    /// Target speeds, m/s: half to one and a half of own speed; 1.5–3.2 m/s less when overtaken.
+    /// Target speeds, m/s: half to one and a half of own speed; 1.5–3.2 m/s less
+    /// when overtaken, and more when overtaking.
     fn speeds(self) -> RangeInclusive<f64> {
         match self {
             Self::HeadOn | Self::GiveWay | Self::StandOn => 0.5 * OWN_SPEED..=1.5 * OWN_SPEED,
             Self::Overtaking => OWN_SPEED - 3.2..=OWN_SPEED - 1.5,
+            Self::Overtaken => OWN_SPEED + 1.5..=OWN_SPEED + 3.2,
         }
     }
 
@@ -119,19 +155,19 @@ impl EncounterKind {
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);
-        if bearing.abs() > ABAFT {
-            return false;
-        }
-        if aspect.abs() > ABAFT {
-            let course = wrap(target.heading - own.heading);
-            return self == Self::Overtaking && course.abs() <= OVERTAKEN_COURSE;
+        let along = wrap(target.heading - own.heading).abs() <= OVERTAKEN_COURSE;
+        match (bearing.abs() > ABAFT, aspect.abs() > ABAFT) {
+            (true, true) => return false,
+            (true, false) => return self == Self::Overtaken && along,
+            (false, true) => return self == Self::Overtaking && along,
+            (false, false) => {}
         }
         let head_on = bearing.abs().max(aspect.abs()) <= HEAD_ON;
         match self {
             Self::HeadOn => head_on,
             Self::GiveWay => !head_on && bearing > 0.0 && aspect < 0.0,
             Self::StandOn => !head_on && bearing < 0.0 && aspect > 0.0,
-            Self::Overtaking => false,
+            Self::Overtaking | Self::Overtaken => false,
         }
     }
 }
@@ -180,10 +216,20 @@ pub fn random_encounter(
     seed: u64,
     placement: Placement,
 ) -> Result<RandomEncounter, GeneratorError> {
+    random_meeting(kind, seed, placement, &Meeting::NEAR)
+}
+
+/// [`random_encounter`] with another time of meeting.
+pub fn random_meeting(
+    kind: EncounterKind,
+    seed: u64,
+    placement: Placement,
+    meeting: &Meeting,
+) -> Result<RandomEncounter, GeneratorError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(kind as u64);
     let title = format!("{} {seed}", kind.name());
-    scene(title, vec![kind], placement, &mut rng)
+    scene(title, vec![kind], placement, meeting, &mut rng)
 }
 
 /// Own ship and `count` targets of random kinds, each on a collision course with own ship on its
@@ -194,14 +240,16 @@ pub fn random_traffic(
     placement: Placement,
 ) -> Result<RandomEncounter, GeneratorError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream((EncounterKind::ALL.len() + count) as u64);
+    let kinds = EncounterKind::TRAFFIC;
+    rng.set_stream((kinds.len() + count) as u64);
     let kinds = (0..count)
-        .map(|_| EncounterKind::ALL[rng.random_range(0..EncounterKind::ALL.len())])
+        .map(|_| kinds[rng.random_range(0..kinds.len())])
         .collect();
     scene(
         format!("{count} targets {seed}"),
         kinds,
         placement,
+        &Meeting::NEAR,
         &mut rng,
     )
 }
@@ -210,6 +258,7 @@ fn scene(
     title: String,
     kinds: Vec<EncounterKind>,
     placement: Placement,
+    meeting: &Meeting,
     rng: &mut ChaCha8Rng,
 ) -> Result<RandomEncounter, GeneratorError> {
     let mut rejected = 0;
@@ -220,7 +269,7 @@ fn scene(
             draws: MAX_DRAWS,
         };
         let (misses, ship) = (0..MAX_DRAWS)
-            .find_map(|misses| Some((misses, draw(kind, rng)?)))
+            .find_map(|misses| Some((misses, draw(kind, meeting, rng)?)))
             .ok_or(exhausted)?;
         rejected += misses;
         ships.push(ship);
@@ -243,12 +292,12 @@ fn scene(
         }),
         representation: Representation::Polytope,
     });
-    let waypoints = [Vector::zeros(), Vector::new(PATH_LENGTH, 0.0)];
+    let waypoints = [Vector::zeros(), Vector::new(meeting.path_length, 0.0)];
     let waypoints = waypoints.map(|w| origin.world_coordinates(w));
     Ok(RandomEncounter {
         scenario: Scenario {
             title,
-            horizon: HORIZON,
+            horizon: meeting.horizon,
             own_ship: OwnShip {
                 pose: origin,
                 speed: OWN_SPEED,
@@ -280,8 +329,8 @@ fn scene(
 
 /// One target in the frame of own ship's start. `None` if the draw is not of the kind, now and
 /// [`EARLIER`], or begins inside the hard set.
-fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
-    let meeting_time = rng.random_range(MEETING_TIME);
+fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
+    let meeting_time = rng.random_range(meeting.time.clone());
     let bearing = rng.random_range(kind.bearings());
     let speed = rng.random_range(kind.speeds());
     let length = rng.random_range(TARGET_LENGTH);

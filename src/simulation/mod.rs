@@ -5,5 +5,6 @@ mod encounter_generator;
 
 pub use behaviour::{Behaviour, Signal};
 pub use encounter_generator::{
-    EncounterKind, GeneratorError, Placement, RandomEncounter, random_encounter, random_traffic,
+    EncounterKind, GeneratorError, Meeting, Placement, RandomEncounter, random_encounter,
+    random_meeting, random_traffic,
 };

@@ -1,10 +1,9 @@
 //! Checks the escape manoeuvre of a stand-on ship against its motion.
 //!
-//! Own ship holds course and speed until the latest time from which a clear escape is known, and
-//! escapes then. The motion contains both. Its clearances are checked like those of any other
+//! Own ship holds course and speed while it must and a clear escape is known, and escapes then. The motion contains both. Its clearances are checked like those of any other
 //! motion. This module checks the hold of course and speed, the time at which it ends, and the
 //! first action of the escape. It also checks that all sets are valid during the escape, and that
-//! holding on would have entered something. It does not check that no later escape exists.
+//! holding on would have entered something.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
@@ -45,12 +44,12 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
         ));
         return found;
     };
-    let latest = escape.latest_s;
+    let latest = escape.held_until_s;
     let Some((hold, away)) = parted(segments, escape) else {
         let so = segments.get(escape.first_segment).map(|s| s.start_time);
         let so = so.map_or("no segment".to_owned(), |t| format!("a start at {t} s"));
         let said = format!("{latest} s, segment {}", escape.first_segment);
-        found.push(mismatch("escape.latest_s, first_segment", said, so));
+        found.push(mismatch("escape.held_until_s, first_segment", said, so));
         return found;
     };
     let at = |violation: Violation| Violation {
@@ -87,7 +86,7 @@ fn parted<'s>(
 ) -> Option<(&'s [Segment], &'s [Segment])> {
     let (hold, away) = segments.split_at_checked(escape.first_segment)?;
     let begins = away.first()?.start_time;
-    near(begins, escape.latest_s).then_some((hold, away))
+    near(begins, escape.held_until_s).then_some((hold, away))
 }
 
 /// Returns true where own ship starts on the first leg at the desired course, with the desired
@@ -133,7 +132,7 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
     Some(Violation {
         time: wrong.start_time,
         ..mismatch(
-            "escape.latest_s",
+            "escape.held_until_s",
             "course and speed are held",
             format!("{} m/s, {} rad/s", wrong.speed, wrong.turn_rate),
         )

@@ -206,7 +206,7 @@ pub(super) struct EncounterFile {
 #[derive(Debug, Deserialize)]
 pub(super) struct EscapeFile {
     pub policy: String,
-    pub latest_s: f64,
+    pub held_until_s: f64,
     pub first_segment: usize,
     pub turn_deg: f64,
     pub speed_mps: f64,

@@ -447,7 +447,7 @@ mod recordings {
             "{lanes}"
         );
         let whole = document(&searoom(&["inspect", "--json", file]).success());
-        assert!(whole["escape"]["latest_s"].is_f64(), "{whole}");
+        assert!(whole["escape"]["held_until_s"].is_f64(), "{whole}");
     }
 
     /// What `--no-return` adds to the document is in the recording, too.

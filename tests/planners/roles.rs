@@ -10,6 +10,7 @@ fn role(kind: EncounterKind) -> Role {
         EncounterKind::GiveWay => Role::GiveWay,
         EncounterKind::StandOn => Role::StandOn,
         EncounterKind::Overtaking => Role::Overtaking,
+        EncounterKind::Overtaken => Role::Overtaken,
     }
 }
 

@@ -140,9 +140,9 @@ fn what_only_some_plans_have_is_held_too() {
 }
 
 const ESCAPE: &str = r#"
-later | /escape/latest_s + 1 | escape.latest_s
-earlier | /escape/latest_s + -1 | escape.latest_s
-another segment | /escape/first_segment = 2 | escape.latest_s
+later | /escape/held_until_s + 1 | escape.held_until_s
+earlier | /escape/held_until_s + -1 | escape.held_until_s
+another segment | /escape/first_segment = 2 | escape.held_until_s
 a segment that is not there | /escape/first_segment = 99 | no segment
 another turn | /escape/turn_deg * 1.01 | escape.turn_deg
 another speed | /escape/speed_mps * 1.01 | escape.speed_mps
@@ -156,7 +156,7 @@ a target that is nowhere near | /obstacles/0/initial_set/vertices_m/*/1 + 9000 |
 #[test]
 fn an_escape_is_what_it_is_said_to_be() {
     let original = stand_on();
-    let latest = original["escape"]["latest_s"].as_f64().expect("a time");
+    let latest = original["escape"]["held_until_s"].as_f64().expect("a time");
     assert!(latest > 60.0 && original["escape"]["turn_deg"].as_f64() >= Some(30.0));
     assert_rejected(&original, ESCAPE);
     let altered = |change: &dyn Fn(&mut Value), word: &str| {
@@ -169,7 +169,7 @@ fn an_escape_is_what_it_is_said_to_be() {
     altered(
         &|d| {
             *at(d, "/escape/first_segment") = json!(2);
-            *at(d, "/escape/latest_s") = next.clone();
+            *at(d, "/escape/held_until_s") = next.clone();
         },
         "course and speed are held",
     );

@@ -1,8 +1,9 @@
 //! Assessment of own ship's compliance with the collision regulations, from trajectories alone.
 //!
 //! `score` computes the scores of the literature and the rule violations; `monitor` evaluates the
-//! rules as formulas of temporal logic. Both use the [`EncounterSamples`], the sectors of roles and
-//! the thresholds, which differ between sources. They share no formula, so they may disagree.
+//! rules as formulas of temporal logic. Both use the [`EncounterSamples`], the [`roles`] that last
+//! until the target is past and clear, and the thresholds, which differ between sources. They share
+//! no other formula, so they may disagree.
 
 mod monitor;
 mod role_intervals;
@@ -13,7 +14,8 @@ pub use monitor::{Measure, MonitorResult, MonitorVerdict, monitors};
 pub use role_intervals::{RoleInterval, roles};
 pub use samples::EncounterSamples;
 pub(crate) use samples::OwnSamples;
-pub use score::{Scores, scores};
+pub use score::Scores;
+use score::scores;
 
 use super::Thresholds;
 use crate::target::ShipTrack;
@@ -40,6 +42,23 @@ pub struct ComplianceReport {
     pub violations: Vec<RuleViolation>,
     /// Results of the monitors over the whole encounter.
     pub monitors: [MonitorResult; 6],
+    /// The manoeuvre in the first role; `None` without a role.
+    pub manoeuvre: Option<Manoeuvre>,
+}
+
+/// What a navigator looks at: own ship's alterations from the beginning of its role to the closest
+/// approach of the hulls.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Manoeuvre {
+    /// Seconds from the first alteration to the closest approach that it changes; `None` without
+    /// an alteration.
+    pub lead: Option<f64>,
+    /// Number of alterations of course of more than 2°.
+    pub turns: usize,
+    /// The smallest of them, radians; `None` without one.
+    pub smallest_turn: Option<f64>,
+    /// Number of changes of speed by more than 2 % of the ordered speed.
+    pub speed_changes: usize,
 }
 
 impl ComplianceReport {
@@ -47,25 +66,25 @@ impl ComplianceReport {
     /// considered. O(samples).
     pub fn judge(encounter: &EncounterSamples, thresholds: &Thresholds) -> Self {
         let roles = roles(encounter, thresholds);
-        let (scores, violations) = match roles.first() {
-            Some(first) => scores(encounter, first, thresholds),
-            None => (score::safety(encounter, thresholds), Vec::new()),
-        };
+        let monitors = monitors(encounter, &roles, thresholds);
+        let judged = scores(encounter, roles.first(), thresholds);
         Self {
             roles,
-            scores,
-            violations,
-            monitors: monitors(encounter, thresholds),
+            scores: judged.scores,
+            violations: judged.violations,
+            monitors,
+            manoeuvre: judged.manoeuvre,
         }
     }
 
     /// Assesses own ship toward one target. A target that stays too far away for any role is
     /// assessed by the nearest sample alone.
     pub(crate) fn along(track: &OwnSamples, target: &ShipTrack, thresholds: &Thresholds) -> Self {
-        let (risk, monitor) = (&thresholds.risk, &thresholds.monitor);
-        let length = track.hull().length.max(target.hull.length);
-        let near = (risk.lengths * length).max(monitor.lengths * target.hull.length);
-        let soon = risk.time.max(monitor.time).max(monitor.manoeuvre);
+        let risk = &thresholds.risk;
+        let near = risk.lengths * track.hull().length.max(target.hull.length);
+        let soon = risk
+            .time_of(track.hull().length)
+            .max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);
         Self::judge(&track.encounter(target, far), thresholds)
     }

@@ -1,8 +1,9 @@
 //! Compliance monitors: rules as formulas of temporal logic over samples, each with its robustness
 //! (docs/colregs.md 4.2; Krasowski and Althoff, doi:10.1109/IV48863.2021.9575294).
 
+use super::role_intervals::RoleInterval;
 use super::samples::{EncounterSample, EncounterSamples};
-use crate::colregs::{Role, SteadyShip, Thresholds, role_within};
+use crate::colregs::{APPARENT_SPEED, APPARENT_TIME, Role, SteadyShip, Thresholds, role_within};
 use crate::frame::{Pose, wrap};
 
 /// Verdict of a monitor.
@@ -57,108 +58,103 @@ pub struct MonitorResult {
     pub time: Option<f64>,
 }
 
-/// The samples with own ship's role in each, and the thresholds.
+/// The samples, own ship's roles, and the thresholds.
 struct Trace<'a> {
     samples: &'a [EncounterSample],
-    roles: Vec<Option<Role>>,
+    roles: &'a [RoleInterval],
     t: &'a Thresholds,
-    target_length: f64,
-}
-
-/// A run of samples in which a predicate holds.
-#[derive(Debug, Clone, Copy)]
-struct Stretch {
-    from: usize,
-    /// The first sample in which it no longer holds.
-    until: usize,
+    /// Of the longer ship, metres.
+    length: f64,
+    /// m/s.
+    ordered_speed: f64,
 }
 
 impl Trace<'_> {
-    /// True if the relative velocity hits a disc about the target in time.
-    fn collision_possible(&self, sample: &EncounterSample) -> bool {
-        let m = &self.t.monitor;
-        let ahead = sample.ahead();
-        let radius = m.lengths * self.target_length;
-        let range = sample.range();
-        // negated on purpose: what is not known to be clear is possible
-        if !(range > radius) {
-            return true;
-        }
-        if ahead.time < 0.0 || ahead.distance > radius {
-            return false;
-        }
-        let relative = (sample.own.velocity() - sample.target.velocity()).norm();
-        let chord = (radius * radius - ahead.distance * ahead.distance)
-            .max(0.0)
-            .sqrt();
-        ahead.time - chord / relative <= m.time
-    }
-
-    fn role(&self, sample: &EncounterSample) -> Option<Role> {
-        if !self.collision_possible(sample) {
-            return None;
-        }
-        role_within(&sample.own, &sample.target, &self.t.sectors)
+    /// The samples of every role that is wanted and persists, from its beginning to its end.
+    fn wanted(
+        &self,
+        wanted: impl Fn(Role) -> bool,
+    ) -> impl Iterator<Item = (Role, &[EncounterSample])> {
+        let roles = self.roles.iter().filter(move |r| wanted(r.role));
+        roles.filter_map(|role| {
+            let from = self.samples.partition_point(|s| s.time < role.from);
+            let until = self.samples.partition_point(|s| s.time <= role.until);
+            let within = self.samples.get(from..until)?;
+            self.persists(within.first()?, role.role)
+                .then_some((role.role, within))
+        })
     }
 
     /// True if the role is the same after the time to react, with course and speed held.
     fn persists(&self, sample: &EncounterSample, role: Role) -> bool {
         let seconds = self.t.monitor.react;
-        let on = |ship: &SteadyShip| SteadyShip {
-            pose: Pose::new(
-                ship.pose.position + ship.velocity() * seconds,
-                ship.pose.heading,
-            ),
-            ..*ship
+        let on = |ship: &SteadyShip, speed: f64| {
+            let ship = SteadyShip { speed, ..*ship };
+            SteadyShip {
+                pose: Pose::new(
+                    ship.pose.position + ship.velocity() * seconds,
+                    ship.pose.heading,
+                ),
+                ..ship
+            }
         };
+        let own = on(&sample.own, self.ordered_speed);
+        let target = on(&sample.target, sample.target.speed);
         let then = EncounterSample {
-            own: on(&sample.own),
-            target: on(&sample.target),
+            own,
+            target,
             ..*sample
         };
-        sample.ahead().time > seconds && self.role(&then) == Some(role)
+        then.ahead().time > 0.0 && role_within(&own, &target, &self.t.sectors) == Some(role)
     }
 
-    /// Runs of samples with a role.
-    fn stretches(&self, wanted: impl Fn(Role) -> bool) -> Vec<Stretch> {
-        let roles = self.roles.iter();
-        let has: Vec<bool> = roles.map(|role| role.is_some_and(&wanted)).collect();
-        let mut found: Vec<Stretch> = Vec::new();
-        for k in 0..has.len() {
-            if has[k] && (k == 0 || !has[k - 1]) {
-                let until = (k..has.len()).find(|j| !has[*j]).unwrap_or(has.len());
-                found.push(Stretch { from: k, until });
-            }
-        }
-        found
+    /// True if own ship is at reduced speed for long enough to be seen, beginning among the first
+    /// `before` samples.
+    fn slows(&self, samples: &[EncounterSample], before: usize) -> bool {
+        let slow = |s: &EncounterSample| s.own.speed <= APPARENT_SPEED * self.ordered_speed + 1e-9;
+        let mut since: Option<f64> = None;
+        samples.iter().enumerate().any(|(k, sample)| {
+            let held = since.is_some_and(|since| sample.time - since >= APPARENT_TIME - 1e-6);
+            since = match since {
+                _ if !slow(sample) => None,
+                None if k < before => Some(sample.time),
+                kept => kept,
+            };
+            held
+        })
     }
 
     /// `G(role begins and persists -> F[react + 2 manoeuvre](range shrinks until turn >= m.turn))`,
-    /// the turn to starboard, or to either side.
-    fn turns(&self, monitor: &'static str, role: Role, either: bool) -> MonitorResult {
+    /// the turn to starboard, or to either side. Where a lower speed may replace the turn, it is
+    /// held for [`APPARENT_TIME`].
+    fn alters(
+        &self,
+        monitor: &'static str,
+        wanted: impl Fn(Role) -> bool,
+        either_side: bool,
+        may_slow: bool,
+    ) -> MonitorResult {
         let m = &self.t.monitor;
         let mut worst: Option<(f64, f64)> = None;
         let mut open = false;
-        let begun = self.stretches(|r| r == role);
-        for stretch in begun
-            .iter()
-            .filter(|s| self.persists(&self.samples[s.from], role))
-        {
-            let first = &self.samples[stretch.from];
+        for (_, samples) in self.wanted(wanted) {
+            let first = &samples[0];
             let until = first.time + m.react + 2.0 * m.manoeuvre;
-            let meanwhile = || {
-                let closing = |s: &&EncounterSample| s.time <= until && s.opening() <= 0.0;
-                self.samples[stretch.from..].iter().take_while(closing)
-            };
-            let turn = meanwhile()
+            let closing = |s: &&EncounterSample| s.time <= until && s.opening() <= 0.0;
+            let meanwhile = samples.iter().take_while(closing).count();
+            let turn = samples[..meanwhile]
+                .iter()
                 .map(|s| {
                     let turn = wrap(first.own.pose.heading - s.own.pose.heading);
-                    if either { turn.abs() } else { turn }
+                    if either_side { turn.abs() } else { turn }
                 })
                 .fold(0.0, f64::max);
-            let robustness = turn - m.turn;
-            let ends = stretch.from + meanwhile().count() == self.samples.len();
-            if robustness < 0.0 && ends {
+            let mut robustness = turn - m.turn;
+            // the range may open with the very change of speed
+            if may_slow && self.slows(samples, meanwhile + 1) {
+                robustness = robustness.max(0.0);
+            }
+            if robustness < 0.0 && meanwhile == samples.len() {
                 open = true;
             }
             if worst.is_none_or(|w| robustness < w.0) {
@@ -168,12 +164,15 @@ impl Trace<'_> {
         Self::result(monitor, Measure::Angle, worst, open)
     }
 
-    /// `G(stand-on and collision possible -> course held until they no longer are)`.
+    /// `G(stands on and persists -> course held until past, stage 3 or in extremis)`.
     fn holds(&self) -> MonitorResult {
         let mut worst: Option<(f64, f64)> = None;
-        for stretch in self.stretches(|r| r.duties().stands_on) {
-            let first = self.samples[stretch.from].own.pose.heading;
-            for sample in &self.samples[stretch.from..stretch.until] {
+        for (role, samples) in self.wanted(|r| r.duties().stands_on) {
+            let first = samples[0].own.pose.heading;
+            for sample in samples
+                .iter()
+                .take_while(|s| !self.may_act(role, &samples[0], s))
+            {
                 let turn = wrap(sample.own.pose.heading - first).abs();
                 let robustness = self.t.score.hold - turn;
                 if worst.is_none_or(|w| robustness < w.0) {
@@ -182,6 +181,18 @@ impl Trace<'_> {
             }
         }
         Self::result("R6", Measure::Angle, worst, false)
+    }
+
+    /// True from stage 3 on and in extremis: a stand-on ship may act, Rule 17(a)(ii) and (b).
+    fn may_act(&self, role: Role, first: &EncounterSample, sample: &EncounterSample) -> bool {
+        let limits = &self.t.score;
+        let stage_3 = if role == Role::Overtaken {
+            let left = first.ahead().time - (sample.time - first.time);
+            left <= limits.overtaken_lengths * self.length / self.ordered_speed
+        } else {
+            sample.range() <= limits.stage_3_lengths * self.length
+        };
+        stage_3 || sample.meets_in <= self.t.monitor.manoeuvre
     }
 
     /// `G(the hulls are apart)`.
@@ -242,20 +253,24 @@ impl Trace<'_> {
 }
 
 /// Results of every monitor over one encounter. O(samples).
-pub fn monitors(encounter: &EncounterSamples, t: &Thresholds) -> [MonitorResult; 6] {
-    let mut trace = Trace {
+pub fn monitors(
+    encounter: &EncounterSamples,
+    roles: &[RoleInterval],
+    t: &Thresholds,
+) -> [MonitorResult; 6] {
+    let trace = Trace {
         samples: encounter.samples(),
-        roles: Vec::new(),
+        roles,
         t,
-        target_length: encounter.target_length(),
+        length: encounter.length(),
+        ordered_speed: encounter.ordered_speed(),
     };
-    trace.roles = trace.samples.iter().map(|s| trace.role(s)).collect();
     [
         trace.apart(),
         trace.leaves_extremis(),
-        trace.turns("R3", Role::GiveWay, false),
-        trace.turns("R4", Role::HeadOn, false),
-        trace.turns("R5", Role::Overtaking, true),
+        trace.alters("R3", |r| r == Role::GiveWay, false, true),
+        trace.alters("R4", |r| r == Role::HeadOn, false, false),
+        trace.alters("R5", |r| r == Role::Overtaking, true, true),
         trace.holds(),
     ]
 }

@@ -1,8 +1,9 @@
-//! Roles over time with hysteresis: a role begins with risk and lasts until the risk is over
-//! (docs/colregs.md 1.3, Rule 13(d)).
+//! Roles over time: a role begins with risk of collision and lasts until the target is past and
+//! clear (docs/colregs.md 1.3, Rule 13(d)).
 
 use super::samples::{EncounterSample, EncounterSamples};
-use crate::colregs::{Role, Thresholds, role_within};
+use crate::colregs::{Role, SteadyShip, Thresholds, role_within};
+use crate::frame::Pose;
 
 /// A role and the time interval in which own ship has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,76 +17,83 @@ pub struct RoleInterval {
 }
 
 /// Rule 7: the range shrinks, and two ships that hold course and speed will soon be near.
-fn at_risk(sample: &EncounterSample, length: f64, t: &Thresholds) -> bool {
+fn at_risk(sample: &EncounterSample, encounter: &EncounterSamples, t: &Thresholds) -> bool {
     let ahead = sample.ahead();
     sample.opening() < 0.0
         && ahead.time >= 0.0
-        && ahead.time <= t.risk.time
-        && ahead.distance <= t.risk.lengths * length
+        && ahead.time <= t.risk.time_of(encounter.own_length())
+        && ahead.distance <= t.risk.lengths * encounter.length()
 }
 
-/// The range grows, or holding course and speed leads well clear.
-fn is_over(sample: &EncounterSample, length: f64, t: &Thresholds) -> bool {
-    past_and_clear(sample, length, t)
-        || sample.ahead().time < 0.0
-        || sample.ahead().distance > t.risk.lengths * t.risk.release_factor * length
-}
-
-fn past_and_clear(sample: &EncounterSample, length: f64, t: &Thresholds) -> bool {
-    sample.opening() > t.sectors.closing && sample.apart > t.score.least_lengths * length
+/// The other ship is past and clear, Rule 13(d): the range opens, also on own ship's first course,
+/// and is large enough. Slackening of speed alone does not let it pass.
+fn past_and_clear(
+    sample: &EncounterSample,
+    first: &SteadyShip,
+    length: f64,
+    t: &Thresholds,
+) -> bool {
+    let on_first_course = EncounterSample {
+        own: SteadyShip {
+            pose: Pose::new(sample.own.pose.position, first.pose.heading),
+            speed: first.speed,
+        },
+        ..*sample
+    };
+    sample.opening() > t.sectors.closing
+        && on_first_course.ahead().time <= 0.0
+        && sample.apart >= t.risk.release_lengths * length
 }
 
 /// Roles of own ship toward the target, in order of time. A role begins with the first of
-/// `evaluations` consecutive samples at risk (at once at the very first sample), and ends with the
-/// first of as many at which the risk is over. If the risk returns before the target is past and
-/// clear, so does the role: no later change of bearing turns an overtaking ship into a crossing
-/// one.
+/// `evaluations` consecutive samples at risk (at once at the very first sample), and lasts until
+/// the first of as many at which the target is past and clear. Neither own ship's manoeuvre nor a
+/// later change of bearing ends or changes it.
 pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> {
     let length = encounter.length();
     let mut intervals: Vec<RoleInterval> = Vec::new();
-    let mut active = false;
-    let mut held: Option<Role> = None;
+    // own ship when the role began
+    let mut active: Option<SteadyShip> = None;
     // number of consecutive samples that ask for a change, and the time of the first
     let (mut asking, mut since) = (0, 0.0);
     for (index, sample) in encounter.samples().iter().enumerate() {
-        if !active && past_and_clear(sample, length, t) {
-            held = None;
-        }
-        let change = if active {
-            is_over(sample, length, t)
-        } else {
-            at_risk(sample, length, t)
+        // before a change of speed at the very beginning
+        let sample = &match index {
+            0 => sample.at_speed(encounter.ordered_speed()),
+            _ => *sample,
         };
-        if !change {
-            asking = 0;
-        } else {
+        let change = match &active {
+            Some(first) => past_and_clear(sample, first, length, t),
+            None => at_risk(sample, encounter, t),
+        };
+        if change {
             if asking == 0 {
                 since = sample.time;
             }
             asking += 1;
-            if asking >= t.risk.evaluations || index == 0 {
-                asking = 0;
-                if active {
-                    active = false;
-                    if let Some(interval) = intervals.last_mut() {
-                        interval.until = since;
-                    }
-                    continue;
+        } else {
+            asking = 0;
+        }
+        if asking >= t.risk.evaluations || change && index == 0 {
+            asking = 0;
+            if active.take().is_some() {
+                if let Some(interval) = intervals.last_mut() {
+                    interval.until = since;
                 }
-                let raw = role_within(&sample.own, &sample.target, &t.sectors);
-                let role = held.or(raw);
-                if let Some(role) = role.filter(|r| !matches!(r, Role::None | Role::Static)) {
-                    active = true;
-                    held = Some(role);
-                    intervals.push(RoleInterval {
-                        role,
-                        from: since,
-                        until: since,
-                    });
-                }
+            } else if let Some(role) = role_within(&sample.own, &sample.target, &t.sectors)
+                .filter(|r| !matches!(r, Role::None | Role::Static))
+            {
+                active = Some(sample.own);
+                intervals.push(RoleInterval {
+                    role,
+                    from: since,
+                    until: since,
+                });
             }
         }
-        if active && let Some(interval) = intervals.last_mut() {
+        if active.is_some()
+            && let Some(interval) = intervals.last_mut()
+        {
             interval.until = sample.time;
         }
     }

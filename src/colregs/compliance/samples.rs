@@ -44,6 +44,12 @@ impl EncounterSample {
         self.target.pose.position - self.own.pose.position
     }
 
+    /// The same sample with own ship at another speed, m/s.
+    pub fn at_speed(&self, speed: f64) -> Self {
+        let own = SteadyShip { speed, ..self.own };
+        Self { own, ..*self }
+    }
+
     /// Metres between the centres.
     pub fn range(&self) -> f64 {
         self.offset().norm()
@@ -93,14 +99,21 @@ impl EncounterSample {
 pub struct EncounterSamples {
     samples: Vec<EncounterSample>,
     own: Hull,
+    ordered_speed: f64,
     target: Hull,
 }
 
 impl EncounterSamples {
     /// Samples from the start of a trajectory to its end, the target on its nominal track. Own
-    /// ship's heading is taken for its course: drift is not seen. O(duration).
-    pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
-        OwnSamples::along(trajectory, own).encounter(target, f64::INFINITY)
+    /// ship's heading is taken for its course: drift is not seen. `ordered_speed` (m/s) is the
+    /// speed before any manoeuvre, also where the trajectory changes it at once. O(duration).
+    pub fn along(
+        trajectory: &Trajectory,
+        own: Hull,
+        ordered_speed: f64,
+        target: &ShipTrack,
+    ) -> Self {
+        OwnSamples::along(trajectory, own, ordered_speed).encounter(target, f64::INFINITY)
     }
 
     /// The samples in order of time, at least one.
@@ -111,6 +124,16 @@ impl EncounterSamples {
     /// Length of the longer ship, metres.
     pub fn length(&self) -> f64 {
         self.own.length.max(self.target.length)
+    }
+
+    /// Length of own ship, metres.
+    pub fn own_length(&self) -> f64 {
+        self.own.length
+    }
+
+    /// Own ship's speed before any manoeuvre, m/s.
+    pub fn ordered_speed(&self) -> f64 {
+        self.ordered_speed
     }
 
     /// Length of the target, metres.
@@ -124,12 +147,13 @@ impl EncounterSamples {
 pub(crate) struct OwnSamples {
     ships: Vec<(f64, SteadyShip)>,
     hull: Hull,
+    ordered_speed: f64,
     /// m/s; infinite if unknown.
     greatest_speed: f64,
 }
 
 impl OwnSamples {
-    pub(crate) fn along(trajectory: &Trajectory, hull: Hull) -> Self {
+    pub(crate) fn along(trajectory: &Trajectory, hull: Hull, ordered_speed: f64) -> Self {
         let at = |time: f64| SteadyShip {
             pose: trajectory.pose_at(time),
             speed: trajectory.speed_at(time),
@@ -146,6 +170,7 @@ impl OwnSamples {
             greatest_speed,
             ships,
             hull,
+            ordered_speed,
         }
     }
 
@@ -171,6 +196,7 @@ impl OwnSamples {
         EncounterSamples {
             samples,
             own: self.hull,
+            ordered_speed: self.ordered_speed,
             target: target.hull,
         }
     }
@@ -350,11 +376,30 @@ pub fn alterations(
     found
 }
 
-/// Time of the first sample at which the speed differs by more than a fraction of the first speed.
-pub fn speed_changed(samples: &[EncounterSample], fraction: f64) -> Option<f64> {
-    let first = samples.first()?.own.speed;
-    let changed = |s: &&EncounterSample| (s.own.speed - first).abs() > fraction * first;
+/// Time of the first sample at which the speed differs by more than a fraction of another.
+pub fn speed_changed(samples: &[EncounterSample], from: f64, fraction: f64) -> Option<f64> {
+    let changed = |s: &&EncounterSample| (s.own.speed - from).abs() > fraction * from;
     samples.iter().find(changed).map(|s| s.time)
+}
+
+/// Changes of speed by more than `least` (m/s) from `ordered_speed` on: a slow change counts once.
+pub fn speed_changes(samples: &[EncounterSample], ordered_speed: f64, least: f64) -> Vec<f64> {
+    let mut changes: Vec<f64> = Vec::new();
+    let (mut last, mut going) = (ordered_speed, false);
+    for sample in samples {
+        let change = sample.own.speed - last;
+        last = sample.own.speed;
+        match changes.last_mut() {
+            _ if change == 0.0 => going = false,
+            Some(before) if going && *before * change > 0.0 => *before += change,
+            _ => {
+                changes.push(change);
+                going = true;
+            }
+        }
+    }
+    changes.retain(|change| change.abs() > least);
+    changes
 }
 
 #[cfg(test)]
@@ -415,7 +460,7 @@ mod tests {
             length: 50.0,
             beam: 10.0,
         };
-        let track = OwnSamples::along(&own, hull);
+        let track = OwnSamples::along(&own, hull, 6.0);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {
             let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
@@ -429,7 +474,7 @@ mod tests {
                 turn_rate: 0.0,
                 domain: DomainKind::Hull,
             };
-            let whole = EncounterSamples::along(&own, hull, &target);
+            let whole = EncounterSamples::along(&own, hull, 6.0, &target);
             let found = ComplianceReport::along(&track, &target, standard());
             assert_eq!(found, ComplianceReport::judge(&whole, standard()));
             match track.encounter(&target, 12e3).samples().len() {
@@ -453,6 +498,6 @@ mod tests {
         let arc = 0.6 * 2.5 * LENGTH / 6.0;
         assert!((found[0].until - 40.0 - arc).abs() < 1e-9);
         assert!(alterations(meeting.samples(), 0.005, 0.7).is_empty());
-        assert_eq!(speed_changed(meeting.samples(), 0.2), None);
+        assert_eq!(speed_changed(meeting.samples(), 6.0, 0.2), None);
     }
 }

@@ -3,9 +3,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::RuleViolation;
 use super::role_intervals::RoleInterval;
-use super::samples::{EncounterSample, EncounterSamples, alterations, speed_changed};
+use super::samples::{
+    EncounterSample, EncounterSamples, alterations, speed_changed, speed_changes,
+};
+use super::{Manoeuvre, RuleViolation};
 use crate::colregs::{APPARENT_SPEED, Role, Thresholds};
 use crate::frame::{deg_from_radians, wrap};
 
@@ -64,7 +66,10 @@ fn unit(x: f64) -> f64 {
 struct Act<'a> {
     t: &'a Thresholds,
     role: Role,
+    /// Length of the longer ship, metres.
     length: f64,
+    own_length: f64,
+    ordered_speed: f64,
     /// At least one.
     samples: &'a [EncounterSample],
     /// From the closest approach on.
@@ -99,10 +104,9 @@ impl Act<'_> {
         starboard.max(port)
     }
 
-    /// The least and the greatest speed in multiples of the first.
+    /// The least and the greatest speed in multiples of the ordered one.
     fn speeds(&self) -> [f64; 2] {
-        let first = self.first().own.speed;
-        let ratios = self.samples.iter().map(|s| s.own.speed / first);
+        let ratios = (self.samples.iter()).map(|s| s.own.speed / self.ordered_speed);
         ratios.fold([1.0, 1.0], |[low, high], r| [r.min(low), r.max(high)])
     }
 
@@ -110,7 +114,7 @@ impl Act<'_> {
     fn onset(&self) -> Option<f64> {
         let s = &self.t.score;
         let turned = alterations(self.samples, s.turn_rate, s.steady);
-        let slowed = speed_changed(self.samples, s.steady_speed);
+        let slowed = speed_changed(self.samples, self.ordered_speed, s.steady_speed);
         let times = turned.first().map(|a| a.from).into_iter().chain(slowed);
         times.min_by(f64::total_cmp)
     }
@@ -138,14 +142,31 @@ impl Act<'_> {
         0.5 * self.range_score(closest.apart) + 0.5 * pose
     }
 
-    /// Delay of action: 0 at once, 1 never.
+    /// Seconds from a sample to the closest approach if own ship kept its course there, and the
+    /// ordered speed.
+    fn undisturbed_tcpa(&self, sample: &EncounterSample) -> f64 {
+        sample.at_speed(self.ordered_speed).ahead().time
+    }
+
+    /// The sample from which on waiting is delay: the first that is not in ample time.
+    fn no_longer_ample(&self) -> &EncounterSample {
+        let ample = self.t.score.ample_time_of(self.own_length);
+        let due = |s: &&EncounterSample| !(self.undisturbed_tcpa(s) >= ample);
+        self.samples.iter().find(due).unwrap_or(self.closest())
+    }
+
+    /// Delay of action: 0 in ample time, 1 never.
     fn delay(&self) -> f64 {
         let Some(onset) = self.onset() else {
             let near = self.first().ahead().distance < self.t.score.least_lengths * self.length;
             return f64::from(u8::from(near));
         };
         let then = self.samples.iter().find(|s| s.time >= onset);
-        let (first, last) = (self.first().range(), self.closest().range());
+        let due = self.no_longer_ample();
+        if onset <= due.time {
+            return 0.0;
+        }
+        let (first, last) = (due.range(), self.closest().range());
         then.map_or(1.0, |s| {
             if first > last {
                 unit((first - s.range()) / (first - last))
@@ -239,8 +260,19 @@ impl Act<'_> {
         unit(self.rule_16() - self.t.score.weight_ahead_crossing * ahead)
     }
 
+    /// How much an alteration of a stand-on ship counts: 1 up to stage 3, 0 from stage 4 on.
+    fn early(&self) -> f64 {
+        let s = &self.t.score;
+        let onset = self.onset().unwrap_or(self.first().time);
+        let then = self.samples.iter().find(|sample| sample.time >= onset);
+        let lengths = then.unwrap_or(self.first()).range() / self.length;
+        // a NaN counts in full
+        ((lengths - s.stage_4_lengths) / (s.stage_3_lengths - s.stage_4_lengths)).clamp(0.0, 1.0)
+    }
+
     fn rule_17(&self) -> f64 {
         let s = &self.t.score;
+        let early = self.early();
         let turn = self.greatest_departure();
         let course = if turn < s.steady {
             0.0
@@ -259,7 +291,7 @@ impl Act<'_> {
             0.0
         };
         if self.safety() > 0.0 {
-            unit((self.safety() - course) * faster - slower)
+            unit((self.safety() - early * course) * faster - early * slower)
         } else {
             0.0
         }
@@ -276,6 +308,26 @@ impl Act<'_> {
             rule_15: clears(15).then(|| self.rule_15()),
             rule_16: (duties.keeps_clear && !duties.port_to_port).then(|| self.rule_16()),
             rule_17: duties.stands_on.then(|| self.rule_17()),
+        }
+    }
+
+    fn manoeuvre(&self) -> Manoeuvre {
+        // a smaller change of speed is rounding, or the last bit of a schedule
+        const SPEED_SHARE: f64 = 0.02;
+        let s = &self.t.score;
+        let turns = alterations(self.samples, s.turn_rate, s.steady);
+        let onset = self.onset();
+        let then = (self.samples.iter()).find(|sample| Some(sample.time) >= onset);
+        Manoeuvre {
+            lead: onset.and(then).map(|sample| self.undisturbed_tcpa(sample)),
+            turns: turns.len(),
+            smallest_turn: turns.iter().map(|a| a.turn.abs()).min_by(f64::total_cmp),
+            speed_changes: speed_changes(
+                self.samples,
+                self.ordered_speed,
+                SPEED_SHARE * self.ordered_speed,
+            )
+            .len(),
         }
     }
 
@@ -334,10 +386,28 @@ impl Act<'_> {
                 }
             }
             Role::StandOn | Role::Overtaken => {
-                let near = s.stage_3_lengths * self.length;
-                if let Some(sample) = self.turned(s.hold, false).filter(|s| s.range() > near) {
+                let must_hold = |sample: &&EncounterSample| match self.role {
+                    Role::Overtaken => {
+                        self.undisturbed_tcpa(self.first()) - (sample.time - self.first().time)
+                            > s.overtaken_lengths * self.length / self.ordered_speed
+                    }
+                    _ => sample.range() > s.stage_3_lengths * self.length,
+                };
+                if let Some(sample) = self.turned(s.hold, false).filter(must_hold) {
                     let hold = deg_from_radians(s.hold);
                     let what = format!("does not hold its course within {hold:.0} deg");
+                    violation("17(a)(i)", sample.time, what);
+                }
+                let faster_or_slower =
+                    speed_changed(self.samples, self.ordered_speed, s.steady_speed);
+                if let Some(sample) = (self.samples.iter())
+                    .find(|sample| Some(sample.time) == faster_or_slower)
+                    .filter(must_hold)
+                {
+                    let what = format!(
+                        "does not hold its speed within {:.0} %",
+                        100.0 * s.steady_speed
+                    );
                     violation("17(a)(i)", sample.time, what);
                 }
                 if self.role == Role::StandOn {
@@ -368,17 +438,24 @@ impl Act<'_> {
     }
 }
 
-/// Scores and rule violations of own ship in a role, from its beginning to the closest approach of
-/// the hulls; crossing ahead is also judged after it. O(samples).
-pub fn scores(
+/// What is said of own ship toward one target.
+pub(super) struct Judged {
+    pub scores: Scores,
+    pub violations: Vec<RuleViolation>,
+    pub manoeuvre: Option<Manoeuvre>,
+}
+
+/// Scores, rule violations and the manoeuvre of own ship in a role, from its beginning to the
+/// closest approach of the hulls; crossing ahead is also judged after it. Without a role, the
+/// safety alone. O(samples).
+pub(super) fn scores(
     encounter: &EncounterSamples,
-    interval: &RoleInterval,
+    interval: Option<&RoleInterval>,
     t: &Thresholds,
-) -> (Scores, Vec<RuleViolation>) {
+) -> Judged {
     let all = encounter.samples();
-    let begin = all
-        .partition_point(|s| s.time < interval.from)
-        .min(all.len() - 1);
+    let from = interval.map_or(all[0].time, |interval| interval.from);
+    let begin = all.partition_point(|s| s.time < from).min(all.len() - 1);
     // negated on purpose: a NaN is the nearest
     let nearest = (begin..all.len()).fold(begin, |best, k| {
         if !(all[k].apart >= all[best].apart) {
@@ -389,21 +466,17 @@ pub fn scores(
     });
     let act = Act {
         t,
-        role: interval.role,
+        role: interval.map_or(Role::None, |interval| interval.role),
         length: encounter.length(),
+        own_length: encounter.own_length(),
+        ordered_speed: encounter.ordered_speed(),
         samples: &all[begin..=nearest],
         after: &all[nearest..],
         target_length: encounter.target_length(),
     };
-    (act.scores(), act.violations())
-}
-
-/// Scores toward a target without a role: safety alone.
-pub fn safety(encounter: &EncounterSamples, t: &Thresholds) -> Scores {
-    let interval = RoleInterval {
-        role: Role::None,
-        from: encounter.samples()[0].time,
-        until: encounter.samples()[0].time,
-    };
-    scores(encounter, &interval, t).0
+    Judged {
+        scores: act.scores(),
+        violations: act.violations(),
+        manoeuvre: interval.map(|_| act.manoeuvre()),
+    }
 }

@@ -75,8 +75,9 @@ fn an_escape_exists_until_the_time_of_no_return_and_mostly_none_later() {
     assert!(last >= 3, "{last} of 5");
 }
 
+/// It need not wait for the very last moment, but has to hold on until it may act.
 #[test]
-fn a_ship_that_stands_on_escapes_at_the_latest_time() {
+fn a_ship_that_stands_on_escapes_while_there_is_a_way_out() {
     let mut found = Vec::new();
     for target in [
         track(750.0, 750.0, -FRAC_PI_2, 5.0),
@@ -84,7 +85,7 @@ fn a_ship_that_stands_on_escapes_at_the_latest_time() {
         track(-300.0, 0.0, 0.0, 8.0),
     ] {
         let run = run(scenario(target.clone(), Compliance::Rules));
-        let reported = run.planned.escape.expect("she stands on").latest;
+        let reported = run.planned.escape.expect("it stands on").held_until;
         let land_obstacle = land_obstacle(&run.scenario, &run.land);
         let obstacles: Vec<Obstacle> = run.obstacles().cloned().collect();
         let asked = problem(&run.scenario, &obstacles, &land_obstacle);
@@ -101,9 +102,10 @@ fn a_ship_that_stands_on_escapes_at_the_latest_time() {
         found.push((reported, latest));
     }
     for (reported, latest) in &found {
-        assert!(
-            *reported < latest + 0.3 && *reported > latest - 6.0,
-            "{found:?}"
-        );
+        assert!(*reported < latest + 0.3, "{found:?}");
+    }
+    // they are 12 lengths of 60 m apart after 48.2 and 37.6 s; an overtaken ship may act at once
+    for ((reported, _), may_act) in found.iter().zip([48.2, 37.6, 0.0]) {
+        assert!(*reported >= may_act, "{found:?}");
     }
 }

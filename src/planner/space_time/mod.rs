@@ -42,7 +42,7 @@ use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
-use rules::stand_on;
+use rules::manoeuvre::Manoeuvres;
 use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
@@ -213,11 +213,24 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
-    if problem.duty().stands_on
+    if !problem.duty().is_none()
         && let Some(end) = first_conflict
-        && let Some(held) = stand_on::hold(&context, &nominal_motion, end, clock)
     {
-        return held.planned(problem);
+        let stands_on = problem.duty().stands_on;
+        let mut manoeuvres = Manoeuvres::new(&context, &nominal_motion, clock);
+        let found = match stands_on {
+            true => manoeuvres.standing_on(end),
+            false => manoeuvres.giving_way(end),
+        };
+        if let Some(found) = found {
+            let escape = stands_on.then(|| found.escape());
+            let plan = Plan::measured(problem, found.motion, None);
+            let outcome = plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved);
+            return Planned {
+                escape,
+                ..Planned::of(outcome)
+            };
+        }
     }
     let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
     let mut search = Search::new(graph.root());
@@ -266,15 +279,6 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         && sequential::are_several(&conflicts)
         && let Some(motion) =
             sequential::resolve_sequentially(problem, proxies, &route, &nominal_motion, clock)
-    {
-        selection.add_candidate(motion);
-        timed_out = clock.is_up();
-    }
-    if !timed_out
-        && !selection.has_plan()
-        && !problem.duty().is_none()
-        && let Some(end) = first_conflict
-        && let Some(motion) = stand_on::cheapest(&context, &nominal_motion, end, clock)
     {
         selection.add_candidate(motion);
         timed_out = clock.is_up();

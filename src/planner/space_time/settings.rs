@@ -1,20 +1,14 @@
 //! Candidate angles and durations of the space-time planner's searches.
 //!
 //! Each search has its own grid. The graph branches at every node and takes few values. The
-//! enumerations of [`crate::planner::space_time::rules::stand_on`] and
-//! [`crate::planner::space_time::fallback::escape`] test every value once and take more.
+//! enumeration of [`crate::planner::space_time::fallback::escape`] tests every value once and takes
+//! more.
 
 /// Seconds for which the graph holds a course beyond a vertex, one after another.
 pub(crate) const GRAPH_HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
 
 /// Angles between the graph's return lines and the route, radians.
 pub(crate) const GRAPH_RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
-
-/// Seconds for which the course, or the reduced speed, of a stand-on ship's escape is held.
-pub(crate) const ESCAPE_HOLDS_S: [f64; 7] = [10.0, 20.0, 40.0, 60.0, 90.0, 140.0, 220.0];
-
-/// Angles between the return line of a stand-on ship's escape and the route, radians.
-pub(crate) const ESCAPE_RETURN_ANGLES: [f64; 3] = [0.3, 0.6, 1.0];
 
 /// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
 pub(crate) const MANOEUVRE_RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];

@@ -222,6 +222,10 @@ impl Similarity {
                 pose: self.pose(e.ship.pose),
                 ..e.ship
             },
+            own: SteadyShip {
+                pose: self.pose(e.own.pose),
+                ..e.own
+            },
             ..*e
         };
         Some(NormalisedProblem {

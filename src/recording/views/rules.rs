@@ -96,7 +96,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         let held = "own ship holds course and speed".to_owned();
         lane.add(0.0, held, SpeedClass::Slow.color());
         let away = format!("own ship escapes: {}", manoeuvre(&escape));
-        lane.add(escape.latest, away, SpeedClass::Fast.color());
+        lane.add(escape.held_until, away, SpeedClass::Fast.color());
         lane.end(end);
         lanes.push(lane);
     }
@@ -181,8 +181,8 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
         }
     }
     if let Some(escape) = model.run.planned.escape {
-        let text = format!("holds until {:.0} s", escape.latest);
-        marks.push((escape.latest, text, SpeedClass::Fast.color()));
+        let text = format!("holds until {:.0} s", escape.held_until);
+        marks.push((escape.held_until, text, SpeedClass::Fast.color()));
     }
     if marks.is_empty() {
         return Ok(());
@@ -277,7 +277,7 @@ mod tests {
     fn a_hold_ends_at_its_latest_time() {
         let run = stand_on(Compliance::Rules);
         let model = ViewModel::new(&run);
-        let latest = run.planned.escape.expect("stands on").latest;
+        let latest = run.planned.escape.expect("stands on").held_until;
         let own = &lanes(&model)[0];
         assert_eq!(own.at(0.0), "own ship holds course and speed");
         assert_eq!(own.at(latest - 1e-6), own.at(0.0));

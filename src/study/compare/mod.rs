@@ -128,8 +128,9 @@ impl Entry {
         };
         let thresholds = scenario.judged_by();
         let ships = scenario.targets.iter().filter_map(|target| target.ship());
+        let own = &scenario.own_ship;
         let samples =
-            ships.map(|ship| EncounterSamples::along(trajectory, scenario.own_ship.hull, ship));
+            ships.map(|ship| EncounterSamples::along(trajectory, own.hull, own.speed, ship));
         samples
             .map(|samples| ComplianceReport::judge(&samples, thresholds))
             .collect()

@@ -66,7 +66,7 @@ fn track(pose: Pose, speed: f64) -> ShipTrack {
 /// Own ship and a target that holds course and speed.
 pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> EncounterSamples {
     let pose = Pose::new(Vector::new(x, y), heading);
-    EncounterSamples::along(own, HULL, &track(pose, speed))
+    EncounterSamples::along(own, HULL, 6.0, &track(pose, speed))
 }
 
 const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
@@ -145,6 +145,7 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     let meeting = EncounterSamples::along(
         &own,
         HULL,
+        6.0,
         &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
     );
     let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
@@ -182,10 +183,11 @@ fn standing_on_is_holding_on_and_never_turning_to_port() {
     assert_eq!(rules(&turned), ["17(a)(i)"]);
     let into_it = conduct(&[(0.0, 240.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
     assert_eq!(rules(&into_it), ["17(b)"]);
-    // which ends what the monitor asks of her
-    assert_eq!(violated(&turned), Vec::<&str>::new());
-    let late = conduct(&[(0.0, 70.0), (-0.2, 100.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
-    assert!(violated(&late).contains(&"R6"), "{late:?}");
+    // the turn does not end the role
+    assert_eq!(violated(&turned), ["R6"]);
+    // within 12 lengths it may act
+    let late = conduct(&[(0.0, 70.0), (-0.9, 100.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
+    assert!(late.complies(), "{late:?}");
     let to_port = conduct(&mirrored(&away), 760.0, 720.0, -FRAC_PI_2, 5.0);
     assert_eq!(rules(&to_port), ["17(c)", "17(a)(i)"]);
     assert!(turned.scores.rule_17 < held.scores.rule_17);
@@ -238,7 +240,10 @@ fn the_judges_do_not_see_where_the_scene_lies() {
             6.0,
         );
         let own = Trajectory::new(segments.collect()).expect("a trajectory");
-        ComplianceReport::judge(&EncounterSamples::along(&own, HULL, &target), standard())
+        ComplianceReport::judge(
+            &EncounterSamples::along(&own, HULL, 6.0, &target),
+            standard(),
+        )
     };
     let here = judge(0.0, Vector::zeros());
     for k in 0..20 {
@@ -258,4 +263,167 @@ fn what_is_not_a_number_is_a_collision() {
     let c = ComplianceReport::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
     assert_eq!(c.scores.safety, 0.0);
     assert_eq!(c.monitors[0].verdict, MonitorVerdict::Violated);
+}
+
+/// Own ship's legs: seconds, speed in m/s, and the turn to port before them in degrees.
+fn conduct_of(legs: &[(f64, f64, f64)], target: [f64; 4]) -> ComplianceReport {
+    let mut segments: Vec<Segment> = Vec::new();
+    for &(seconds, speed, turn) in legs {
+        let rate = speed / (2.5 * LENGTH) * turn.signum();
+        let arc = turn.to_radians().abs() * 2.5 * LENGTH / speed;
+        for (duration, turn_rate) in [(arc, rate), (seconds, 0.0)] {
+            if duration > 0.0 {
+                let last = segments.last();
+                segments.push(Segment {
+                    start: last.map_or(Pose::new(Vector::zeros(), 0.0), Segment::end),
+                    start_time: last.map_or(0.0, Segment::end_time),
+                    duration,
+                    speed,
+                    turn_rate,
+                });
+            }
+        }
+    }
+    let own = Trajectory::new(segments).expect("a trajectory");
+    let [x, y, heading, speed] = target;
+    ComplianceReport::judge(&steady(&own, x, y, heading, speed), standard())
+}
+
+/// What the judges let pass, and what they still see.
+#[test]
+fn poor_seamanship_is_caught_by_its_rule() {
+    // 400 s before the closest approach
+    let far_ahead = [4800.0, 0.0, PI, 6.0];
+    let ahead = [2880.0, 0.0, PI, 6.0];
+    let starboard = [1440.0, -1440.0, FRAC_PI_2, 6.0];
+    let port = [1440.0, 1440.0, -FRAC_PI_2, 6.0];
+    let astern = [-1080.0, 0.0, 0.0, 9.0];
+    let straight = |seconds: f64| (seconds, 6.0, 0.0);
+    type Trace<'a> = (&'a str, [f64; 4], Vec<(f64, f64, f64)>, &'a [&'a str]);
+    let cases: [Trace; 15] = [
+        (
+            "head-on in time",
+            ahead,
+            vec![straight(20.0), (300.0, 6.0, -40.0)],
+            &[],
+        ),
+        (
+            "head-on late",
+            far_ahead,
+            vec![straight(310.0), (200.0, 6.0, -40.0)],
+            &["R4"],
+        ),
+        (
+            "head-on small",
+            ahead,
+            vec![straight(20.0), (300.0, 6.0, -15.0)],
+            &["R4"],
+        ),
+        (
+            "head-on to port",
+            ahead,
+            vec![straight(20.0), (300.0, 6.0, 40.0)],
+            &["14(a)", "14(a)", "R4"],
+        ),
+        (
+            "head-on returns too soon",
+            ahead,
+            vec![straight(20.0), (60.0, 6.0, -40.0), (150.0, 6.0, 80.0)],
+            &["14(a)", "14(a)"],
+        ),
+        (
+            "gives way",
+            starboard,
+            vec![straight(20.0), (400.0, 6.0, -40.0)],
+            &[],
+        ),
+        (
+            "half speed for 200 s",
+            starboard,
+            vec![straight(20.0), (200.0, 3.0, 0.0), straight(200.0)],
+            &[],
+        ),
+        (
+            "half speed for 20 s",
+            starboard,
+            vec![straight(20.0), (20.0, 3.0, 0.0), (300.0, 6.0, -10.0)],
+            &["R3"],
+        ),
+        (
+            "half speed from the beginning, for 29 s",
+            starboard,
+            vec![(29.0, 3.0, 0.0), (300.0, 6.0, -10.0)],
+            &["R3"],
+        ),
+        (
+            "stands on until 12 lengths",
+            port,
+            vec![straight(170.0), (300.0, 6.0, -60.0)],
+            &[],
+        ),
+        (
+            "stands on, turns early",
+            port,
+            vec![straight(30.0), (300.0, 6.0, -60.0)],
+            &["17(a)(i)", "R6"],
+        ),
+        (
+            "stands on, slows early",
+            port,
+            vec![straight(30.0), (300.0, 3.0, 0.0)],
+            &["17(a)(i)"],
+        ),
+        (
+            "stands on, late to port",
+            port,
+            vec![straight(170.0), (300.0, 6.0, 60.0)],
+            &["17(c)"],
+        ),
+        (
+            "overtaken, late",
+            astern,
+            vec![straight(200.0), (300.0, 6.0, -60.0)],
+            &[],
+        ),
+        (
+            "overtaken, turns early",
+            astern,
+            vec![straight(30.0), (300.0, 6.0, -60.0)],
+            &["17(a)(i)", "R6"],
+        ),
+    ];
+    for (name, target, legs, broken) in cases {
+        let found = conduct_of(&legs, target);
+        assert_eq!(
+            found.broken().collect::<Vec<_>>(),
+            broken,
+            "{name}: {found:?}"
+        );
+    }
+}
+
+/// A turn in ample time is not late, wherever the risk began; a later one is, by the way that the
+/// ships have come nearer since.
+#[test]
+fn delay_counts_from_ample_time() {
+    // the closest approach would be after 360 s
+    let promptness = |turn_at: f64| {
+        let legs = [(turn_at, 6.0, 0.0), (400.0, 6.0, -60.0)];
+        let found = conduct_of(&legs, [2160.0, -2160.0, FRAC_PI_2, 6.0]);
+        let rule_16 = found.scores.rule_16.expect("gives way");
+        (
+            rule_16 / found.scores.safety,
+            found.manoeuvre.expect("a role"),
+        )
+    };
+    let (early, manoeuvre) = promptness(10.0);
+    assert_eq!((manoeuvre.turns, manoeuvre.speed_changes), (1, 0));
+    assert!((manoeuvre.lead.expect("acts") - 350.0).abs() < 1e-6);
+    assert!((manoeuvre.smallest_turn.expect("one") - 60_f64.to_radians()).abs() < 1e-9);
+    assert_eq!(early, 1.0);
+    assert_eq!(promptness(119.0).0, 1.0);
+    // a quarter of the 240 s is gone, and more than a quarter of the way to the closest approach
+    let (late, manoeuvre) = promptness(180.0);
+    assert!((manoeuvre.lead.expect("acts") - 180.0).abs() < 1e-6);
+    assert!(late < 0.75 && late > 0.6, "{late}");
 }

@@ -3,7 +3,6 @@
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
-    SteadyShip,
 };
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
@@ -12,16 +11,17 @@ use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::tolerance;
 use crate::trajectory::Segment;
+use crate::vessel::Hull;
 
 /// Samples per segment for the position relative to a target.
 const ARC_SAMPLES: u32 = 32;
 
-/// Seconds after the closest approach of the centres at which a target counts as passed: the hulls
-/// may be closest later.
-const PASSED_S: f64 = 2.0;
+/// Seconds after the closest approach of the hulls at which a target counts as passed: more than
+/// the step of the samples that it is found by, and of those of the judges.
+const PASSED_S: f64 = 3.0;
 
-/// m/s. Below this relative speed the distance counts as constant.
-const NO_RELATIVE_SPEED: f64 = 1e-9;
+/// Greatest time between two samples for the closest approach, seconds.
+const NEAREST_S: f64 = 1.0;
 
 /// Speed at or below which a speed reduction is readily apparent, m/s.
 pub(crate) fn apparent_slow_speed(problem: &Problem) -> f64 {
@@ -51,13 +51,16 @@ pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[
     departure.is_apparent(duty)
         && problem.encountered.iter().all(|encountered| {
             let duties = encountered.role.duties();
-            let nearest = Nearest::of(&encountered.ship, motion);
+            if !keeps_off_bow(encountered, motion) {
+                return false;
+            }
+            let nearest = Nearest::of(&problem.own.hull, encountered, motion);
             let passes = nearest.drifts_to_port || !duties.port_to_port;
             let heads = !duties.no_port_heading
                 || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
             let plain =
                 !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
-            passes && heads && plain && keeps_off_bow(encountered, motion)
+            passes && heads && plain
         })
 }
 
@@ -190,7 +193,7 @@ impl Departure {
     }
 }
 
-/// Closest approach of a motion to a target that holds course and speed.
+/// Closest approach of the hulls on a motion to a target that holds course and speed.
 #[derive(Debug)]
 struct Nearest {
     time: f64,
@@ -199,37 +202,73 @@ struct Nearest {
 }
 
 impl Nearest {
-    fn of(ship: &SteadyShip, motion: &[Segment]) -> Self {
+    /// By samples every [`NEAREST_S`] seconds, and at the ends of the segments.
+    fn of(own: &Hull, encountered: &Encountered, motion: &[Segment]) -> Self {
+        let ship = &encountered.ship;
+        let at = |s: &Segment, time: f64| {
+            let target = ship.pose.position + ship.velocity() * time;
+            (s.pose_at(time), target)
+        };
+        let apart = |s: &Segment, time: f64| {
+            let (pose, target) = at(s, time);
+            (pose.position - target).norm()
+        };
+        // a lower bound on each segment, exact on lines
+        let centres_on = |s: &Segment| {
+            let (from, to) = (apart(s, s.start_time), apart(s, s.end_time()));
+            if s.is_arc() {
+                let closing = s.speed + ship.speed;
+                return 0.5 * (from + to - closing * s.duration);
+            }
+            let offset = s.start.position - ship.pose.position - ship.velocity() * s.start_time;
+            let relative = s.velocity_at(s.start_time) - ship.velocity();
+            let ahead = -offset.dot(&relative) / relative.norm_squared();
+            let within = ahead > 0.0 && ahead < s.duration;
+            let there = if within {
+                apart(s, s.start_time + ahead)
+            } else {
+                from
+            };
+            there.min(from).min(to)
+        };
+        let ends = |s: &Segment| apart(s, s.start_time).min(apart(s, s.end_time()));
+        let centres = (motion.iter())
+            .map(|s| if s.is_arc() { ends(s) } else { centres_on(s) })
+            .fold(f64::INFINITY, f64::min);
+        // hulls may be nearest where the centres are not
+        let (long, wide) = (
+            own.half_diagonal() + encountered.hull.half_diagonal(),
+            0.5 * (own.beam + encountered.hull.beam),
+        );
         let mut least = f64::INFINITY;
         let mut nearest = Self {
             time: 0.0,
             drifts_to_port: false,
         };
-        let mut examine = |s: &Segment, time: f64| {
-            let target = ship.pose.position + ship.velocity() * time;
-            let offset = s.pose_at(time).position - target;
-            let relative = s.velocity_at(time) - ship.velocity();
-            if offset.norm() < least {
-                least = offset.norm();
+        let near = motion
+            .iter()
+            .filter(|s| centres_on(s) <= centres + long - wide);
+        let samples = near.flat_map(|s| {
+            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
+            (0..=steps as usize).map(move |k| (s, s.start_time + s.duration * (k as f64 / steps)))
+        });
+        for (s, time) in samples {
+            if apart(s, time) > centres + long - wide {
+                continue;
+            }
+            let (pose, target) = at(s, time);
+            let there = Pose::new(target, ship.pose.heading);
+            let both = encountered.hull.polygon(&there);
+            let both = both.minkowski_sum(&own.polygon(&pose).negated());
+            let hulls = both.signed_distance(Vector::zeros());
+            if hulls < least {
+                let relative = s.velocity_at(time) - ship.velocity();
+                least = hulls;
                 nearest = Self {
                     time,
-                    drifts_to_port: cross(relative, offset) < 0.0,
+                    drifts_to_port: cross(relative, pose.position - target) < 0.0,
                 };
             }
-            (offset, relative)
-        };
-        for s in motion {
-            let (offset, relative) = examine(s, s.start_time);
-            if s.is_arc() {
-                for k in 1..ARC_SAMPLES {
-                    let share = f64::from(k) / f64::from(ARC_SAMPLES);
-                    examine(s, s.start_time + s.duration * share);
-                }
-            } else if relative.norm() > NO_RELATIVE_SPEED {
-                let ahead = -offset.dot(&relative) / relative.norm_squared();
-                examine(s, s.start_time + ahead.clamp(0.0, s.duration));
-            }
-            examine(s, s.end_time());
         }
         nearest
     }

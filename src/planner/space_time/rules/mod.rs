@@ -2,5 +2,5 @@
 //! alteration, and holding course and speed as the stand-on ship.
 
 pub(crate) mod compliance;
+pub(crate) mod manoeuvre;
 pub(crate) mod readily_apparent;
-pub(crate) mod stand_on;

@@ -287,11 +287,6 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// True once a candidate was clear.
-    pub(crate) fn has_plan(&self) -> bool {
-        self.best.is_some()
-    }
-
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;

@@ -1,0 +1,627 @@
+//! Manoeuvres as a navigator would order them (Rules 8 and 13 to 17): one bold alteration in ample
+//! time, kept until every other ship is past and clear, then back to the route.
+//!
+//! ```text
+//! hold ─► turn ─► straight [─► parallel] ─► passed ─► turn back ─► join the route
+//! hold ─► half speed or less ───────────► passed ─► follow the route
+//! ```
+//!
+//! A manoeuvre has at most five parameters. All combinations of a coarse grid are made, cheapest
+//! first; the best of those that are clear of every set until arrival is improved by a pattern
+//! search. There are few turns and few changes of speed by construction.
+
+use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Encountered, Role, ScoreLimits};
+use crate::frame::{Side, Vector, heading_of, wrap};
+use crate::geometry::outer_disc;
+use crate::obstacle::{PolytopeObstacle, contact};
+use crate::planner::clock::Clock;
+use crate::planner::space_time::chain::Chain;
+use crate::planner::space_time::graph::departure::until;
+use crate::planner::space_time::graph::return_to_line::motion_back;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::first_met;
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
+use crate::planner::{Escape, Problem};
+use crate::tolerance::{self, TOUCH_M};
+use crate::trajectory::Segment;
+
+/// Turns, as multiples of the least readily apparent turn.
+const TURNS: [f64; 8] = [1.0, 1.35, 1.7, 2.2, 2.7, 3.5, 4.5, 6.0];
+
+/// Seconds on the new course before a parallel course is steered; infinite for no parallel course.
+const ASIDE_S: [f64; 6] = [f64::INFINITY, 15.0, 35.0, 60.0, 100.0, 180.0];
+
+/// Seconds from passing to the return.
+const AFTER_S: [f64; 5] = [0.0, 15.0, 40.0, 90.0, 180.0];
+
+/// Only each such ending tells whether there is an escape.
+const ENDINGS_SKIPPED: usize = 2;
+
+/// Angles between the return line and the route, radians.
+const BACK: [f64; 3] = [0.3, 0.6, 1.0];
+
+/// Fractions of the latest time of the first alteration.
+const LEAVE: [f64; 3] = [1.0, 0.6, 0.2];
+
+/// Seconds. The first alteration of a ship that meets a risk follows at once.
+const REACT_S: f64 = 20.0;
+
+/// Seconds of the least segment.
+const LEAST_S: f64 = 3.0;
+
+/// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
+const SPEED_PRICE: f64 = 2.0;
+
+/// Rounds of the pattern search.
+const ROUNDS: usize = 7;
+
+/// Sampled instants of the escape of a stand-on ship, and bisection steps after that.
+const SAMPLES: usize = 40;
+const HALVINGS: usize = 5;
+
+/// Seconds by which a stand-on ship acts before the latest certified escape.
+const SPARE_S: f64 = 40.0;
+
+/// Seconds after the first instant at which a stand-on ship may act, so that rounding decides
+/// nothing.
+const MAY_S: f64 = 0.5;
+
+/// Seconds by which a stand-on ship that may act does so earlier, where that is cheaper.
+const EARLIER_S: f64 = 60.0;
+
+/// Ranges in lengths within which a stand-on ship acts, and beyond which it does not wait longer.
+const ESCAPE_LENGTHS: [f64; 2] = [6.0, 4.0];
+
+/// A manoeuvre of the family.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Manoeuvre {
+    /// Seconds at which the route is left.
+    leave: f64,
+    first: FirstAlteration,
+    /// Seconds from passing to the return.
+    after: f64,
+    /// Angle between the return line and the route, radians.
+    back: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum FirstAlteration {
+    /// Turn in radians to port, seconds until the parallel course, and the speed in m/s.
+    Turn { turn: f64, aside: f64, speed: f64 },
+    /// The speed that is kept until passed, m/s.
+    Slow { speed: f64 },
+}
+
+/// A clear manoeuvre.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    manoeuvre: Manoeuvre,
+    pub motion: Vec<Segment>,
+    /// Cost, m².
+    pub cost: f64,
+}
+
+impl Found {
+    /// Cost by which manoeuvres are compared: a turn is preferred over less speed.
+    fn rank(&self) -> f64 {
+        rank(&self.manoeuvre.first, self.cost)
+    }
+
+    pub(crate) fn escape(&self) -> Escape {
+        let (turn, speed) = match self.manoeuvre.first {
+            FirstAlteration::Turn { turn, .. } => (turn, None),
+            FirstAlteration::Slow { speed } => (0.0, Some(speed)),
+        };
+        let leave = self.manoeuvre.leave;
+        let then = self.motion.iter().find(|s| s.end_time() > leave);
+        Escape {
+            held_until: leave,
+            turn,
+            speed: speed.or(then.map(|s| s.speed)).unwrap_or(0.0),
+        }
+    }
+}
+
+fn rank(first: &FirstAlteration, cost: f64) -> f64 {
+    match first {
+        FirstAlteration::Turn { .. } => cost,
+        FirstAlteration::Slow { .. } => SPEED_PRICE * cost,
+    }
+}
+
+/// A target that own ship must not pass nearer than a length.
+struct Passing<'a> {
+    encountered: &'a Encountered,
+    /// The nominal hull, grown by own half-diagonal and the longer ship's length.
+    within_a_length: PolytopeObstacle,
+}
+
+/// The manoeuvres of one problem.
+pub(crate) struct Manoeuvres<'s, 'a> {
+    context: &'s Context<'a>,
+    nominal_motion: &'s [Segment],
+    passing: Vec<Passing<'s>>,
+    clock: Clock,
+    /// True where no target is passed nearer than a length, Rule 8(d).
+    keeps_a_length: bool,
+}
+
+impl<'s, 'a> Manoeuvres<'s, 'a> {
+    pub(crate) fn new(
+        context: &'s Context<'a>,
+        nominal_motion: &'s [Segment],
+        clock: Clock,
+    ) -> Self {
+        let own = &context.problem.own.hull;
+        let passing = context.problem.encountered.iter().map(|encountered| {
+            let (hull, ship) = (&encountered.hull, &encountered.ship);
+            let around = own.half_diagonal() + own.length.max(hull.length);
+            let disc = outer_disc(around, ship.pose.heading);
+            let initial = hull.polygon(&ship.pose).minkowski_sum(&disc);
+            let velocity = crate::geometry::ConvexPolygon::point(ship.velocity());
+            Passing {
+                encountered,
+                within_a_length: PolytopeObstacle::new("", initial, velocity),
+            }
+        });
+        Self {
+            context,
+            nominal_motion,
+            passing: passing.collect(),
+            clock,
+            keeps_a_length: true,
+        }
+    }
+
+    fn problem(&self) -> &'s Problem<'s> {
+        self.context.problem
+    }
+
+    /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
+    /// motion meets an obstacle after `contact` seconds.
+    pub(crate) fn giving_way(&mut self, contact: f64) -> Option<Found> {
+        let latest = self.ample().min(contact);
+        self.with_a_length_if_possible(|search| {
+            let mut times = LEAVE.iter().map(|share| tidy_time(share * latest));
+            let found = times.find_map(|time| search.cheapest(time))?;
+            Some(search.improved(found, 0.0..=latest))
+        })
+    }
+
+    /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
+    /// there is an escape.
+    pub(crate) fn standing_on(&mut self, contact: f64) -> Option<Found> {
+        if self.hurries() {
+            return None;
+        }
+        let may = self.may_act() + MAY_S;
+        let mut latest = self.latest_escape(contact);
+        if latest.is_none_or(|latest| latest < may) {
+            // to hold on for as long as it must is worth more than a length
+            self.keeps_a_length = false;
+            latest = self.latest_escape(contact);
+        }
+        let latest = latest?;
+        let [near, nearest] = ESCAPE_LENGTHS.map(|lengths| self.comes_within(lengths));
+        let wanted = (latest - SPARE_S).min(near).max(may).min(nearest.max(may));
+        // it cannot hold on for as long as it must: then not longer than is safe
+        let wanted = if latest < may - MAY_S {
+            latest - SPARE_S
+        } else {
+            wanted
+        };
+        let leave = tidy_time(wanted.clamp(0.0, latest));
+        let earliest = (leave - EARLIER_S).max(may.min(leave)).max(0.0);
+        self.keeps_a_length = true;
+        self.with_a_length_if_possible(|search| {
+            let found = search.cheapest(leave);
+            let found = found.or_else(|| search.cheapest(tidy_time(latest)))?;
+            let leave = found.manoeuvre.leave;
+            Some(search.improved(found, earliest.min(leave)..=leave))
+        })
+    }
+
+    /// True where own ship starts on the path and could keep the desired speed, but the nominal
+    /// motion does not, because the horizon requires an earlier arrival: that is no hold.
+    fn hurries(&self) -> bool {
+        let (own, leg) = (self.problem().own, &self.problem().desired.legs()[0]);
+        let off = (own.pose.position - leg.start).norm();
+        let turn = wrap(own.pose.heading - heading_of(leg.direction)).abs();
+        let desired = |speed: f64| (speed - leg.speed).abs() <= tolerance::FIGURE * leg.speed;
+        off <= tolerance::JOINT_M
+            && turn <= tolerance::joint_rad(own.turning_radius)
+            && own.speeds.iter().any(|speed| desired(*speed))
+            && !self
+                .nominal_motion
+                .first()
+                .is_some_and(|s| desired(s.speed))
+    }
+
+    fn with_a_length_if_possible(
+        &mut self,
+        find: impl Fn(&Self) -> Option<Found>,
+    ) -> Option<Found> {
+        let found = find(self);
+        if found.is_some() || self.clock.is_up() {
+            return found;
+        }
+        self.keeps_a_length = false;
+        find(self)
+    }
+
+    /// Latest time of the first alteration that is in ample time for every target, seconds.
+    fn ample(&self) -> f64 {
+        let ample = ScoreLimits::STANDARD.ample_time_of(self.problem().own.hull.length);
+        let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
+        let latest = self.passing.iter().filter(keeps_clear).map(|p| {
+            let e = p.encountered;
+            e.tcpa - ample.min(e.tcpa - e.latched - REACT_S)
+        });
+        latest.fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    /// First time at which a stand-on ship may act, Rule 17(a)(ii), on the nominal motion.
+    fn may_act(&self) -> f64 {
+        let limits = &ScoreLimits::STANDARD;
+        let times = self.passing.iter().map(|p| {
+            let e = p.encountered;
+            let length = self.length(e);
+            match e.role {
+                Role::Overtaken => e.tcpa - limits.overtaken_lengths * length / e.own.speed,
+                _ => self.comes_within_of(e, limits.stage_3_lengths * length),
+            }
+        });
+        times.fold(0.0, f64::max)
+    }
+
+    fn length(&self, e: &Encountered) -> f64 {
+        e.hull.length.max(self.problem().own.hull.length)
+    }
+
+    /// Time at which the nominal motion comes within a number of lengths of a target; infinite if
+    /// it never does.
+    fn comes_within(&self, lengths: f64) -> f64 {
+        let all = self.passing.iter().map(|p| p.encountered);
+        all.map(|e| self.comes_within_of(e, lengths * self.length(e)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    fn comes_within_of(&self, e: &Encountered, range: f64) -> f64 {
+        let near = |s: &Segment| {
+            let relative = s.velocity_at(s.start_time) - e.ship.velocity();
+            let apart = s.start.position - e.ship.pose.position - e.ship.velocity() * s.start_time;
+            let (a, b) = (relative.norm_squared(), apart.dot(&relative));
+            let c = apart.norm_squared() - range * range;
+            if c <= 0.0 {
+                return Some(s.start_time);
+            }
+            let time = (-b - (b * b - a * c).sqrt()) / a;
+            (time >= 0.0 && time <= s.duration).then_some(s.start_time + time)
+        };
+        self.nominal_motion
+            .iter()
+            .find_map(near)
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// The latest time from which an escape is found, by sampling and bisection.
+    fn latest_escape(&self, contact: f64) -> Option<f64> {
+        let step = contact / SAMPLES as f64;
+        let exists = |time: f64| self.has_clear(tidy_time(time));
+        let mut times = (0..=SAMPLES).rev().map(|k| step * k as f64);
+        let mut latest = times.find(|t| self.clock.is_up() || exists(*t))?;
+        let mut too_late = latest + step;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (latest + too_late);
+            if self.clock.is_up() {
+                break;
+            }
+            if exists(middle) {
+                latest = middle;
+            } else {
+                too_late = middle;
+            }
+        }
+        (!self.clock.is_up()).then_some(latest)
+    }
+
+    fn alterations(&self) -> Vec<FirstAlteration> {
+        let problem = self.problem();
+        let (own, duty) = (problem.own, problem.duty());
+        let ordered = ManoeuvreSpeeds::of(problem);
+        let overtakes = (problem.encountered.iter()).any(|e| e.role == Role::Overtaking);
+        let faster = (overtakes && ordered.fast > ordered.normal).then_some(ordered.fast);
+        let mut all: Vec<FirstAlteration> = Vec::new();
+        for speed in std::iter::once(ordered.normal).chain(faster) {
+            for side in duty.sides() {
+                if duty.stands_on && *side == Side::Port {
+                    continue;
+                }
+                for turn in TURNS.map(|turn| turn * APPARENT_TURN * side.turn_sign()) {
+                    let aside = ASIDE_S.into_iter();
+                    all.extend(aside.map(|aside| FirstAlteration::Turn { turn, aside, speed }));
+                }
+            }
+        }
+        if duty.may_slow {
+            let slow = apparent_slow_speed(problem);
+            let speeds = own.moving_speeds().filter(|u| *u <= slow);
+            all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
+        }
+        all
+    }
+
+    /// The motions until every target is passed that are clear so far, with their lengths in
+    /// segments before they leave the route.
+    fn clear_outs(&self, leave: f64) -> impl Iterator<Item = Out> + '_ {
+        let before = until(self.nominal_motion, leave);
+        let alterations = self.alterations().into_iter();
+        alterations.filter_map(move |first| {
+            let out = self.out(&before, leave, first)?;
+            self.is_clear(&out.motion[before.len()..]).then_some(out)
+        })
+    }
+
+    fn has_clear(&self, leave: f64) -> bool {
+        self.clear_outs(leave).any(|out| {
+            let few = self.endings(&out).step_by(ENDINGS_SKIPPED);
+            few.into_iter().any(|ending| {
+                self.completed(&out, ending)
+                    .is_some_and(|m| self.is_allowed(&out, &m))
+            })
+        })
+    }
+
+    /// Seconds from passing to the return, and the angle of the return.
+    fn endings(&self, out: &Out) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let angles = match out.first {
+            FirstAlteration::Turn { .. } => &BACK[..],
+            FirstAlteration::Slow { .. } => &BACK[..1],
+        };
+        AFTER_S
+            .into_iter()
+            .flat_map(|after| angles.iter().map(move |back| (after, *back)))
+    }
+
+    /// The cheapest clear manoeuvre that begins at a time.
+    fn cheapest(&self, leave: f64) -> Option<Found> {
+        let mut candidates: Vec<(f64, usize, Manoeuvre)> = Vec::new();
+        let outs = self.clear_outs(leave).take_while(|_| !self.clock.is_up());
+        let outs: Vec<Out> = outs.collect();
+        for (index, out) in outs.iter().enumerate() {
+            let first = out.first;
+            for (after, back) in self.endings(out) {
+                let Some(motion) = self.completed(out, (after, back)) else {
+                    continue;
+                };
+                let rank = rank(&first, self.problem().error_of(&motion));
+                if rank.is_finite() {
+                    let manoeuvre = Manoeuvre {
+                        leave,
+                        first,
+                        after,
+                        back,
+                    };
+                    candidates.push((rank, index, manoeuvre));
+                }
+            }
+        }
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let candidates = candidates.into_iter().take_while(|_| !self.clock.is_up());
+        candidates.into_iter().find_map(|(_, out, manoeuvre)| {
+            let out = &outs[out];
+            let motion = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
+            self.is_allowed(out, &motion).then(|| Found {
+                manoeuvre,
+                cost: self.problem().error_of(&motion),
+                motion,
+            })
+        })
+    }
+
+    /// Pattern search: each parameter in turn, by steps that shrink.
+    fn improved(&self, mut best: Found, leave: std::ops::RangeInclusive<f64>) -> Found {
+        let mut step = 1.0;
+        for _ in 0..ROUNDS {
+            let mut gained = false;
+            for parameter in 0..5 {
+                for sign in [1.0, -1.0] {
+                    if self.clock.is_up() {
+                        return best;
+                    }
+                    let tried = best.manoeuvre.stepped(parameter, sign * step);
+                    let Some(mut tried) = tried.filter(|t| *t != best.manoeuvre) else {
+                        continue;
+                    };
+                    tried.leave = tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
+                    if let Some(found) = self.found(&tried, best.rank()) {
+                        best = found;
+                        gained = true;
+                        break;
+                    }
+                }
+            }
+            if !gained {
+                step *= 0.5;
+            }
+        }
+        best
+    }
+
+    /// A manoeuvre, if it is clear and cheaper than a rank.
+    fn found(&self, manoeuvre: &Manoeuvre, below: f64) -> Option<Found> {
+        let before = until(self.nominal_motion, manoeuvre.leave);
+        let out = self.out(&before, manoeuvre.leave, manoeuvre.first)?;
+        let motion = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
+        let cost = self.problem().error_of(&motion);
+        let found = Found {
+            manoeuvre: *manoeuvre,
+            motion,
+            cost,
+        };
+        let cheaper = found.rank() < below;
+        (cheaper && self.is_clear(&out.motion) && self.is_allowed(&out, &found.motion))
+            .then_some(found)
+    }
+
+    /// The motion until every target is passed.
+    fn out(&self, before: &[Segment], leave: f64, first: FirstAlteration) -> Option<Out> {
+        let problem = self.problem();
+        let own = problem.own;
+        let mut motion = before.to_vec();
+        let pose = motion.last().map_or(own.pose, Segment::end);
+        match first {
+            FirstAlteration::Slow { speed } => {
+                let route = self.context.route;
+                let along: f64 = motion.iter().map(Segment::length).sum();
+                let (on, _) = route.pose_at(along);
+                let passed = self.passed(on.position, on.ahead() * speed, leave)?;
+                let slow = (passed - leave).max(APPARENT_TIME);
+                route.run(along, leave, slow * speed, speed, &mut motion);
+            }
+            FirstAlteration::Turn { turn, aside, speed } => {
+                let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
+                chain.arc(turn * own.turning_radius);
+                let straight = |chain: &Chain| {
+                    let velocity = chain.pose.ahead() * speed;
+                    self.passed(chain.pose.position, velocity, chain.time)
+                };
+                if aside.is_finite() {
+                    chain.line(speed * aside);
+                    chain.arc(-turn * own.turning_radius);
+                }
+                let passed = straight(&chain)?;
+                chain.line(speed * (passed - chain.time));
+                motion.extend(chain.segments);
+            }
+        }
+        let in_time = motion.last()?.end_time() <= problem.horizon;
+        in_time.then_some(Out { first, motion })
+    }
+
+    /// The motion to the end of the route, for an ending.
+    fn completed(&self, out: &Out, (after, back): (f64, f64)) -> Option<Vec<Segment>> {
+        let (problem, route) = (self.problem(), self.context.route);
+        let mut motion = out.motion.clone();
+        let last = motion.last_mut()?;
+        if after > 0.0 {
+            if last.is_arc() {
+                let mut chain = Chain::new(
+                    last.end(),
+                    last.end_time(),
+                    last.speed,
+                    problem.own.turning_radius,
+                );
+                chain.line(after * last.speed);
+                motion.extend(chain.segments);
+            } else {
+                last.duration += after;
+            }
+        }
+        let last = motion.last()?;
+        let (pose, time) = (last.end(), last.end_time());
+        if let FirstAlteration::Slow { .. } = out.first {
+            let along: f64 = motion.iter().map(Segment::length).sum();
+            motion.extend(route.follow(along, time));
+        } else {
+            let near = problem.desired.nearest(pose.position, time, 0.0);
+            let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
+            let mut backs =
+                legs.filter_map(|leg| motion_back(problem, route, (&pose, time), leg, back));
+            motion.extend(backs.next()?);
+        }
+        let tidy = motion.iter().all(|s| s.duration >= LEAST_S);
+        let in_time = motion.last()?.end_time() <= problem.horizon;
+        (tidy && in_time).then_some(motion)
+    }
+
+    /// First time at which every target is past and clear on a straight course: on its first
+    /// course own ship would have it behind, the range opens, and it is more than a length away.
+    fn passed(&self, position: Vector, velocity: Vector, time: f64) -> Option<f64> {
+        const STEP_S: f64 = 5.0;
+        let horizon = self.problem().horizon;
+        let mut passed = time;
+        for p in &self.passing {
+            let e = p.encountered;
+            let target = e.ship.velocity();
+            let apart = e.ship.pose.position + target * time - position;
+            // each falls at a constant rate on a straight course
+            let ahead_of = |course: Vector| {
+                let relative = course - target;
+                let left = apart.dot(&relative);
+                let rate = (velocity - target).dot(&relative);
+                if left <= 0.0 {
+                    Some(time)
+                } else {
+                    (rate > 0.0).then_some(time + left / rate)
+                }
+            };
+            passed = passed
+                .max(ahead_of(e.own.velocity())?)
+                .max(ahead_of(velocity)?);
+        }
+        while passed <= horizon {
+            let there = position + velocity * (passed - time);
+            let clear = |p: &Passing| p.within_a_length.slack(there, passed).value > 0.0;
+            if !self.keeps_a_length || self.passing.iter().all(clear) {
+                return Some(passed);
+            }
+            passed += STEP_S;
+        }
+        None
+    }
+
+    /// True for segments that are clear of every set, of land, and of a length around every target.
+    fn is_clear(&self, segments: &[Segment]) -> bool {
+        let near = |s: &Segment| {
+            let mut passing = self.passing.iter();
+            passing.any(|p| contact::first_contact(&p.within_a_length, s, TOUCH_M).is_some())
+        };
+        first_met(self.context.proxies, segments).is_none()
+            && !land::meets(self.problem().land_obstacle, segments)
+            && !(self.keeps_a_length && segments.iter().any(near))
+    }
+
+    /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
+    fn is_allowed(&self, out: &Out, motion: &[Segment]) -> bool {
+        // the last segment may have become longer
+        self.is_clear(&motion[out.motion.len() - 1..])
+            && complies(self.context, self.nominal_motion, motion)
+    }
+}
+
+/// The motion until every target is passed.
+struct Out {
+    first: FirstAlteration,
+    motion: Vec<Segment>,
+}
+
+/// A time that leaves no short segment before it.
+fn tidy_time(time: f64) -> f64 {
+    if time < LEAST_S { 0.0 } else { time }
+}
+
+impl Manoeuvre {
+    /// One parameter changed by a step; `None` where it has none.
+    fn stepped(&self, parameter: usize, step: f64) -> Option<Self> {
+        let mut next = *self;
+        match (parameter, &mut next.first) {
+            (0, FirstAlteration::Turn { turn, .. }) => {
+                let more = (turn.abs() + 0.15 * step).max(APPARENT_TURN);
+                *turn = more * turn.signum();
+            }
+            (1, FirstAlteration::Turn { aside, .. }) if aside.is_finite() => {
+                *aside = (*aside + 20.0 * step).max(LEAST_S);
+            }
+            (2, _) => next.after = (next.after + 20.0 * step).max(0.0),
+            (3, FirstAlteration::Turn { .. }) => {
+                next.back = (next.back + 0.15 * step).clamp(0.1, 1.4);
+            }
+            (4, _) => next.leave += 20.0 * step,
+            _ => return None,
+        }
+        Some(next)
+    }
+}
