@@ -528,11 +528,10 @@ mod recordings {
             .expect("a distance");
         assert!((-1e-6..0.5).contains(&(least - dcpa_m)), "{least} {dcpa_m}");
         let line = stdout(&searoom(&["inspect", "--csv", "/chart/map/planned", &file]).success());
-        assert!(line.starts_with("line,point,x,y\n0,0,0.0,0.0\n"), "{line}");
-        let found = document(
-            &searoom(&["inspect", "--csv", "/chart/map/own_ship", "--json", &file]).success(),
+        assert!(
+            line.starts_with("colors,radii,strips\n") && line.contains("[[[0.0,0.0],"),
+            "{line}"
         );
-        assert_eq!(found["timelines"][0], "sim_time_s");
         searoom(&["inspect", "--csv", "curves/clearence", &file])
             .code(2)
             .stderr(contains(
@@ -591,46 +590,6 @@ mod recordings {
         searoom(&["compare", "scenarios/colregs", "--rrd", text(&file)])
             .code(2)
             .stderr(contains("name a folder"));
-        let again = folder.path().join("again.rrd");
-        searoom(&[
-            "compare",
-            HEAD_ON,
-            "--search",
-            "a-star",
-            "--rrd",
-            text(&again),
-        ])
-        .success();
-        searoom(&["inspect", text(&file), text(&again)])
-            .success()
-            .stdout(contains("the same, but for the time that planning took"));
-        let other = recordings.join("overtaking.rrd");
-        searoom(&["inspect", text(&file), text(&other)])
-            .code(1)
-            .stdout(contains("comparisons[0].entries[0].cost.length_m"));
-    }
-
-    #[test]
-    fn two_recordings_are_alike_or_differ_where_their_plans_do() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let (first, _) = recorded(folder.path(), "1.rrd", HEAD_ON);
-        let (again, _) = recorded(folder.path(), "2.rrd", HEAD_ON);
-        let (other, _) = recorded(folder.path(), "3.rrd", "scenarios/uncertainty/turning.toml");
-        searoom(&["inspect", &first, &again])
-            .success()
-            .stdout(contains("the same"));
-        searoom(&["inspect", &first, &other]).code(1).stdout(
-            contains("encounters[0].target: \"target\" | \"turning\"").and(contains(
-                "only in the second: /chart/map/domain_sets/turning",
-            )),
-        );
-        let found = document(&searoom(&["inspect", "--json", &first, &other]).code(1));
-        assert_eq!(found["equal"], false);
-        assert!(
-            found["changed"]
-                .as_array()
-                .is_some_and(|c| c.contains(&Value::from("/chart/map/planned")))
-        );
     }
 
     #[test]
@@ -651,15 +610,13 @@ mod recordings {
         refused(b"", "an empty file");
         refused(b"a text", "no Rerun recording");
         let cut_or_changed = "its checksum is missing or wrong";
-        for part in 1..200 {
-            let at = bytes.len() * part / 200;
+        for part in 1..8 {
+            let at = bytes.len() * part / 8;
             refused(&bytes[..at], cut_or_changed);
             let mut damaged = bytes.clone();
             damaged[at] ^= 0x55;
             refused(&damaged, cut_or_changed);
         }
-        refused(&bytes[..9], cut_or_changed);
-        refused(&bytes[..bytes.len() - 1], cut_or_changed);
         // a second one behind the first
         let (other, _) = recorded(folder.path(), "c.rrd", GIVE_WAY);
         let other = fs::read(other).expect("a recording");

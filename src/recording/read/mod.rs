@@ -1,10 +1,8 @@
 //! Reads a recording back, offline and whole.
 
-mod csv;
 mod table;
 mod values;
 
-pub use csv::Columns;
 pub use table::{EntityRow, EntityTable};
 
 use std::collections::BTreeMap;
@@ -57,9 +55,10 @@ pub struct Recorded {
 }
 
 /// Contents of one entity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct EntityContents {
     /// With a leading slash.
+    #[serde(rename = "entity")]
     pub path: String,
     /// Rows of all its chunks together.
     pub rows: usize,
@@ -70,7 +69,7 @@ pub struct EntityContents {
 }
 
 /// The range of a timeline that is used.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TimelineContents {
     /// Its name.
     pub name: String,

@@ -103,6 +103,52 @@ impl EntityTable {
         table
     }
 
+    /// The table for a CSV file, its header first: the times, then a column for each named curve
+    /// and one for each other component, as JSON. Where something changes in time, what holds at
+    /// all times is left out.
+    pub fn csv_rows(&self) -> Vec<Vec<String>> {
+        let is_timed = |row: &EntityRow| row.times.iter().any(Option::is_some);
+        let any_timed = self.rows.iter().any(is_timed);
+        let shown = |row: &&EntityRow| is_timed(row) || !any_timed;
+        let is_curves =
+            |component: &str| component.starts_with("Scalars:") && !self.names.is_empty();
+        let used = |c: &usize| {
+            self.rows
+                .iter()
+                .filter(shown)
+                .any(|r| !r.values[*c].is_null())
+        };
+        let used: Vec<usize> = (0..self.components.len()).filter(used).collect();
+        let mut header = self.timelines.clone();
+        for component in used.iter().map(|c| &self.components[*c]) {
+            if is_curves(component) {
+                header.extend_from_slice(&self.names);
+            } else {
+                let short = component.rsplit(':').next().unwrap_or(component);
+                header.push(short.to_owned());
+            }
+        }
+        let mut rows = vec![header];
+        for row in self.rows.iter().filter(shown) {
+            let time = |time: &Option<f64>| time.map_or_else(String::new, |t| t.to_string());
+            let mut cells: Vec<String> = row.times.iter().map(time).collect();
+            for &c in &used {
+                if is_curves(&self.components[c]) {
+                    let value = |i| {
+                        row.values[c]
+                            .get(i)
+                            .map_or_else(String::new, Value::to_string)
+                    };
+                    cells.extend((0..self.names.len()).map(value));
+                } else {
+                    cells.push(row.values[c].to_string());
+                }
+            }
+            rows.push(cells);
+        }
+        rows
+    }
+
     /// The text of a document, the last one written.
     pub(super) fn text(&self) -> Option<String> {
         self.texts(TEXT).pop()

@@ -4,7 +4,6 @@ mod body;
 pub mod chart;
 pub mod curves;
 pub mod explored;
-pub mod forces;
 pub mod land;
 pub mod path_time;
 pub mod rules;

@@ -3,10 +3,10 @@
 
 use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
 
-use super::chart::{Lines, multiples};
+use super::chart::multiples;
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::planner::path_time::PathTimeDiagram;
-use crate::recording::canvas::{ViewModel, round_down, style};
+use crate::recording::canvas::{Lines, ViewModel, labelled, round_down, style};
 use crate::recording::write::Recorder;
 use crate::recording::{PATH_TIME_PLANE, path};
 
@@ -65,7 +65,7 @@ pub fn log_path_time(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamRe
     log_obstacles(rec, model, diagram, &frame)?;
     let profile: Vec<[f32; 2]> = diagram.profile.iter().map(|p| frame.point(p)).collect();
     let line = LineStrips2D::new([profile])
-        .with_colors([style::own_ship()])
+        .with_colors([style::OWN_SHIP])
         .with_radii([style::points(2.0)])
         .with_draw_order(20.0);
     rec.log_static(path(&[PATH_TIME_PLANE, "profile"]), &line)?;
@@ -78,32 +78,28 @@ fn log_axes(
     diagram: &PathTimeDiagram,
     frame: &Frame,
 ) -> RecordingStreamResult<()> {
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     let (mut places, mut words) = (Vec::new(), Vec::new());
     let at = |distance: f64, time: f64| frame.point(&PathTime { distance, time });
     for distance in multiples(0.0, frame.length, round_down(frame.length / LINES)) {
-        let line = vec![at(distance, 0.0), at(distance, frame.top)];
-        lines.add(line, style::grid(), style::points(0.5));
+        let line = [at(distance, 0.0), at(distance, frame.top)];
+        lines.add(line, style::GRID, 0.5);
         places.push(at(distance, -0.03 * frame.top));
         words.push(format!("{distance:.0} m"));
     }
     for time in multiples(0.0, frame.top, round_down(frame.top / LINES)) {
-        let line = vec![at(0.0, time), at(frame.length, time)];
-        lines.add(line, style::grid(), style::points(0.5));
+        let line = [at(0.0, time), at(frame.length, time)];
+        lines.add(line, style::GRID, 0.5);
         if time > 0.0 {
             places.push(at(-0.03 * frame.length, time));
             words.push(format!("{time:.0} s"));
         }
     }
     for leg in diagram.legs.iter().skip(1) {
-        let line = vec![at(leg.begin, 0.0), at(leg.begin, frame.top)];
-        lines.add(line, style::desired(), style::points(0.8));
+        let line = [at(leg.begin, 0.0), at(leg.begin, frame.top)];
+        lines.add(line, style::DESIRED, 0.8);
     }
-    let words = Points2D::new(places)
-        .with_colors([style::chart_text()])
-        .with_radii([style::points(0.0)])
-        .with_labels(words)
-        .with_show_labels(true);
+    let words = labelled(places, style::CHART_TEXT, 0.0, words);
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&lines, &words];
     rec.log_static(path(&[PATH_TIME_PLANE, "axes"]), &parts)
@@ -130,13 +126,8 @@ fn log_obstacles(
         let Some(first) = outlines.first() else {
             continue;
         };
-        let count = first.len().max(1) as f32;
-        let middle = [0, 1].map(|axis| first.iter().map(|p| p[axis]).sum::<f32>() / count);
-        let name = Points2D::new([middle])
-            .with_colors([style::target(index)])
-            .with_radii([style::points(0.0)])
-            .with_labels([obstacle.name()])
-            .with_show_labels(true);
+        let place = first.first().copied();
+        let name = labelled(place, style::target(index), 0.0, [obstacle.name()]);
         let lines = LineStrips2D::new(outlines)
             .with_colors([style::target(index)])
             .with_radii([style::points(1.2)]);
@@ -157,7 +148,7 @@ fn log_now(
     let times: Vec<f64> = model.cursor_times.clone();
     let entity = path(&[PATH_TIME_PLANE, "now"]);
     let style = LineStrips2D::update_fields()
-        .with_colors([style::chart_text()])
+        .with_colors([style::CHART_TEXT])
         .with_radii([style::points(0.8)]);
     let lines = times
         .iter()
@@ -171,7 +162,7 @@ fn log_now(
     }
     let entity = path(&[PATH_TIME_PLANE, "own_ship"]);
     let style = Points2D::update_fields()
-        .with_colors([style::own_ship()])
+        .with_colors([style::OWN_SHIP])
         .with_radii([style::points(5.0)]);
     let places: Vec<[f32; 2]> = times
         .iter()

@@ -57,12 +57,6 @@ impl LineStyle {
         }
     }
 
-    /// True for a line that is often covered by another one.
-    #[cfg(feature = "recording")]
-    pub fn is_wide(&self) -> bool {
-        self.width >= WIDE
-    }
-
     /// Colour as red, green and blue.
     #[cfg(feature = "recording")]
     pub fn rgb(&self) -> [u8; 3] {
