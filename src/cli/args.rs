@@ -47,8 +47,6 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),
-    /// Prints the manual as roff: `searoom man > searoom.1`
-    Man,
 }
 
 #[derive(Debug, Args)]
@@ -62,7 +60,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct AssessArgs {
-    /// A scenario file
+    /// A scenario file, or a file of another format with one situation
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     /// A point at a time: metres, metres, seconds; repeatable
@@ -89,6 +87,8 @@ pub struct AssessArgs {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -145,7 +145,7 @@ pub struct ImportArgs {
     mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
 )]
 pub struct CompareArgs {
-    /// Scenario files, or folders of them
+    /// Scenario files, files of other formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -158,6 +158,8 @@ pub struct CompareArgs {
     pub csv: Option<PathBuf>,
     #[command(flatten)]
     pub written: Written,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]

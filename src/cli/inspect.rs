@@ -22,10 +22,7 @@ const OFFERED: usize = 3;
 pub fn inspect(args: &InspectArgs, output: &Output) -> ExitStatus {
     match guarded(|| one(args, output)) {
         Ok(Ok(status)) => status,
-        Ok(Err(error)) => {
-            output.error(&format_args!("{error:#}"));
-            ExitStatus::BadInput
-        }
+        Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
         Err(fault) => {
             output.error(&fault);
             ExitStatus::InternalFault

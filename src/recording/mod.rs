@@ -66,8 +66,6 @@
 //! - `velocities/plane/axes`, `own_ship`: the plane of velocities, m/s
 //! - `velocities/plane/obstacles/<target>`: velocities that, kept from the cursor on, meet the hard
 //!   set within 300 s or by the end
-//! - `path_time/plane/…`: for a path-time plan, the diagram in which it was found: `axes`,
-//!   `profile`, `obstacles/<target>`, `now`, `own_ship`
 //!
 //! # Entities of a comparison
 //!
@@ -112,8 +110,6 @@ const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
 const RULES: &str = "rules";
-const PATH_TIME: &str = "path_time";
-const PATH_TIME_PLANE: &str = "path_time/plane";
 
 /// An entity path. The first part may hold slashes; the others are taken literally, as targets may
 /// have any name.

@@ -134,7 +134,7 @@ fn every_kind_of_run_has_its_entities() {
         space_time/domain_sets/{} space_time/planned space_time/explored/free
         curves/clearance_m curves/margin_m curves/risk curves/speed_kn curves/course_deg
         velocities/plane/own_ship velocities/plane/obstacles/{}";
-    assert_entities(&run(), there, "chart/map/conflict path_time/plane");
+    assert_entities(&run(), there, "chart/map/conflict");
     let there = "chart/map/conflict curves/margin_m";
     assert_entities(&run_without_plan(), there, "chart/map/planned");
     let mut there = "chart/map/violations".to_owned();
@@ -191,7 +191,7 @@ fn nothing_is_said_of_the_margin_after_arrival() {
     write_run(&run, &path).expect("writes");
     let recorded = Recorded::read(&path).expect("whole");
     let drawn = recorded.table("curves/margin_m").expect("there");
-    let last = drawn.rows.last().expect("rows").times[0].expect("a time");
+    let last = drawn.rows.last().expect("rows").time.expect("a time");
     assert!((last - model.samples[before - 1]).abs() < 1e-6, "{last}");
     let speeds = recorded.table(curves::SPEED).expect("there");
     let last = &speeds.rows.last().expect("rows").values;
@@ -364,28 +364,6 @@ fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
     let least = kept.expect("level sets are neither").values.iter().copied();
     let least = least.fold(f64::INFINITY, f64::min);
     assert!(least.abs() < 1.0, "the plan keeps close: {least}");
-}
-
-/// The diagram is there with and without a clear plan, and only for plans along paths.
-#[test]
-fn a_path_time_plan_has_its_diagram() {
-    let crossing = HEAD_ON
-        .replace("course_deg = 270.0", "course_deg = 180.0")
-        .replace(
-            "east_m = 1500.0, north_m = 0.0 }\ncourse",
-            "east_m = 700.0, north_m = 700.0 }\ncourse",
-        );
-    for (text, clear) in [(HEAD_ON, false), (crossing.as_str(), true)] {
-        let text = text.replace(
-            "[[targets]]",
-            "[planner]\nkind = \"path-time\"\n[[targets]]",
-        );
-        let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
-        assert_eq!(!run.enters(), clear);
-        let parts = ["axes", "profile", "now", "own_ship", "obstacles/{}"];
-        let parts = parts.map(|part| format!("path_time/plane/{part}"));
-        assert_entities(&run, &parts.join(" "), "");
-    }
 }
 
 /// Viewers merge recordings of one name.

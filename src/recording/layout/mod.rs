@@ -23,10 +23,10 @@ use crate::recording::views::curves::{
     self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
 };
 use crate::recording::views::explored::BLOCKED;
-use crate::recording::views::{path_time, rules, velocities};
+use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EXPLORED, PATH_TIME, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
+    CHART, EXPLORED, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
 };
 
 /// How long it takes to play the whole run, seconds.
@@ -45,13 +45,7 @@ pub fn of_run(model: &ViewModel) -> RecordingStreamResult<Recorder> {
     left.push(to.view::<TextDocumentView>("Verdict", SUMMARY)?);
     left_shares.push(0.34);
     let left = to.below(&left, left_shares)?;
-    let mut views = vec![volume_view(
-        to,
-        model,
-        path(&[VOLUME, "explored", BLOCKED]),
-    )?];
-    views.extend(path_time_view(to, model)?);
-    let mut shares = vec![0.5 / views.len() as f32; views.len()];
+    let volume = volume_view(to, model, path(&[VOLUME, "explored", BLOCKED]))?;
     let mut plots = vec![
         ("Clearance between hulls (m)", CLEARANCE),
         ("Margin to the sets (m)", MARGIN),
@@ -68,9 +62,8 @@ pub fn of_run(model: &ViewModel) -> RecordingStreamResult<Recorder> {
     }
     let mut small = plot_views(to, model, &plots)?;
     small.push(velocity_view(to, model)?);
-    views.push(to.grid(&small, 2)?);
-    shares.push(0.5);
-    let right = to.below(&views, shares)?;
+    let small = to.grid(&small, 2)?;
+    let right = to.below(&[volume, small], [0.5, 0.5])?;
     let root = to.beside(&[left, right], [0.54, 0.46])?;
     layout.finished(&root, &time_panel(model))
 }
@@ -230,18 +223,3 @@ fn rules_view(to: &mut Panes, model: &ViewModel) -> RecordingStreamResult<Option
 const LANES_HEAD: f32 = 0.075;
 const LANE: f32 = 0.03;
 const MOST_LANES: usize = 5;
-
-/// The diagram of a path-time plan, beside the volume.
-fn path_time_view(to: &mut Panes, model: &ViewModel) -> RecordingStreamResult<Option<Pane>> {
-    let Some(diagram) = model.run.planned.path_time.as_deref() else {
-        return Ok(None);
-    };
-    let frame = path_time::Frame::of(diagram);
-    let height = frame.top * frame.rise;
-    // the view's own axis points down: time is negative there
-    let shown = [
-        [-0.08 * frame.length, 1.04 * frame.length],
-        [-1.04 * height, 0.08 * height],
-    ];
-    plane_view(to, ("Path and time: time upward", PATH_TIME), shown).map(Some)
-}

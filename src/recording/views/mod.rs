@@ -5,7 +5,6 @@ pub mod chart;
 pub mod curves;
 pub mod explored;
 pub mod land;
-pub mod path_time;
 pub mod rules;
 pub mod ships;
 pub mod space_time;

@@ -154,7 +154,8 @@ pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     log_marks(rec, model)
 }
 
-/// Logs where own ship breaks a rule, and where it stops standing on.
+/// Logs where own ship breaks a rule, and where it stops standing on. A mark is named where it is
+/// pointed at.
 fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
     for (_, name, conduct) in judged(model) {
@@ -178,7 +179,7 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
         .with_colors(colors.iter().copied())
         .with_radii([style::points(4.5)])
         .with_labels(labels.iter().copied())
-        .with_show_labels(true)
+        .with_show_labels(false)
         .with_draw_order(40.0);
     rec.log_static(path(&[MAP, "rules"]), &on_chart)?;
     let in_volume = Points3D::new(marks.iter().map(|m| model.lifted(place(m.0), m.0)))

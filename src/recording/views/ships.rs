@@ -120,7 +120,7 @@ fn log_target(
         lines.add([[0.0, 0.0], flat(tip)], color, 0.8);
     }
     let lines = lines.archetype();
-    let name = labelled([[0.0, 0.0]], color, 0.0, [target.name.as_str()]);
+    let name = label(canvas, color, &target.name);
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
     let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
     log_places(rec, canvas, entity, &parts, places)
@@ -135,7 +135,7 @@ pub fn log_own_ship(
     own: &DrawnShip,
     named: bool,
 ) -> RecordingStreamResult<()> {
-    let name = labelled([[0.0, 0.0]], own.color, 0.0, [own.name.as_str()]).with_show_labels(named);
+    let name = label(canvas, own.color, &own.name).with_show_labels(named);
     let places = canvas
         .cursor_times
         .iter()
@@ -221,6 +221,12 @@ fn log_own_hull(
 /// How far ahead a speed vector reaches, seconds.
 pub fn vector_seconds(canvas: &Canvas) -> f64 {
     round_down(canvas.end / 6.0)
+}
+
+/// A name north of a ship, as time marks have theirs south of it.
+fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
+    let off = (canvas.bounds.extent() / 22.0) as f32;
+    labelled([[0.0, off]], color, 0.0, [name])
 }
 
 /// About the vertical, counter-clockwise seen from above.

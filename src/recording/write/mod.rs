@@ -13,9 +13,7 @@ use rerun::components::MediaType;
 use rerun::{EntityPath, RecordingInfo, RecordingStreamResult, TextDocument};
 
 use super::canvas::ViewModel;
-use super::views::{
-    chart, curves, explored, land, path_time, rules, ships, space_time, summary, velocities,
-};
+use super::views::{chart, curves, explored, land, rules, ships, space_time, summary, velocities};
 use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
 use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
@@ -129,7 +127,6 @@ fn log_run(
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
     summary::log_summary(rec, model, plan, drawn)?;
-    path_time::log_path_time(rec, model)?;
     rules::log_rules(rec, model)?;
     layout::of_run(model)
 }

@@ -1,6 +1,6 @@
 //! Drawable curves and areas of sets.
 
-use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
+use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
@@ -22,6 +22,25 @@ pub struct Stroke {
     pub width: f64,
     /// True for a dashed curve.
     pub dashed: bool,
+}
+
+impl Stroke {
+    /// Creates a continuous stroke with its width in pixels.
+    pub const fn solid(colour: &'static str, width: f64) -> Self {
+        Self {
+            colour,
+            width,
+            dashed: false,
+        }
+    }
+
+    /// Creates a dashed stroke with its width in pixels.
+    pub const fn dashed(colour: &'static str, width: f64) -> Self {
+        Self {
+            dashed: true,
+            ..Self::solid(colour, width)
+        }
+    }
 }
 
 /// Boundary of a section, counter-clockwise; ellipses are sampled.
@@ -53,23 +72,10 @@ pub fn mark(at: Vector, colour: &str) -> Plot {
     Plot::Scatter(point.with_color(colour).with_size(4.5))
 }
 
-/// Symbols that distinguish coincident points of different curves.
-pub(super) const SYMBOLS: [MarkerShape; 8] = [
-    MarkerShape::Circle,
-    MarkerShape::Square,
-    MarkerShape::Diamond,
-    MarkerShape::Triangle,
-    MarkerShape::Star,
-    MarkerShape::TriangleDown,
-    MarkerShape::Cross,
-    MarkerShape::Plus,
-];
-
-/// Draws points with one symbol; `size` is the distance in pixels from its centre to its edge.
-pub(super) fn symbols(at: &[Vector], symbol: MarkerShape, size: f64, colour: &str) -> Plot {
+/// Draws the points of a curve.
+pub(super) fn marks(at: &[Vector], colour: &str) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
-    let points = points.with_color(colour).with_size(size);
-    Plot::Scatter(points.with_marker(symbol))
+    Plot::Scatter(points.with_color(colour).with_size(4.0))
 }
 
 /// Draws a filled convex polygon as the band between its lower and upper chain. `None` if its area
