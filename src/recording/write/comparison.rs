@@ -20,7 +20,7 @@ use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, EXPLORED, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, LineStyle, Method};
+use crate::study::compare::{Entry, Method, Stroke};
 
 /// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
@@ -87,7 +87,7 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
 struct Candidate<'a> {
     entry: &'a Entry,
     own: DrawnShip<'a>,
-    style: LineStyle,
+    style: Stroke,
 }
 
 fn log(rec: &mut Recorder, compared: &Compared) -> RecordingStreamResult<Recorder> {
@@ -150,7 +150,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
     let sailing = entries.iter().filter_map(|entry| {
         let motion = ShownMotion::Planned(entry.trajectory()?);
         let candidate = entry.candidate;
-        let style = LineStyle::of(candidate.method);
+        let style = Stroke::of(candidate.method);
         let all: Vec<f64> = risks(candidate.method).collect();
         let place = all.iter().position(|r| *r == candidate.max_risk);
         let share = place.unwrap_or(0) as f32 / (all.len().max(2) - 1) as f32;

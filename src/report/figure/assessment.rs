@@ -1,10 +1,10 @@
 //! Figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
-use super::outline::{Stroke, curve, mark};
+use super::outline::{curve, mark};
 use super::panel::AREA;
 use super::sections::{seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::OwnSituation;

@@ -1,17 +1,17 @@
 //! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
 //! risk.
 
-use super::outline::{Stroke, area, curve, marks, sampled_boundary};
+use super::outline::{area, curve, marks, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, LineStyle, Method};
+use crate::study::compare::{Entry, Method};
 
 /// Colour of the targets' sets.
 const SETS: &str = "#888888";
@@ -62,7 +62,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
                     None => "no plan".to_owned(),
                 },
                 diagram,
-                stroke: stroke(method),
+                stroke: Stroke::of(method),
             };
             let title = match entry.candidate.max_risk {
                 risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
@@ -78,19 +78,6 @@ fn is_sweep(entries: &[Entry]) -> bool {
     entries.iter().any(|e| risk(e) != risk(&entries[0]))
 }
 
-fn stroke(method: Method) -> Stroke {
-    let LineStyle {
-        colour,
-        width,
-        dashed,
-    } = LineStyle::of(method);
-    Stroke {
-        colour,
-        width,
-        dashed,
-    }
-}
-
 fn times(entry: &Entry) -> Vec<f64> {
     let end = entry.trajectory().map_or(0.0, |t| t.end_time());
     let steps = (end / STEP).ceil().max(1.0) as usize;
@@ -102,7 +89,7 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
     for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
         let method = entry.candidate.method;
         if last != Some(method) {
-            panel.line_key(&named(method, entries), stroke(method));
+            panel.line_key(&named(method, entries), Stroke::of(method));
             last = Some(method);
         }
     }
@@ -129,7 +116,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .map(|entry| {
             let at = |time| entry.position_at(time);
             let way = times(entry).into_iter().filter_map(at).collect();
-            (stroke(entry.candidate.method), way)
+            (Stroke::of(entry.candidate.method), way)
         })
         .collect();
     let waypoints = scenario.desired.waypoints();
@@ -195,7 +182,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
                 let nearest = apart.fold(f64::INFINITY, f64::min);
                 nearest.is_finite().then(|| Vector::new(time, nearest))
             });
-            (stroke(entry.candidate.method), line.collect())
+            (Stroke::of(entry.candidate.method), line.collect())
         })
         .collect();
     let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -258,7 +245,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         window,
     );
     for (method, line) in lines.iter().rev() {
-        let stroke = stroke(*method);
+        let stroke = Stroke::of(*method);
         panel.plots.push(curve(line, false, stroke));
         panel.plots.push(marks(line, stroke.colour));
     }
@@ -268,7 +255,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
             (Some(first), Some(last)) => format!("{method}: {:.0} to {:.0} m²", first.y, last.y),
             _ => format!("{method}: none within the risk"),
         };
-        panel.line_key(&label, stroke(*method));
+        panel.line_key(&label, Stroke::of(*method));
     }
     panel
 }

@@ -6,10 +6,10 @@ use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
 use super::outline::{
-    Approaching, Stroke, area, curve, mark, outer_velocities_within, sampled_boundary, square,
+    Approaching, area, curve, mark, outer_velocities_within, sampled_boundary, square,
 };
 use super::sections::PLAN;
-use super::{Panel, PlotWindow};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};

@@ -1,7 +1,7 @@
 //! Velocities and forces over time of a plan under forces.
 
-use super::outline::{Stroke, curve};
-use super::{Panel, PlotWindow};
+use super::outline::curve;
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::{Vector, clockwise_deg_per_s};
 use crate::trajectory::{ForceNode, Steered};
 

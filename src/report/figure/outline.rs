@@ -6,42 +6,13 @@ use kuva::render::plots::Plot;
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
+use crate::study::compare::Stroke;
 
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
 /// Accuracy of a drawn velocity obstacle of ellipses, as a fraction of the limit.
 const FINENESS: f64 = 5e-4;
-
-/// Stroke of a curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
-    /// Colour as `#rrggbb`.
-    pub colour: &'static str,
-    /// Width in pixels.
-    pub width: f64,
-    /// True for a dashed curve.
-    pub dashed: bool,
-}
-
-impl Stroke {
-    /// Creates a continuous stroke with its width in pixels.
-    pub const fn solid(colour: &'static str, width: f64) -> Self {
-        Self {
-            colour,
-            width,
-            dashed: false,
-        }
-    }
-
-    /// Creates a dashed stroke with its width in pixels.
-    pub const fn dashed(colour: &'static str, width: f64) -> Self {
-        Self {
-            dashed: true,
-            ..Self::solid(colour, width)
-        }
-    }
-}
 
 /// Boundary of a section, counter-clockwise; ellipses are sampled.
 pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {

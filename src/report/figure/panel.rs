@@ -5,8 +5,7 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
-use super::PlotWindow;
-use super::outline::Stroke;
+use super::{PlotWindow, Stroke};
 use crate::frame::Vector;
 
 /// Size in pixels of the area between the axes.

@@ -1,8 +1,8 @@
 //! Path-time diagram: distance along the path horizontally, time vertically, paper figures 5b and
 //! 6b.
 
-use super::outline::{Stroke, area, curve};
-use super::{Panel, PlotWindow};
+use super::outline::{area, curve};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::PathTime;

@@ -4,10 +4,10 @@
 use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
-use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::outline::{area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
@@ -139,9 +139,8 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
             .plots
             .extend(polygon.and_then(|p| area(&p, colour, opacity)));
         let outline = Stroke {
-            colour,
-            width: 1.0,
             dashed: *k > 0,
+            ..Stroke::solid(colour, 1.0)
         };
         panel.plots.push(curve(boundary, true, outline));
     }

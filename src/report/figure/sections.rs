@@ -1,7 +1,7 @@
 //! Figures of target sets: the two sets, and sections over time.
 
-use super::outline::{Stroke, area, curve, sampled_boundary};
-use super::{Panel, PlotWindow};
+use super::outline::{area, curve, sampled_boundary};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::obstacle::Obstacle;

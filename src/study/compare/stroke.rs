@@ -1,17 +1,16 @@
-//! Line style of each method in figures and recordings.
+//! Strokes of curves; each method has the same one in figures and recordings.
 
 use super::Method;
 use crate::target::Representation;
 
-/// Line style of a method. Any two styles differ in lightness, width or dashes, so they are
-/// distinguishable without colour. All are visible on white and on the dark chart of a recording.
+/// Stroke of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineStyle {
+pub struct Stroke {
     /// Colour as `#rrggbb`.
     pub colour: &'static str,
     /// Width in pixels of a figure.
     pub width: f64,
-    /// True for baselines.
+    /// True for a dashed curve.
     pub dashed: bool,
 }
 
@@ -38,22 +37,38 @@ const STYLES: [(&str, f64); 9] = [
     ("#7a5195", WIDE),
 ];
 
-impl LineStyle {
-    /// Returns the style of a method, independent of the other methods shown.
-    pub fn of(method: Method) -> Self {
-        let (colour, width) = match method {
-            Method::Planner { .. } => {
-                let all = Method::of_planners(&[None, Some(Representation::Ellipsoid)]);
-                let same = |known: &Method| known.to_string() == method.to_string();
-                STYLES[all.iter().position(same).unwrap_or_default() % STYLES.len()]
-            }
-            Method::HoldCourse => ("#cc5de8", THIN),
-            Method::ConstantVelocity => ("#8c6d31", THIN),
-        };
+impl Stroke {
+    /// Creates a continuous stroke with its width in pixels.
+    pub const fn solid(colour: &'static str, width: f64) -> Self {
         Self {
             colour,
             width,
-            dashed: !matches!(method, Method::Planner { .. }),
+            dashed: false,
+        }
+    }
+
+    /// Creates a dashed stroke with its width in pixels.
+    pub const fn dashed(colour: &'static str, width: f64) -> Self {
+        Self {
+            dashed: true,
+            ..Self::solid(colour, width)
+        }
+    }
+
+    /// Returns the stroke of a method, independent of the other methods shown; baselines are
+    /// dashed. Any two differ in lightness, width or dashes, so they are distinguishable without
+    /// colour. All are visible on white and on the dark chart of a recording.
+    pub fn of(method: Method) -> Self {
+        match method {
+            Method::Planner { .. } => {
+                let all = Method::of_planners(&[None, Some(Representation::Ellipsoid)]);
+                let same = |known: &Method| known.to_string() == method.to_string();
+                let index = all.iter().position(same).unwrap_or_default();
+                let (colour, width) = STYLES[index % STYLES.len()];
+                Self::solid(colour, width)
+            }
+            Method::HoldCourse => Self::dashed("#cc5de8", THIN),
+            Method::ConstantVelocity => Self::dashed("#8c6d31", THIN),
         }
     }
 
