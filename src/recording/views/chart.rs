@@ -11,7 +11,6 @@ use crate::recording::canvas::{
 use crate::recording::write::Recorder;
 use crate::recording::{MAP, path};
 use crate::target::Target;
-use crate::text::tenths;
 use crate::trajectory::{Cubic, Segment, Trajectory};
 
 /// Turn between two drawn points of an arc, radians.
@@ -217,8 +216,8 @@ fn log_track(
     )
 }
 
-/// Logs a line between own ship and each target at their closest approach, with its distance and
-/// time. Distances are shown where there is one target, else where a line is pointed at.
+/// Logs a line between own ship and each target at their closest approach. Distance and time are
+/// shown where a line is pointed at.
 fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
@@ -229,12 +228,13 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
         let own = model.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
         lines.add([own, other].map(flat), style::CHART_TEXT, 0.8);
-        let (distance, time) = (tenths(passage.dcpa), passage.tcpa);
+        // adding +0.0 converts a negative zero to zero
+        let distance = (passage.dcpa * 10.0).round() / 10.0 + 0.0;
+        let time = passage.tcpa;
         labels.push(format!("CPA {distance} m at {time:.0} s"));
     }
-    let shown = labels.len() == 1;
     let lines = lines.archetype().with_labels(labels);
-    let lines = lines.with_show_labels(shown);
+    let lines = lines.with_show_labels(false);
     rec.log_static(path(&[MAP, "closest_points"]), &lines)
 }
 
