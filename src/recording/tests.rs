@@ -9,7 +9,7 @@ use rerun::{ChunkStore, ChunkStoreConfig};
 use super::canvas::ViewModel;
 use super::views::curves;
 use super::*;
-use crate::document::{self, PlanDocument};
+use crate::document::PlanDocument;
 use crate::evaluation::Violation;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};
@@ -393,31 +393,4 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
     ] {
         assert!(names(&first).is_disjoint(&names(&other)));
     }
-}
-
-/// No length in a damaged file is believed, so nothing of it is decoded.
-#[test]
-fn every_cut_and_every_changed_byte_is_an_error() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("a.rrd");
-    let run = run();
-    let plan = PlanDocument::of(&run);
-    write(&run, &plan, &path).expect("writes");
-    let whole = std::fs::read(&path).expect("a file");
-    let refused = |bytes: &[u8], case: &str| {
-        std::fs::write(&path, bytes).expect("written");
-        let read = Recorded::read(&path);
-        assert!(matches!(read, Err(ReadError::Broken { .. })), "{case}");
-    };
-    let step = whole.len() / 500;
-    for at in (0..whole.len()).step_by(step).chain([1, 11, 12, 13]) {
-        refused(&whole[..at], &format!("cut at {at}"));
-        let mut changed = whole.clone();
-        changed[at] ^= 1 << (at % 8);
-        refused(&changed, &format!("byte {at} changed"));
-    }
-    refused(&[&whole[..], &whole].concat(), "two recordings");
-    std::fs::write(&path, &whole).expect("written");
-    let kept = Recorded::read(&path).expect("whole").document();
-    assert_eq!(kept, document::json(&plan).ok());
 }
