@@ -51,11 +51,7 @@ fn main() -> Result<(), FigureError> {
     let line = ProfileLine {
         label: "at most 1.5 m/s".to_owned(),
         diagram: &diagram,
-        stroke: Stroke {
-            colour: "#000000",
-            width: 2.4,
-            dashed: false,
-        },
+        stroke: Stroke::solid("#000000", 2.4),
     };
     let times = [0.0, 30.0, 60.0, 90.0];
     let panels = vec![

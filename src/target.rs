@@ -252,6 +252,18 @@ impl Target {
         self.sets().map(|sets| sets.outer_section(time))
     }
 
+    /// Metres between a hull at `pose` and the target's nominal hull at `time`, negative in overlap.
+    /// For explicit sets: from the centre of the hull, as they include it.
+    pub fn distance_from(&self, hull: &Hull, pose: &Pose, time: f64) -> f64 {
+        match &self.motion {
+            Motion::Ship(ship) => {
+                let other = ship.hull.polygon(&ship.pose_at(time));
+                hull.polygon(pose).separation(&other)
+            }
+            Motion::Sets(sets) => sets.outer_section(time).signed_distance(pose.position),
+        }
+    }
+
     /// The explicit sets, if it has them.
     pub fn sets(&self) -> Option<&Uncertainty> {
         match &self.motion {

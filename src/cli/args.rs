@@ -20,9 +20,8 @@ use super::output::status::ExitStatus;
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
 /// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one
-/// that takes a risk or enters a set, a plan that is rejected, or recordings that differ, 2 bad
-/// input or usage, or a result that cannot be written, 3 a fault of the program; the highest of a
-/// run wins.
+/// that takes a risk or enters a set, or a plan that is rejected, 2 bad input or usage, or a result
+/// that cannot be written, 3 a fault of the program; the highest of a run wins.
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100)]
 pub struct Arguments {
@@ -44,15 +43,13 @@ pub enum Command {
     Import(ImportArgs),
     /// Every planner that applies and two baselines on the same scenarios, side by side
     Compare(CompareArgs),
-    /// Shows the contents of a recording, or the differences of two
+    /// Shows the contents of a recording
     Inspect(InspectArgs),
     /// Checks plan documents again from themselves alone, without the planners and their contact
     /// tests
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),
-    /// Prints the manual as roff: `searoom man > searoom.1`
-    Man,
 }
 
 #[derive(Debug, Args)]
@@ -66,7 +63,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct AssessArgs {
-    /// A scenario file
+    /// A scenario file, or a file of another format with one situation
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     /// A point at a time: metres, metres, seconds; repeatable
@@ -93,6 +90,8 @@ pub struct AssessArgs {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -149,7 +148,7 @@ pub struct ImportArgs {
     mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
 )]
 pub struct CompareArgs {
-    /// Scenario files, or folders of them
+    /// Scenario files, files of other formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -162,6 +161,8 @@ pub struct CompareArgs {
     pub csv: Option<PathBuf>,
     #[command(flatten)]
     pub written: Written,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -169,14 +170,11 @@ pub struct InspectArgs {
     /// A recording
     #[arg(value_name = "FILE.rrd")]
     pub recording: PathBuf,
-    /// Another one: what differs is shown
-    #[arg(value_name = "OTHER.rrd", conflicts_with_all = ["plan", "csv"])]
-    pub other: Option<PathBuf>,
     /// Print the plan document in it, as `plan --json` wrote it
     #[arg(long, conflicts_with_all = ["csv", "json"])]
     pub plan: bool,
-    /// Print the rows of an entity as CSV, of a line its points; with --json as JSON
-    #[arg(long, value_name = "ENTITY")]
+    /// Print the rows of an entity as CSV: a column per curve, other components as JSON
+    #[arg(long, value_name = "ENTITY", conflicts_with = "json")]
     pub csv: Option<String>,
     /// Print one JSON document instead of text
     #[arg(long)]

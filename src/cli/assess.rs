@@ -10,7 +10,7 @@ use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint, assess as answ
 
 use super::args::AssessArgs;
 use super::input::rows;
-use super::input::scenes::scenario_file;
+use super::input::scenes::{Made, open_one};
 use super::output::Output;
 use super::output::products::prepare_figure;
 use super::output::status::ExitStatus;
@@ -19,21 +19,13 @@ use super::runner::guarded;
 /// Assesses one file.
 pub fn assess(args: &AssessArgs, output: &Output) -> ExitStatus {
     let file = &args.scenario;
-    if file.is_dir() {
-        output.error(&format_args!(
-            "{}: a folder; `assess` takes one scenario",
-            file.display()
-        ));
-        return ExitStatus::BadInput;
-    }
     // before any computation
     if let Some(path) = &args.figure
         && let Err(error) = prepare_figure(path)
     {
-        output.error(&format_args!("{error:#}"));
-        return ExitStatus::BadInput;
+        return output.refuse(&format_args!("{error:#}"));
     }
-    match guarded(|| read(args)) {
+    match guarded(|| read(args, output)) {
         Ok(Ok((scenario, query))) => {
             let shown = guarded(|| show(args, &scenario, &query, output));
             shown.unwrap_or_else(|fault| {
@@ -55,9 +47,12 @@ pub fn assess(args: &AssessArgs, output: &Output) -> ExitStatus {
 }
 
 /// Reads all requested files, and returns all errors.
-fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
+fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
-    let scenario = scenario_file(&args.scenario).map_err(|e| errors.push(e));
+    let assumed = args.assumed.assumed();
+    let scenario = open_one(&args.scenario, &assumed, output)
+        .and_then(|scene| scene.scenario(&assumed).map_err(|error| error.to_string()))
+        .map_err(|error| errors.push(error));
     let mut points = args.at.clone();
     if let Some(file) = &args.points {
         match rows::read(file, &rows::POINT) {
@@ -87,7 +82,10 @@ fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
             .collect(),
     };
     match scenario {
-        Ok(scenario) if errors.is_empty() => Ok((scenario, query)),
+        Ok(Made { scenario, notes }) if errors.is_empty() => {
+            notes.iter().for_each(|note| output.note(note));
+            Ok((scenario, query))
+        }
         _ => Err(errors),
     }
 }
@@ -119,10 +117,7 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
             .write(path)
         {
             Ok(()) => ExitStatus::Good,
-            Err(error) => {
-                output.error(&error);
-                ExitStatus::BadInput
-            }
+            Err(error) => output.refuse(&error),
         },
         None => ExitStatus::Good,
     };

@@ -13,11 +13,12 @@ use searoom::report::{
     COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
 };
 use searoom::scenario::Scenario;
+use searoom::scenario::import::Assumed;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
 use super::input::files::{self, Found};
-use super::input::scenes::{note_foreign, scenario_file};
+use super::input::scenes::{self, Made, Scene};
 use super::output::Output;
 use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepare_figure};
 use super::output::status::ExitStatus;
@@ -45,12 +46,11 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
     if let Some(path) = &args.written.figure
         && let Err(error) = prepare_figure(path)
     {
-        output.error(&format_args!("{error:#}"));
-        return ExitStatus::BadInput;
+        return output.refuse(&format_args!("{error:#}"));
     }
-    let all = files::find(&args.paths, &files::SCENARIOS, output);
-    note_foreign(&args.paths, output);
-    let found: Vec<Found> = all.iter().flatten().cloned().collect();
+    let assumed = args.assumed.assumed();
+    let all = scenes::open(files::find(&args.paths, output), &assumed, output);
+    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
@@ -59,15 +59,14 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
     let products = match Products::prepare(&found, wanted) {
         Ok(products) => products,
         Err(error) => {
-            output.error(&format_args!("{error:#}"));
-            return ExitStatus::BadInput;
+            return output.refuse(&format_args!("{error:#}"));
         }
     };
     let asked: Vec<Asked> = all
         .into_iter()
-        .map(|found| match found {
-            Ok(found) => ask(&found, args),
-            Err((path, error)) => Asked::refused(path.display().to_string(), format!("{error:#}")),
+        .map(|scene| match scene {
+            Ok(scene) => ask(&scene, args, &assumed),
+            Err(unread) => Asked::refused(unread.file.display().to_string(), unread.error),
         })
         .collect();
     let compared = run(asked, output);
@@ -79,10 +78,8 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
         status = status.max(c.status());
     }
     let documents: Vec<_> = compared.iter().map(Compared::document).collect();
-    let written = write(args, &compared, &documents).unwrap_or_else(|error| {
-        output.error(&format_args!("{error:#}"));
-        ExitStatus::BadInput
-    });
+    let written = write(args, &compared, &documents)
+        .unwrap_or_else(|error| output.refuse(&format_args!("{error:#}")));
     for (c, document) in compared.iter().zip(&documents) {
         let Ok(scenario) = &c.asked.scenario else {
             continue;
@@ -121,13 +118,11 @@ impl Asked {
     }
 }
 
-fn ask(found: &Found, args: &CompareArgs) -> Asked {
-    let name = found.file.display().to_string();
-    let stem = found.stem.clone();
-    let read = guarded(|| scenario_file(&found.file));
-    let mut scenario = match read {
-        Ok(Ok(scenario)) => scenario,
-        Ok(Err(error)) => return Asked::refused(name, error),
+fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Asked {
+    let name = scene.found.file.display().to_string();
+    let mut scenario = match guarded(|| scene.scenario(assumed)) {
+        Ok(Ok(Made { scenario, .. })) => scenario,
+        Ok(Err(error)) => return Asked::refused(name, error.to_string()),
         Err(fault) => return Asked::refused(name.clone(), format!("{name}: {fault}")),
     };
     args.asked.apply_rules(&mut scenario);
@@ -143,7 +138,7 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
         .retain(|other| is_wanted(&other.method, args));
     Asked {
         file: name,
-        stem,
+        stem: scene.found.stem.clone(),
         candidates: candidates(&found.methods, &risks),
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),

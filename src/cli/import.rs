@@ -16,7 +16,7 @@ use super::output::status::ExitStatus;
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
     let assumed = args.assumed.assumed();
-    let found = files::find(&args.files, &files::ANY_FORMAT, output);
+    let found = files::find(&args.files, output);
     let scenes = scenes::open(found, &assumed, output);
     let wanted: Vec<_> = scenes
         .iter()
@@ -28,17 +28,13 @@ pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
             .with_context(|| format!("{}: the folder cannot be made", args.out.display()))
     });
     if let Err(error) = made {
-        output.error(&format_args!("{error:#}"));
-        return ExitStatus::BadInput;
+        return output.refuse(&format_args!("{error:#}"));
     }
     let mut status = ExitStatus::Good;
     for scene in scenes {
         let reached = match scene {
             Ok(scene) => one(&scene, args, &assumed, output),
-            Err(unread) => {
-                output.error(&unread.error);
-                ExitStatus::BadInput
-            }
+            Err(unread) => output.refuse(&unread.error),
         };
         status = status.max(reached);
     }
@@ -56,16 +52,12 @@ fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> 
         }
         Some(Ok(imported)) => imported,
         Some(Err(error)) => {
-            output.error(&error);
-            return ExitStatus::BadInput;
+            return output.refuse(&error);
         }
     };
     let file = args.out.join(format!("{}.toml", scene.found.stem));
     match write_atomically(&file, imported.text.as_bytes()) {
         Ok(()) => output.result(&format!("{}: {}", scene.label(), file.display())),
-        Err(error) => {
-            output.error(&error);
-            ExitStatus::BadInput
-        }
+        Err(error) => output.refuse(&error),
     }
 }

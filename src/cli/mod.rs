@@ -32,7 +32,8 @@ pub fn main() -> ExitCode {
         Err(error) => return output::usage(&error),
     };
     let output = Output::new();
-    let run = || match &arguments.command {
+    let run = || {
+        match &arguments.command {
         Command::Check(args) => check::check(args, &output),
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
@@ -43,12 +44,11 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(args, &output),
         #[cfg(not(feature = "recording"))]
         Command::Inspect(_) => {
-            output.error(&"inspect: this program was built without recordings; build it with its default features, `cargo build`");
-            ExitStatus::BadInput
+            output.refuse(&"inspect: this program was built without recordings; build it with its default features, `cargo build`")
         }
         Command::Verify(args) => verify::verify(args, &output),
         Command::Completions(args) => shell::completions(args, &output),
-        Command::Man => shell::man(&output),
+    }
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {
         output.error(&fault);

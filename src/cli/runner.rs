@@ -114,17 +114,10 @@ mod tests {
     fn a_place_is_without_the_machine_that_it_was_built_on() {
         for (file, place) in [
             ("src/pipeline/mod.rs", "pipeline/mod.rs"),
-            (
-                "/a/cargo/registry/src/index/arrow-1.2/src/reader.rs",
-                "reader.rs",
-            ),
-            (
-                "/rustc/0a1b/library/core/src/slice/index.rs",
-                "slice/index.rs",
-            ),
+            ("/a/registry/src/index/arrow-1.2/src/reader.rs", "reader.rs"),
+            ("/rustc/0a1b/core/src/slice/index.rs", "slice/index.rs"),
             (r"C:\a\src\cli\mod.rs", "cli/mod.rs"),
             ("/a/target/build/out/made.rs", "made.rs"),
-            ("src", "src"),
             ("", ""),
         ] {
             assert_eq!(below_src(file), place);

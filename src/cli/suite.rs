@@ -63,7 +63,7 @@ impl Tally {
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, &files::ANY_FORMAT, output);
+    let files = files::find(&args.paths, output);
     let all = scenes::open(files, &assumed, output);
     if args.lint {
         return lint::suite(all, args, &assumed, output);
@@ -76,8 +76,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
     let products = match Products::prepare(&found, wanted) {
         Ok(products) => products,
         Err(error) => {
-            output.error(&format_args!("{error:#}"));
-            return ExitStatus::BadInput;
+            return output.refuse(&format_args!("{error:#}"));
         }
     };
     let bar = output.progress(all.len());

@@ -1,11 +1,10 @@
 //! `searoom verify`: independent check of plan documents from their own content.
 
-use std::fs::File;
-use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use searoom::document::{VerificationDocument, VerifiedPlanDocument};
+use searoom::input::read_text;
 use searoom::report::verification_text;
 use searoom::verification::{Verification, verify as check};
 
@@ -14,8 +13,8 @@ use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded_within;
 
-/// Maximum file size, 64 MiB; a plan with a hundred targets needs less than 1 MiB.
-const FILE_BYTES: u64 = 1 << 26;
+/// Maximum file size in mebibytes; a plan with a hundred targets needs less than 1 MiB.
+const FILE_MEBIBYTES: u64 = 64;
 
 /// Checks every file; an unreadable one does not stop the others.
 pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
@@ -47,14 +46,13 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
             }
             Some(Ok(Err(error))) => {
                 let error = format!("{error:#}");
-                // the recording reader's message already includes the file
+                // a reader's message already includes the file
                 let error = match error.strip_prefix(&format!("{name}: ")) {
                     Some(_) => error,
                     None => format!("{name}: {error}"),
                 };
                 documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
-                output.error(&error);
-                ExitStatus::BadInput
+                output.refuse(&error)
             }
             Some(Err(fault)) => {
                 output.error(&format_args!("{name}: {fault}"));
@@ -73,7 +71,7 @@ fn one(file: &Path) -> anyhow::Result<Verification> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
-        document(file)?
+        read_text(file, FILE_MEBIBYTES, "a plan document")?
     };
     // the message already includes its field
     check(&text).map_err(|error| anyhow!("{error}"))
@@ -89,29 +87,4 @@ fn recorded(_: &Path) -> anyhow::Result<String> {
     Err(anyhow!(
         "a recording; this program was built without recordings"
     ))
-}
-
-/// The text of a plan document.
-fn document(file: &Path) -> anyhow::Result<String> {
-    let unread = "cannot be read";
-    // a pipe would block, and a device may never end
-    if !std::fs::metadata(file).context(unread)?.is_file() {
-        let error = Error::new(ErrorKind::InvalidInput, "not a regular file");
-        return Err(error).context(unread);
-    }
-    let mut bytes = Vec::new();
-    let handle = File::open(file).context(unread)?;
-    handle
-        .take(FILE_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .context(unread)?;
-    if bytes.len() as u64 > FILE_BYTES {
-        return Err(anyhow!("more than 64 MiB; a plan document has less"));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        anyhow!(
-            "bytes that are no text at byte {}",
-            error.utf8_error().valid_up_to()
-        )
-    })
 }

@@ -91,7 +91,7 @@ mod tests {
 
     /// Builds ten-second segments with the given turns in degrees to starboard.
     fn arcs(turns: &[f64]) -> Trajectory {
-        let mut start = Pose::new(Vector::zeros(), 0.3);
+        let mut start = Pose::new(Vector::zeros(), 0.2);
         let mut segments = Vec::new();
         for (index, degrees) in turns.iter().enumerate() {
             let segment = Segment {
@@ -172,32 +172,16 @@ mod tests {
 
     #[test]
     fn the_largest_turn_is_found_at_the_start_in_arcs_and_at_corners() {
-        let chain = |turns: &[f64]| {
-            let mut pose = Pose::new(Vector::zeros(), 0.2);
-            let mut segments: Vec<Segment> = Vec::new();
-            for (i, turn) in turns.iter().enumerate() {
-                let s = Segment {
-                    start: pose,
-                    start_time: 10.0 * i as f64,
-                    duration: 10.0,
-                    speed: 5.0,
-                    turn_rate: turn / 10.0,
-                };
-                pose = s.end();
-                segments.push(s);
-            }
-            Trajectory::new(segments).expect("a chain")
-        };
         let degrees = |t: &Trajectory, before: f64| {
             largest_alteration(t, before)
                 .map(|turn| (turn.side, (turn.degrees * 10.0).round() / 10.0))
         };
-        let t = chain(&[0.1, 0.0, -0.2, -0.3, 0.0, 0.4]);
-        assert_eq!(degrees(&t, 0.2), Some((Side::Starboard, 28.6)));
+        let t = arcs(&[-5.0, 0.0, 10.0, 20.0, 0.0, -25.0]);
+        assert_eq!(degrees(&t, 0.2), Some((Side::Starboard, 30.0)));
         // initial course 0.9: a turn of 0.7 to starboard at once
         assert_eq!(degrees(&t, 0.9), Some((Side::Starboard, 40.1)));
-        assert_eq!(degrees(&chain(&[0.0, 0.001]), 0.2), None);
-        let mut corner = chain(&[0.0]).segments().to_vec();
+        assert_eq!(degrees(&arcs(&[0.0, 0.1]), 0.2), None);
+        let mut corner = arcs(&[0.0]).segments().to_vec();
         let end = corner[0].end();
         corner.push(Segment {
             start: Pose::new(end.position, end.heading + 1.0),

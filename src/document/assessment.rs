@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 pub struct AssessmentDocument {
     pub scenario: String,
     pub horizon_s: f64,
-    /// `"hard"` or `"domains"`.
     pub sets: String,
     pub targets: Vec<TargetSectionsDocument>,
     pub points: Vec<PointDocument>,
@@ -28,9 +27,10 @@ pub struct TargetSectionsDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SectionDocument {
-    /// Polygon with counter-clockwise vertices.
-    Polygon { t_s: f64, vertices_m: Vec<[f64; 2]> },
-    /// Ellipse with centre and shape matrix.
+    Polygon {
+        t_s: f64,
+        vertices_m: Vec<[f64; 2]>,
+    },
     Ellipse {
         t_s: f64,
         center_m: [f64; 2],
@@ -52,7 +52,6 @@ pub struct PointDocument {
 pub struct PointRiskDocument {
     pub name: String,
     pub inside: bool,
-    /// Scaling factor; null if no scaling reaches the point.
     pub alpha: Option<f64>,
     pub risk: f64,
 }
@@ -77,7 +76,6 @@ pub struct HeldDocument {
 pub struct AlterationDocument {
     pub starboard_deg: Option<f64>,
     pub port_deg: Option<f64>,
-    /// Change of speed; negative is slower.
     pub speed_mps: Option<f64>,
 }
 

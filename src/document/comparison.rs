@@ -39,26 +39,18 @@ pub struct ScenarioComparisonDocument {
 pub struct EntryDocument {
     pub method: String,
     pub max_risk: f64,
-    /// Objective; null for a baseline.
     pub objective: Option<String>,
     pub outcome: String,
-    /// Outcome in words for the reader.
     pub verdict: String,
     pub reason: Option<String>,
-    /// Verification result; for a baseline, true if clear of sets, hulls and land.
     pub verified: bool,
-    /// True if no hard set, hull or land is entered.
     pub safe: bool,
     pub cost: Option<CostDocument>,
-    /// Angle, positive.
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
-    /// Violated rules and monitors; null without a motion and without ships.
     pub breaks: Option<Vec<String>>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
-    /// Positions every five seconds and at the end. Motions longer than 5000 s have a thousand
-    /// steps.
     pub track: Vec<TrackPointDocument>,
 }
 

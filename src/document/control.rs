@@ -12,17 +12,11 @@ pub struct ControlDocument {
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
     pub control_weights: [f64; 3],
-    /// Requested number of intervals; starts and homotopy classes use this grid.
     pub start_intervals: usize,
-    /// Number of intervals of the plan; larger than requested if that grid was too coarse.
     pub intervals: usize,
-    /// Largest defect at the end of an interval, in the ship's units; null if no start led to a
-    /// plan.
     pub defect: Option<f64>,
-    /// Targets whose set is replaced by an enclosing ellipsoid.
     pub enclosed_targets: Vec<String>,
     pub starts: Vec<StartAttemptDocument>,
-    /// Homotopy classes, cheapest first.
     pub homotopy_classes: Vec<HomotopyClassDocument>,
 }
 
@@ -47,7 +41,6 @@ pub struct StartAttemptDocument {
 /// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HomotopyClassDocument {
-    /// Passing side for each target; null if it stays far away.
     pub sides: Vec<Option<String>>,
     pub objective: f64,
     pub starts: usize,

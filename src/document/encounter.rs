@@ -26,14 +26,10 @@ pub struct EncounterDocument {
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
-    /// In a crossing, true if own ship crosses the target's track astern of it; null otherwise.
     #[serde(default)]
     pub crosses_astern: Option<bool>,
-    /// Largest risk along the plan.
     pub max_risk: Option<f64>,
-    /// Time of the largest risk; null if the risk is 0.
     pub max_risk_t_s: Option<f64>,
-    /// Compliance with the rules; absent without a plan and if the target is not a ship.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub conduct: Option<ConductDocument>,
 }

@@ -10,7 +10,7 @@ pub struct LintDocument {
 }
 
 /// Findings for one scenario. For an unreadable file, `error` gives the reason.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LintScenarioDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -58,11 +58,8 @@ impl LintScenarioDocument {
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,
-            scenario: None,
             error: Some(error),
-            targets: Vec::new(),
-            findings: Vec::new(),
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 }

@@ -20,7 +20,6 @@ pub struct OwnShipDocument {
     pub turning_radius_m: f64,
     pub speeds_mps: Vec<f64>,
     pub safety_margin_m: f64,
-    /// Safety margin to land; 0 without land.
     pub land_margin_m: f64,
 }
 
@@ -29,10 +28,8 @@ pub struct OwnShipDocument {
 pub struct MissionDocument {
     pub waypoints: Vec<PositionDocument>,
     pub leg_speeds_mps: Vec<f64>,
-    /// Desired duration.
     pub duration_s: f64,
     pub length_m: f64,
-    /// Alternative paths; absent if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Vec<PositionDocument>>,
 }
@@ -44,8 +41,6 @@ pub struct RelaxationDocument {
     pub target: String,
     pub amount: f64,
     pub unit: String,
-    /// Time until which the set is not claimed, for a set that is entered and left. Absent
-    /// otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
 }
@@ -72,28 +67,20 @@ pub struct ViolationDocument {
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
-    /// Time until which the space-time error is counted.
     pub space_time_error_until_s: f64,
     pub space_time_error_arc_length_m2: f64,
     pub arrived: bool,
     pub duration_s: f64,
     pub length_m: f64,
-    /// Delay; null for a plan that never arrives.
     pub delay_s: Option<f64>,
-    /// First alteration of course; null if there is none.
     #[serde(default)]
     pub first_turn: Option<TurnDocument>,
-    /// Largest risk against the whole sets; `obstacles` are their level sets.
     pub max_risk: f64,
-    /// Least clearance; null without targets.
     pub min_clearance_m: Option<f64>,
-    /// Least clearance during `arrival_hold_s` after the end of the motion, with own ship at rest
-    /// there.
     #[serde(default)]
     pub hold_clearance_m: Option<f64>,
     #[serde(default)]
     pub arrival_hold_s: f64,
-    /// Least distance between own hull and land; null without land.
     pub min_land_distance_m: Option<f64>,
 }
 
@@ -101,9 +88,7 @@ pub struct CostDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurnDocument {
     pub side: String,
-    /// Angle, positive to either side.
     pub turn_deg: f64,
-    /// Start time.
     pub t_s: f64,
 }
 
@@ -147,7 +132,6 @@ pub struct SampleDocument {
     pub north_m: f64,
     pub course_deg: f64,
     pub speed_mps: f64,
-    /// State at a node of a motion under forces.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub node: Option<NodeDocument>,
 }
@@ -168,7 +152,6 @@ pub struct NodeDocument {
 /// trajectory, and include all segment ends and nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrajectoryDocument {
-    /// Segments; null for a motion under forces.
     pub segments: Option<Vec<SegmentDocument>>,
     pub samples: Vec<SampleDocument>,
 }
@@ -177,16 +160,11 @@ pub struct TrajectoryDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum InitialSetDocument {
-    /// Polygon.
     Polygon {
-        /// Vertices `[east, north]`, counter-clockwise.
         vertices_m: Vec<[f64; 2]>,
     },
-    /// Ellipse.
     Ellipse {
-        /// Centre `[east, north]`.
         center_m: [f64; 2],
-        /// Rows of the shape matrix.
         shape_m2: [[f64; 2]; 2],
     },
 }
@@ -195,16 +173,11 @@ pub enum InitialSetDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum VelocitySetDocument {
-    /// Polygon.
     Polygon {
-        /// Vertices `[east, north]`, counter-clockwise.
         vertices_mps: Vec<[f64; 2]>,
     },
-    /// Ellipse.
     Ellipse {
-        /// Centre `[east, north]`.
         center_mps: [f64; 2],
-        /// Rows of the shape matrix.
         shape_m2_per_s2: [[f64; 2]; 2],
     },
 }

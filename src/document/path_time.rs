@@ -10,12 +10,10 @@ use crate::planner::path_time::PathTimeDiagram;
 /// Path-time diagram; points are `[s_m, t_s]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathTimeDocument {
-    /// Paths in order of use: `"main"`, `"alternative 1"`, ….
     pub path: String,
     pub legs: Vec<PathLegDocument>,
     pub obstacles: Vec<PathObstacleDocument>,
     pub corners: Vec<PathCornerDocument>,
-    /// Profile; without a plan, the start alone.
     pub profile: Vec<[f64; 2]>,
 }
 
@@ -24,7 +22,6 @@ pub struct PathTimeDocument {
 pub struct PathLegDocument {
     pub start_m: f64,
     pub end_m: f64,
-    /// Path that contains the leg.
     pub path: String,
 }
 
@@ -40,7 +37,6 @@ pub struct PathObstacleDocument {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PathCornerDocument {
     pub s_m: f64,
-    /// Course change, positive to starboard.
     pub turn_deg: f64,
 }
 

@@ -40,52 +40,38 @@ pub struct PlanDocument {
     pub planner: String,
     pub search: String,
     pub compliance: String,
-    /// Name of the thresholds of rule compliance.
     #[serde(default)]
     pub thresholds: String,
     pub objective: String,
-    /// Risk weight of the objective; absent for objectives without risk.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
-    /// Accepted risk; `obstacles` are the level sets at this risk.
     pub max_risk: f64,
     pub horizon_s: f64,
     pub own_ship: OwnShipDocument,
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
-    /// Outcome in words for the reader, by the effect on hulls.
     pub verdict: String,
-    /// Reason for an absent, unfinished or relaxed plan.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
-    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
-    /// True if no hard set, hull or land is entered from start to arrival.
     pub safe: bool,
-    /// Time of no return; absent unless requested. Null if there is no conflict, or no clear plan
-    /// even at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
-    /// Violations found by the independent checker.
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
-    /// Escape; absent unless own ship stands on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
-    /// Targets as in the scenario; `obstacles` must contain them.
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
-    /// Path-time diagram; absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
-    /// Optimal-control record; absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
 }

@@ -26,18 +26,16 @@ pub struct SuiteDocument {
 
 /// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
 /// `error`, or [`NOT_APPLICABLE`] with a `reason`. Keys without meaning are null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
     pub outcome: String,
-    /// Outcome in words for the reader.
     pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     pub safe: bool,
@@ -54,27 +52,16 @@ pub struct SuiteRunDocument {
 /// Summary counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
-    /// All scenarios: the sum of the seven outcomes below.
     pub scenarios: usize,
-    /// Plans without relaxation.
     pub solved: usize,
-    /// Plans with a relaxation.
     pub relaxed: usize,
-    /// Scenarios without a plan.
     pub infeasible: usize,
-    /// Scenarios that exceeded the time budget.
     pub deadline: usize,
-    /// Valid scenarios that the requested planner or rules do not support.
     pub not_applicable: usize,
-    /// Files that are not scenarios.
     pub unreadable: usize,
-    /// Runs that ended in an internal fault.
     pub internal_faults: usize,
-    /// Plans without violations found by the independent checker.
     pub verified: usize,
-    /// Plans that enter no hard set, hull or land.
     pub safe: usize,
-    /// Relaxed plans that are not safe.
     pub not_safe: usize,
 }
 
@@ -165,21 +152,10 @@ impl SuiteRunDocument {
     pub fn failed(file: String, outcome: &str, error: String) -> Self {
         Self {
             file,
-            scenario: None,
-            planner: None,
             outcome: outcome.to_owned(),
             verdict: outcome_word(outcome, None, 0.0),
             error: Some(error),
-            reason: None,
-            relaxations: Vec::new(),
-            verified: false,
-            safe: false,
-            cost: None,
-            encounters: Vec::new(),
-            targets: None,
-            search_stats: None,
-            timing: None,
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 }

@@ -11,17 +11,12 @@ use crate::target::{Representation, ShipTrack, Target, TimedVelocitySet};
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetDocument {
-    /// Name, unique within a document.
     pub name: String,
-    /// `"polytope"` or `"ellipsoid"`.
     pub representation: String,
-    /// Tracked ship; absent for explicit sets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship: Option<ShipDocument>,
-    /// Initial set; absent for a ship.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub initial_set: Option<InitialSetDocument>,
-    /// Consecutive velocity sets; absent for a ship.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity_sets: Vec<TimedSetDocument>,
 }
@@ -43,9 +38,7 @@ pub struct ShipDocument {
 /// Velocity set with the end of its time interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TimedSetDocument {
-    /// End of the time interval; null for the last.
     pub until_s: Option<f64>,
-    /// Velocity set.
     #[serde(flatten)]
     pub set: VelocitySetDocument,
 }

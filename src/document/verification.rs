@@ -20,7 +20,7 @@ pub struct VerificationDocument {
 }
 
 /// One document. Unknown values of an unreadable or unproven one are null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct VerifiedPlanDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -28,11 +28,9 @@ pub struct VerifiedPlanDocument {
     pub outcome: String,
     pub error: Option<String>,
     pub verified: bool,
-    /// True if no hard set, hull or land is entered from start to arrival.
     pub safe: bool,
     pub violations: Vec<ViolationDocument>,
     pub targets: Vec<MarginDocument>,
-    /// Least distance between own hull and land; null without land.
     pub min_land_distance_m: Option<f64>,
     pub min_land_distance_t_s: Option<f64>,
 }
@@ -40,19 +38,12 @@ pub struct VerifiedPlanDocument {
 /// Margins to one target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginDocument {
-    /// Name of the target.
     pub target: String,
-    /// Time from which the set is claimed; 0 if always. The plan enters the set before this time.
     pub claimed_from_s: f64,
-    /// Least signed distance to the set.
     pub min_margin_m: Option<f64>,
-    /// Time of the least margin.
     pub min_margin_t_s: Option<f64>,
-    /// Least distance to any hull that the target may have.
     pub min_clearance_m: Option<f64>,
-    /// Least distance to its hull on the nominal motion.
     pub dcpa_m: Option<f64>,
-    /// Time of this least distance.
     pub tcpa_s: Option<f64>,
 }
 
@@ -118,16 +109,9 @@ impl VerifiedPlanDocument {
     pub fn unreadable(file: String, error: String) -> Self {
         Self {
             file,
-            scenario: None,
-            planner: None,
             outcome: UNREADABLE.to_owned(),
             error: Some(error),
-            verified: false,
-            safe: false,
-            violations: Vec::new(),
-            targets: Vec::new(),
-            min_land_distance_m: None,
-            min_land_distance_t_s: None,
+            ..Self::default()
         }
     }
 }

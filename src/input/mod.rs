@@ -138,7 +138,7 @@ impl Faults {
 const MEBIBYTE: u64 = 1024 * 1024;
 
 /// Text of a regular file of at most `mebibytes`; a larger file is refused before it is read.
-pub(crate) fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputError> {
+pub fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputError> {
     let unread = |source| InputError::Read {
         file: file.to_owned(),
         source,

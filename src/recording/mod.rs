@@ -18,7 +18,7 @@
 //!
 //! Chart, east and north; `chart/map` turns north up, as views of Rerun are y-down:
 //!
-//! - `chart/map/grid`, `legend`: scale, north, line styles
+//! - `chart/map/grid`: scale and north
 //! - `chart/map/land`: outlines of the land, where there is a map
 //! - `chart/map/desired`: the desired trajectory, dashed
 //! - `chart/map/planned`: the plan, one line per segment. It is thin and blue below the desired
@@ -66,8 +66,6 @@
 //! - `velocities/plane/axes`, `own_ship`: the plane of velocities, m/s
 //! - `velocities/plane/obstacles/<target>`: velocities that, kept from the cursor on, meet the hard
 //!   set within 300 s or by the end
-//! - `path_time/plane/…`: for a path-time plan, the diagram in which it was found: `axes`,
-//!   `profile`, `obstacles/<target>`, `now`, `own_ship`
 //!
 //! # Entities of a comparison
 //!
@@ -77,9 +75,9 @@
 //! - `comparison_document`: its document, as JSON
 //! - `chart/map/methods/<method>/way`, `space_time/methods/<method>/way`: the motion
 //! - `chart/map/methods/<method>/own_ship`, `own_ship/hull`: as for a run
-//! - `…/methods/<method>/sets/<target>`: the set that the method avoids; hidden where it is one of
-//!   the scenario's
-//! - `…/methods/<method>/explored/free`, `blocked`: as for a run
+//! - `…/methods/<method>/sets/<target>`: the set that the method avoids, where it is not one of the
+//!   scenario's
+//! - `…/explored/<method>/free`, `blocked`: as for a run
 //! - `curves/clearance_m/<method>`: metres to the nearest target
 //! - `curves/speed_kn`: speeds, knots
 //!
@@ -93,8 +91,7 @@ mod views;
 mod write;
 
 pub use read::{
-    Columns, EntityContents, EntityRow, EntityTable, ReadError, Recorded, TimelineContents,
-    is_recording,
+    EntityContents, EntityRow, EntityTable, ReadError, Recorded, TimelineContents, is_recording,
 };
 pub use write::{Compared, RecordingError, write, write_comparison};
 
@@ -113,8 +110,6 @@ const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
 const RULES: &str = "rules";
-const PATH_TIME: &str = "path_time";
-const PATH_TIME_PLANE: &str = "path_time/plane";
 
 /// An entity path. The first part may hold slashes; the others are taken literally, as targets may
 /// have any name.

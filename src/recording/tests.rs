@@ -9,11 +9,13 @@ use rerun::{ChunkStore, ChunkStoreConfig};
 use super::canvas::ViewModel;
 use super::views::curves;
 use super::*;
-use crate::document::{self, PlanDocument};
+use crate::document::PlanDocument;
 use crate::evaluation::Violation;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};
 use crate::scenario::Scenario;
+use crate::study::compare::{Entry, Method};
+use crate::target::Representation;
 
 /// A name that an entity path has to escape.
 const NAME: &str = "ferry / Ærø";
@@ -70,7 +72,7 @@ fn run_without_plan() -> Run {
     run
 }
 
-/// Every kind of target: a ship, and explicit sets.
+/// Every kind of target, a ship and explicit sets, and a fault of the check.
 fn run_with_sets() -> Run {
     let sets = r#"
 [[targets]]
@@ -79,81 +81,81 @@ initial_set = { vertices_m = [[700.0, 300.0], [700.0, 340.0], [760.0, 340.0], [7
 velocity_set = { vertices_mps = [[0.0, 0.1], [0.2, -0.1], [-0.2, -0.1]] }
 "#;
     let text = format!("{HEAD_ON}{sets}{OTHER_SETS}");
-    pipeline::run(Scenario::parse(&text).expect("a valid scenario"))
+    let mut run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
+    let evaluation = run.evaluation.as_mut().expect("judged");
+    evaluation.violations.push(Violation {
+        what: "set of 'drifting': 1.2 m deep, 0 m allowed".to_owned(),
+        time: 100.0,
+    });
+    run
 }
 
-/// Rows in time and timelines of every entity of the recording, without those of the layout.
-fn read(path: &Path) -> BTreeMap<String, (u64, Vec<String>)> {
+/// Rows in time of every entity of the recording, without those of the layout. There is one
+/// timeline.
+fn read(path: &Path) -> BTreeMap<String, u64> {
     let mut file = std::fs::File::open(path).expect("opens");
     let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut file).expect("reads");
     let mut entities = BTreeMap::new();
     for (_, store) in stores.iter().filter(|(id, _)| id.is_recording()) {
         for chunk in store.iter_physical_chunks() {
-            let entry: &mut (u64, Vec<String>) =
-                entities.entry(chunk.entity_path().to_string()).or_default();
+            let rows: &mut u64 = entities.entry(chunk.entity_path().to_string()).or_default();
             if !chunk.is_static() {
-                entry.0 += chunk.num_rows() as u64;
+                *rows += chunk.num_rows() as u64;
             }
-            entry
-                .1
-                .extend(chunk.timelines().keys().map(ToString::to_string));
+            assert!(chunk.timelines().keys().all(|t| t.as_str() == TIMELINE));
+        }
+    }
+    entities
+}
+
+/// Writes a run and checks which entities are there and which are not. `{}` stands for the name of
+/// the ship.
+fn assert_entities(run: &Run, there: &str, absent: &str) -> BTreeMap<String, u64> {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("new/deep/a.rrd");
+    write_run(run, &path).expect("writes");
+    let entities = read(&path);
+    let name = EntityPathPart::new(NAME).escaped_string();
+    for (names, expected) in [(there, true), (absent, false)] {
+        for entity in names.split_whitespace() {
+            let entity = format!("/{}", entity.replace("{}", &name));
+            let found = entities.contains_key(&entity);
+            assert_eq!(found, expected, "{entity} in {entities:#?}");
         }
     }
     entities
 }
 
 #[test]
-fn a_recording_reads_back_with_every_entity_on_one_timeline() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("new/deep/head-on.rrd");
-    write_run(&run(), &path).expect("writes");
-    let entities = read(&path);
-    let name = EntityPathPart::new(NAME).escaped_string();
-    for expected in [
-        "/summary".to_owned(),
-        "/chart/map".to_owned(),
-        "/chart/map/desired".to_owned(),
-        "/chart/map/planned".to_owned(),
-        "/chart/map/own_ship".to_owned(),
-        "/chart/map/closest_points".to_owned(),
-        format!("/chart/map/targets/{name}"),
-        format!("/chart/map/hard_sets/{name}"),
-        format!("/chart/map/domain_sets/{name}"),
-        "/chart/map/explored/free".to_owned(),
-        "/chart/map/explored/blocked".to_owned(),
-        format!("/space_time/domain_sets/{name}"),
-        "/space_time/planned".to_owned(),
-        "/space_time/explored/free".to_owned(),
-        "/curves/clearance_m".to_owned(),
-        "/curves/margin_m".to_owned(),
-        "/curves/risk".to_owned(),
-        "/velocities/plane/own_ship".to_owned(),
-        format!("/velocities/plane/obstacles/{name}"),
-        "/curves/speed_kn".to_owned(),
-        "/curves/course_deg".to_owned(),
-    ] {
-        assert!(
-            entities.contains_key(&expected),
-            "{expected} in {entities:#?}"
+fn every_kind_of_run_has_its_entities() {
+    let there = "summary chart/map chart/map/desired chart/map/planned chart/map/own_ship
+        chart/map/closest_points chart/map/targets/{} chart/map/hard_sets/{}
+        chart/map/domain_sets/{} chart/map/explored/free chart/map/explored/blocked
+        space_time/domain_sets/{} space_time/planned space_time/explored/free
+        curves/clearance_m curves/margin_m curves/risk curves/speed_kn curves/course_deg
+        velocities/plane/own_ship velocities/plane/obstacles/{}";
+    assert_entities(&run(), there, "chart/map/conflict");
+    let there = "chart/map/conflict curves/margin_m";
+    assert_entities(&run_without_plan(), there, "chart/map/planned");
+    let mut there = "chart/map/violations".to_owned();
+    for name in ["drifting", "round", "slabs"] {
+        there += &format!(
+            " chart/map/hard_sets/{name} space_time/hard_sets/{name} \
+             velocities/plane/obstacles/{name}"
         );
     }
-    for (entity, (_, timelines)) in &entities {
-        assert!(
-            timelines.iter().all(|t| t == TIMELINE),
-            "{entity} {timelines:?}"
-        );
-    }
-}
+    assert_entities(&run_with_sets(), &there, "chart/map/domain_sets/drifting");
 
-#[test]
-fn a_run_without_a_plan_is_recorded_too() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("none.rrd");
-    write_run(&run_without_plan(), &path).expect("writes");
-    let entities = read(&path);
-    assert!(!entities.contains_key("/chart/map/planned"));
-    assert!(entities.contains_key("/chart/map/conflict"));
-    assert!(entities.contains_key("/curves/margin_m"));
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper/figure_9.toml");
+    let mut scenario = Scenario::read(&scenario).expect("valid");
+    scenario.deadline = 60.0;
+    let run = pipeline::run(scenario);
+    let there = "chart/map/planned space_time/planned chart/map/hard_sets/ahead";
+    let entities = assert_entities(&run, there, "");
+    let nodes = run.planned.control.as_ref().expect("forces").intervals as u64 + 1;
+    for entity in ["/curves/states", "/curves/forces"] {
+        assert_eq!(entities[entity], nodes, "{entity}");
+    }
 }
 
 #[test]
@@ -166,28 +168,6 @@ fn a_failed_write_leaves_nothing_and_names_the_file() {
     assert!(error.to_string().contains("taken.rrd"), "{error}");
     let left: Vec<_> = std::fs::read_dir(folder.path()).expect("lists").collect();
     assert_eq!(left.len(), 1, "{left:?}");
-}
-
-#[test]
-fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("sets.rrd");
-    let mut run = run_with_sets();
-    if let Some(evaluation) = &mut run.evaluation {
-        evaluation.violations.push(Violation {
-            what: "set of 'drifting': 1.2 m deep, 0 m allowed".to_owned(),
-            time: 100.0,
-        });
-    }
-    write_run(&run, &path).expect("writes");
-    let entities = read(&path);
-    for name in ["drifting", "round", "slabs"] {
-        assert!(entities.contains_key(&format!("/chart/map/hard_sets/{name}")));
-        assert!(entities.contains_key(&format!("/space_time/hard_sets/{name}")));
-        assert!(entities.contains_key(&format!("/velocities/plane/obstacles/{name}")));
-    }
-    assert!(!entities.contains_key("/chart/map/domain_sets/drifting"));
-    assert!(entities.contains_key("/chart/map/violations"));
 }
 
 #[test]
@@ -211,7 +191,7 @@ fn nothing_is_said_of_the_margin_after_arrival() {
     write_run(&run, &path).expect("writes");
     let recorded = Recorded::read(&path).expect("whole");
     let drawn = recorded.table("curves/margin_m").expect("there");
-    let last = drawn.rows.last().expect("rows").times[0].expect("a time");
+    let last = drawn.rows.last().expect("rows").time.expect("a time");
     assert!((last - model.samples[before - 1]).abs() < 1e-6, "{last}");
     let speeds = recorded.table(curves::SPEED).expect("there");
     let last = &speeds.rows.last().expect("rows").values;
@@ -249,18 +229,13 @@ fn holds_nothing(value: &serde_json::Value) -> bool {
     }
 }
 
-fn compared(scenario: &Scenario) -> Vec<crate::study::compare::Entry> {
-    crate::study::compare::compare(scenario, &[scenario.max_risk])
-}
-
 /// Stands for the document of a comparison.
 const COMPARED: &str = "{\"plan_s\": 0.25, \"more\": [{\"plan_s\": 3}]}";
 
-fn recorded_comparison(scenario: &Scenario, path: &Path) -> Recorded {
-    let entries = compared(scenario);
+fn recorded_comparison(scenario: &Scenario, entries: &[Entry], path: &Path) -> Recorded {
     let written = Compared {
         scenario,
-        entries: &entries,
+        entries,
         table: "a table",
         document: COMPARED,
     };
@@ -287,41 +262,43 @@ fn a_comparison_is_one_recording_with_every_motion() {
     let folder = tempfile::tempdir().expect("folder");
     let scenario = scenario();
     let path = folder.path().join("compared.rrd");
-    let recorded = recorded_comparison(&scenario, &path);
+    let entries = crate::study::compare::compare(&scenario, &[scenario.max_risk]);
+    let recorded = recorded_comparison(&scenario, &entries, &path);
     assert_eq!(recorded.comparison().as_deref(), Some(COMPARED));
     assert_eq!(recorded.document(), None);
     let entities = read(&path);
-    for entry in compared(&scenario)
-        .iter()
-        .filter(|e| e.trajectory().is_some())
-    {
-        let method = entry.candidate.method.to_string();
-        let name = EntityPathPart::new(&method).escaped_string();
+    for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
+        let method = entry.candidate.method;
+        let name = EntityPathPart::new(method.to_string()).escaped_string();
         let mut parts = vec![
             format!("/chart/map/methods/{name}/way"),
             format!("/chart/map/methods/{name}/own_ship/hull"),
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if let crate::study::compare::Method::Planner { planner, .. } = entry.candidate.method {
+        if let Method::Planner {
+            planner,
+            representation,
+            ..
+        } = method
+        {
             // no graph is searched for forces
             if !planner.facts().relaxes_domains_only {
-                parts.push(format!("/chart/map/methods/{name}/explored/free"));
+                parts.push(format!("/chart/map/explored/{name}/free"));
             }
-            let target = EntityPathPart::new(NAME).escaped_string();
-            parts.push(format!("/chart/map/methods/{name}/sets/{target}"));
-            parts.push(format!("/space_time/methods/{name}/sets/{target}"));
+            if representation == Some(Representation::Ellipsoid) {
+                let target = EntityPathPart::new(NAME).escaped_string();
+                parts.push(format!("/chart/map/methods/{name}/sets/{target}"));
+                parts.push(format!("/space_time/methods/{name}/sets/{target}"));
+            }
         }
         for part in parts {
             assert!(entities.contains_key(&part), "{part} in {entities:#?}");
         }
     }
     assert!(!entities.contains_key("/chart/map/planned"));
-    for (entity, (_, timelines)) in &entities {
-        assert!(timelines.iter().all(|t| t == TIMELINE), "{entity}");
-    }
     assert_numbers(&recorded);
-    let again = recorded_comparison(&scenario, &folder.path().join("again.rrd"));
+    let again = recorded_comparison(&scenario, &entries, &folder.path().join("again.rrd"));
     for entity in recorded.entities() {
         let same = recorded.table(&entity.path) == again.table(&entity.path);
         assert!(same, "{}", entity.path);
@@ -362,27 +339,6 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
     assert!(aground > 0, "{reasons:?}");
 }
 
-#[test]
-fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("figure_9.rrd");
-    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper/figure_9.toml");
-    let run = pipeline::run(Scenario::read(&scenario).expect("valid"));
-    write_run(&run, &path).expect("writes");
-    let entities = read(&path);
-    let nodes = run.planned.control.as_ref().expect("forces").intervals as u64 + 1;
-    for entity in ["/curves/states", "/curves/forces"] {
-        assert_eq!(entities[entity].0, nodes, "{entity}");
-    }
-    for entity in [
-        "/chart/map/planned",
-        "/space_time/planned",
-        "/chart/map/hard_sets/ahead",
-    ] {
-        assert!(entities.contains_key(entity), "{entity} in {entities:#?}");
-    }
-}
-
 /// The curves of the risk reach the value of the plan document, for the same set.
 #[test]
 fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
@@ -408,43 +364,6 @@ fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
     let least = kept.expect("level sets are neither").values.iter().copied();
     let least = least.fold(f64::INFINITY, f64::min);
     assert!(least.abs() < 1.0, "the plan keeps close: {least}");
-}
-
-/// The diagram is there with and without a clear plan, and only for plans along paths.
-#[test]
-fn a_path_time_plan_has_its_diagram() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("path-time.rrd");
-    let crossing = HEAD_ON
-        .replace("course_deg = 270.0", "course_deg = 180.0")
-        .replace(
-            "east_m = 1500.0, north_m = 0.0 }\ncourse",
-            "east_m = 700.0, north_m = 700.0 }\ncourse",
-        );
-    for (text, clear) in [(HEAD_ON, false), (crossing.as_str(), true)] {
-        let text = text.replace(
-            "[[targets]]",
-            "[planner]\nkind = \"path-time\"\n[[targets]]",
-        );
-        let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
-        assert_eq!(!run.enters(), clear);
-        write_run(&run, &path).expect("writes");
-        let entities = read(&path);
-        let name = EntityPathPart::new(NAME).escaped_string();
-        let set = format!("obstacles/{name}");
-        for part in ["axes", "profile", "now", "own_ship", &set] {
-            assert!(
-                entities.contains_key(&format!("/path_time/plane/{part}")),
-                "{part}"
-            );
-        }
-    }
-    write_run(&run(), &path).expect("writes");
-    assert!(
-        !read(&path)
-            .keys()
-            .any(|entity| entity.starts_with("/path_time"))
-    );
 }
 
 /// Viewers merge recordings of one name.
@@ -474,31 +393,4 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
     ] {
         assert!(names(&first).is_disjoint(&names(&other)));
     }
-}
-
-/// No length in a damaged file is believed, so nothing of it is decoded.
-#[test]
-fn every_cut_and_every_changed_byte_is_an_error() {
-    let folder = tempfile::tempdir().expect("folder");
-    let path = folder.path().join("a.rrd");
-    let run = run();
-    let plan = PlanDocument::of(&run);
-    write(&run, &plan, &path).expect("writes");
-    let whole = std::fs::read(&path).expect("a file");
-    let refused = |bytes: &[u8], case: &str| {
-        std::fs::write(&path, bytes).expect("written");
-        let read = Recorded::read(&path);
-        assert!(matches!(read, Err(ReadError::Broken { .. })), "{case}");
-    };
-    let step = whole.len() / 500;
-    for at in (0..whole.len()).step_by(step).chain([1, 11, 12, 13]) {
-        refused(&whole[..at], &format!("cut at {at}"));
-        let mut changed = whole.clone();
-        changed[at] ^= 1 << (at % 8);
-        refused(&changed, &format!("byte {at} changed"));
-    }
-    refused(&[&whole[..], &whole].concat(), "two recordings");
-    std::fs::write(&path, &whole).expect("written");
-    let kept = Recorded::read(&path).expect("whole").document();
-    assert_eq!(kept, document::json(&plan).ok());
 }

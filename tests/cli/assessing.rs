@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{HEAD_ON, assert_values, document, searoom, stdout, text, write};
+use super::program::{HEAD_ON, assert_values, document, run, searoom, stdout, text, write};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
@@ -47,40 +47,23 @@ fn an_assessment_document_has_what_the_contract_names() {
         "velocities.csv",
         "east_mps,north_mps\n0,6\n5,0\n",
     );
-    let args = [
-        "assess",
-        "scenarios/colregs/give-way.toml",
-        "--at",
-        "-10,5.5,0",
-        "--points",
-        &points,
-        "--velocity",
-        "-5,0",
-        "--velocities",
-        &velocities,
-        "--section",
-        "0",
-        "--section",
-        "60",
-        "--json",
-    ];
-    let assert = searoom(&args).success().stderr(is_empty());
+    let asked = format!(
+        "assess scenarios/colregs/give-way.toml --at -10,5.5,0 --points {points} \
+         --velocity -5,0 --velocities {velocities} --section 0 --section 60 --json"
+    );
+    let assert = run(&asked).success().stderr(is_empty());
     let assessment = document(&assert);
     assert_values(&assessment, ASSESSMENT);
-    assert_eq!(stdout(&assert), stdout(&searoom(&args)), "the same bytes");
+    assert_eq!(stdout(&assert), stdout(&run(&asked)), "the same bytes");
     let area = |document: &Value| {
-        let vertices = document["targets"][0]["sections"][0]["vertices_m"].clone();
-        let north = |v: &Value| v[1].as_f64().expect("a number");
-        let norths: Vec<f64> = vertices
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(north)
-            .collect();
-        norths.iter().fold(f64::MIN, |a, b| a.max(*b))
-            - norths.iter().fold(f64::MAX, |a, b| a.min(*b))
+        let vertices = document["targets"][0]["sections"][0]["vertices_m"].as_array();
+        let norths = vertices.expect("a list").iter().map(|v| v[1].as_f64());
+        let norths: Vec<f64> = norths.map(|n| n.expect("a number")).collect();
+        let [least, most] =
+            [f64::min as fn(f64, f64) -> f64, f64::max].map(|f| norths.iter().copied().reduce(f));
+        most.expect("vertices") - least.expect("vertices")
     };
-    let with_domain = document(&searoom(&[&args[..], &["--domains"]].concat()).success());
+    let with_domain = document(&run(&format!("{asked} --domains")).success());
     assert!(area(&with_domain) > area(&assessment));
 }
 
@@ -126,24 +109,15 @@ fn a_recommended_alteration_leaves_every_velocity_obstacle() {
 
 #[test]
 fn an_assessment_reads_as_a_table() {
-    searoom(&[
-        "assess",
-        "scenarios/colregs/give-way.toml",
-        "--at",
-        "0,0,0",
-        "--velocity",
-        "-1,0",
-        "--section",
-        "1.5",
-    ])
-    .success()
-    .stderr(is_empty())
-    .stdout(
-        contains("Give-way: 1 target, hard sets, 0 to 400 s")
-            .and(contains("Holding course 090.0° at 5.00 m/s"))
-            .and(contains("to starboard").and(contains("to port").and(contains("slower"))))
-            .and(contains("Points").and(contains("Velocities").and(contains("Sections")))),
-    );
+    run("assess scenarios/colregs/give-way.toml --at 0,0,0 --velocity -1,0 --section 1.5")
+        .success()
+        .stderr(is_empty())
+        .stdout(
+            contains("Give-way: 1 target, hard sets, 0 to 400 s")
+                .and(contains("Holding course 090.0° at 5.00 m/s"))
+                .and(contains("to starboard").and(contains("to port").and(contains("slower"))))
+                .and(contains("Points").and(contains("Velocities").and(contains("Sections")))),
+        );
 }
 
 #[test]
@@ -251,16 +225,10 @@ fn an_assessment_can_be_drawn() {
     let scenario = "scenarios/colregs/give-way.toml";
     let drawn = |name: &str| {
         let file = folder.path().join(name);
-        searoom(&[
-            "assess",
-            scenario,
-            "--section",
-            "0",
-            "--section",
-            "100",
-            "--figure",
-            text(&file),
-        ])
+        run(&format!(
+            "assess {scenario} --section 0 --section 100 --figure {}",
+            text(&file)
+        ))
         .success()
         .stderr(is_empty())
         .stdout(contains("Give-way"));

@@ -1,7 +1,7 @@
 //! What once went wrong with files and options that nobody means, run as a user runs it. Each test
 //! is named after what holds now.
 
-use super::program::{HEAD_ON, document, searoom, stderr, text, write};
+use super::program::{HEAD_ON, document, run, searoom, stderr, text, write};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 
@@ -109,14 +109,11 @@ fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "one.toml", HEAD_ON);
     let plans = folder.path().join("plans");
-    searoom(&[
-        "suite",
-        &file,
-        &file,
+    run(&format!(
+        "suite {file} {file} {} --plans {}",
         text(folder.path()),
-        "--plans",
-        text(&plans),
-    ])
+        text(&plans)
+    ))
     .success()
     .stdout(contains("1 scenario: 1 solved"))
     .stderr(contains("one.toml: given more than once, taken once"));
@@ -173,14 +170,9 @@ fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
 
 #[test]
 fn what_was_found_is_said_in_few_words() {
-    searoom(&[
-        "assess",
-        "scenarios/colregs/head-on.toml",
-        "--velocity",
-        "1e308,0",
-    ])
-    .code(2)
-    .stderr(contains("found 1e308;"));
+    run("assess scenarios/colregs/head-on.toml --velocity 1e308,0")
+        .code(2)
+        .stderr(contains("found 1e308;"));
     let folder = tempfile::tempdir().expect("a folder");
     let figure = include_str!("../../scenarios/paper/figure_9.toml");
     for (change, said) in [

@@ -89,26 +89,6 @@ fn a_title_is_drawn_and_fits() {
     assert!(!figure(&all, 5.0, &[0.0]).svg().contains("Three"));
 }
 
-/// Tests that names that would overlap are on separate lines.
-#[test]
-fn names_do_not_lie_on_one_another() {
-    let at = |name: &str, east: f64| -> Obstacle {
-        let way = ConvexPolygon::point(Vector::new(-2.0, -1.0));
-        PolytopeObstacle::new(name, rectangle(Vector::new(east, 300.0), 9.0, 9.0), way).into()
-    };
-    let height = |svg: &str, name: &str| -> f64 {
-        let end = svg.find(&format!(">{name}<")).expect("drawn");
-        let start = svg[..end].rfind("<text").expect("a text");
-        let (_, y) = svg[start..end].split_once("y=\"").expect("a place");
-        let y = y.split('"').next().expect("a number");
-        y.parse().expect("a number")
-    };
-    let svg = figure(&[at("first", 300.0), at("second", 303.0)], 5.0, &[0.0]).svg();
-    assert!((height(&svg, "first") - height(&svg, "second")).abs() > 10.0);
-    let svg = figure(&[at("first", 100.0), at("second", 900.0)], 5.0, &[0.0]).svg();
-    assert!((height(&svg, "first") - height(&svg, "second")).abs() < 1e-6);
-}
-
 /// Tests one to many panels, and extreme situations.
 #[test]
 fn every_situation_can_be_drawn() {

@@ -16,6 +16,11 @@ pub fn searoom(args: &[&str]) -> Assert {
         .assert()
 }
 
+/// Runs the program with words that are separated by blanks.
+pub fn run(words: &str) -> Assert {
+    searoom(&words.split_whitespace().collect::<Vec<_>>())
+}
+
 pub fn text(path: &Path) -> &str {
     path.to_str().expect("a path that is text")
 }

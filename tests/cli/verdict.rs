@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{HEAD_ON, document, searoom, stderr, stdout, text, write};
+use super::program::{HEAD_ON, document, run, searoom, stderr, stdout, text, write};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
@@ -160,18 +160,11 @@ fn a_risk_that_is_taken_is_told_with_its_figure() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "a.toml", HEAD_ON);
     for (compliance, safe, facts) in [("shape", true, "safe"), ("none", false, "not safe")] {
-        let asked = [
-            "plan",
-            &file,
-            "--max-risk",
-            "0.2",
-            "--compliance",
-            compliance,
-        ];
-        let said = stdout(&searoom(&asked).code(1));
+        let asked = format!("plan {file} --max-risk 0.2 --compliance {compliance}");
+        let said = stdout(&run(&asked).code(1));
         let head = format!("Head-on: at risk 0.20 (verified, {facts})\n");
         assert!(said.starts_with(&head), "{said}");
-        let plan = searoom(&[asked.as_slice(), &["--json"]].concat()).code(1);
+        let plan = run(&format!("{asked} --json")).code(1);
         let plan_file = write(folder.path(), "plan.json", stdout(&plan));
         let plan = document(&plan);
         assert_eq!(plan["safe"], safe);
@@ -341,7 +334,6 @@ const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
 #[test]
 fn every_view_tells_the_clearance_of_the_right_target() {
     let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| text(&folder.path().join(name)).to_owned();
     let (own, _) = HEAD_ON.split_once("[[targets]]").expect("a target");
     let mut scene = own.to_owned();
     for (index, north) in ABEAM_M.iter().enumerate() {
@@ -352,42 +344,33 @@ fn every_view_tells_the_clearance_of_the_right_target() {
         );
     }
     let clearances = ABEAM_M.map(|north| north.abs() - 10.0);
-    let least = 290.0;
     let file = write(folder.path(), "three.toml", scene);
-    let near = |value: &Value, so: f64| {
-        let value = value.as_f64().expect("a number");
+    let near = |found: &Value, so: f64| {
+        let value = found.as_f64().expect("a number");
         assert!((value - so).abs() < 1e-6, "{value} for {so}");
     };
 
-    let (page, csv, compared_page) = (at("page"), at("rows.csv"), at("compared"));
-    let said = stdout(&searoom(&["plan", &file, "--report", &page]).success());
+    let said = stdout(&run(&format!("plan {file}")).success());
     assert!(said.contains("clearance    290.0 m;"), "{said}");
-    let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
-    assert!(
-        page.contains("<dd>290.0 m;") && page.contains("<span>290.0</span>"),
-        "{page}"
-    );
-
-    let plan = searoom(&["plan", &file, "--json"]).success();
+    let plan = run(&format!("plan {file} --json")).success();
     let plan_file = write(folder.path(), "plan.json", stdout(&plan));
     let plan = document(&plan);
-    near(&plan["cost"]["min_clearance_m"], least);
-    let met = plan["encounters"].as_array().expect("a list");
-    assert_eq!(met.len(), clearances.len());
-    for (index, (met, so)) in met.iter().zip(clearances).enumerate() {
+    near(&plan["cost"]["min_clearance_m"], 290.0);
+    let table = stdout(&run(&format!("verify {plan_file}")).success());
+    let checked = document(&run(&format!("verify --json {plan_file}")).success());
+    let checked = &checked["plans"][0]["targets"];
+    for (index, so) in clearances.into_iter().enumerate() {
+        let (met, target) = (&plan["encounters"][index], &checked[index]);
         assert_eq!(met["target"], format!("t{index}"));
-        near(&met["dcpa_m"], so);
-        near(&met["undisturbed_dcpa_m"], so);
-    }
-
-    let table = stdout(&searoom(&["verify", &plan_file]).success());
-    let checked = document(&searoom(&["verify", "--json", &plan_file]).success());
-    let checked = checked["plans"][0]["targets"].as_array().expect("a list");
-    assert_eq!(checked.len(), clearances.len());
-    for (index, (target, so)) in checked.iter().zip(clearances).enumerate() {
-        assert_eq!(target["target"], format!("t{index}"));
-        near(&target["min_clearance_m"], so);
-        near(&target["dcpa_m"], so);
+        assert_eq!(target["target"], met["target"]);
+        for found in [
+            &met["dcpa_m"],
+            &met["undisturbed_dcpa_m"],
+            &target["min_clearance_m"],
+            &target["dcpa_m"],
+        ] {
+            near(found, so);
+        }
         let row = table
             .lines()
             .find(|line| line.contains(&format!(" t{index} ")));
@@ -396,61 +379,29 @@ fn every_view_tells_the_clearance_of_the_right_target() {
         assert_eq!(words[3..5], [so.as_str(), so.as_str()], "{table}");
     }
 
-    let suite = stdout(&searoom(&["suite", &file]).success());
-    assert!(
-        suite.contains(" 290.0 ") && !suite.contains(" 390.0 "),
-        "{suite}"
-    );
-    let suite = document(&searoom(&["suite", &file, "--json"]).success());
-    near(&suite["runs"][0]["cost"]["min_clearance_m"], least);
-    for (met, so) in suite["runs"][0]["encounters"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .zip(clearances)
-    {
-        near(&met["dcpa_m"], so);
-    }
-
-    let args = ["compare", &file, "--csv", &csv, "--report", &compared_page];
-    let table = stdout(&searoom(&args).success());
-    let rows: Vec<&str> = table
-        .lines()
-        .filter(|l| l.contains("A*") || l.contains("hold"))
-        .collect();
-    assert!(
-        rows.len() >= 2 && rows.iter().all(|row| row.contains(" 290.0 ")),
-        "{table}"
-    );
-    let page = fs::read_to_string(format!("{compared_page}/index.html")).expect("a page");
-    assert!(page.contains("<span>290.0</span>"), "{page}");
-    let rows = fs::read_to_string(&csv).expect("rows");
-    let mut rows = rows.lines().map(|row| row.split(',').collect::<Vec<_>>());
-    let names = rows.next().expect("names");
-    let column = names
-        .iter()
-        .position(|n| *n == "min_clearance_m")
-        .expect("a column");
-    let held = rows
-        .find(|row| row.contains(&"hold course"))
-        .expect("a row");
-    // the method of planners has a comma in it, the column counts from the end
-    let value = held[held.len() - (names.len() - column)];
-    near(&value.parse::<f64>().expect("a number").into(), least);
-    let compared = document(&searoom(&["compare", &file, "--json"]).success());
-    for entry in compared["comparisons"][0]["entries"]
-        .as_array()
-        .expect("a list")
-    {
+    let csv = text(&folder.path().join("rows.csv")).to_owned();
+    let compared = document(&run(&format!("compare {file} --json --csv {csv}")).success());
+    let entries = compared["comparisons"][0]["entries"].as_array();
+    for entry in entries.expect("a list") {
         // these keep to the path
         let method = entry["method"].as_str().expect("a name");
-        if method == "hold course"
-            || method.starts_with("space-time")
-            || method.starts_with("path-time")
+        if ["hold course", "space-time", "path-time"]
+            .iter()
+            .any(|kept| method.starts_with(kept))
         {
-            near(&entry["cost"]["min_clearance_m"], least);
+            near(&entry["cost"]["min_clearance_m"], 290.0);
         }
     }
+    let mut rows = csv::Reader::from_path(&csv).expect("rows");
+    let names = rows.headers().expect("names").clone();
+    let column = names.iter().position(|n| n == "min_clearance_m");
+    let held = rows
+        .records()
+        .flatten()
+        .find(|row| &row[2] == "hold course")
+        .expect("a row");
+    let value: f64 = held[column.expect("a column")].parse().expect("a number");
+    near(&value.into(), 290.0);
 }
 
 /// Figures of a comparison say of a method that it rams.
@@ -458,12 +409,9 @@ fn every_view_tells_the_clearance_of_the_right_target() {
 fn a_figure_of_a_comparison_says_who_rams() {
     let folder = tempfile::tempdir().expect("a folder");
     let figure = text(&folder.path().join("a.svg")).to_owned();
-    searoom(&[
-        "compare",
-        "scenarios/colregs/head-on.toml",
-        "--figure",
-        &figure,
-    ])
+    run(&format!(
+        "compare scenarios/colregs/head-on.toml --figure {figure}"
+    ))
     .success();
     let svg = fs::read_to_string(&figure).expect("a figure");
     assert!(

@@ -19,48 +19,20 @@ pub struct Found {
     pub in_folder: bool,
 }
 
-/// File kinds in a folder, selected by extension.
-#[derive(Debug)]
-pub struct Kinds {
-    endings: &'static [&'static str],
-    text: &'static str,
-}
+/// Extensions of scenario files and of imported formats.
+const ENDINGS: [&str; 3] = ["toml", "json", "xml"];
 
-/// Scenario files.
-pub const SCENARIOS: Kinds = Kinds {
-    endings: &["toml"],
-    text: ".toml",
-};
-
-/// Scenario files and imported formats.
-pub const ANY_FORMAT: Kinds = Kinds {
-    endings: &["toml", "json", "xml"],
-    text: ".toml, .json or .xml",
-};
-
-/// Imported formats alone.
-pub const FOREIGN: Kinds = Kinds {
-    endings: &["json", "xml"],
-    text: ".json or .xml",
-};
-
-impl Kinds {
-    fn hold(&self, file: &Path) -> bool {
-        let ending = file.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| self.endings.contains(&ending))
-    }
+fn has_known_ending(file: &Path) -> bool {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ENDINGS.contains(&ending))
 }
 
 /// Lists the scenario files at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(
-    paths: &[PathBuf],
-    kinds: &Kinds,
-    output: &Output,
-) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
-    for found in meant(paths, kinds) {
+    for found in meant(paths) {
         // missing files are reported on reading
         let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
         let again = place.is_some_and(|place| !known.insert(place));
@@ -74,7 +46,7 @@ pub fn find(
     all
 }
 
-fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -87,13 +59,12 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
             continue;
         }
         let mut files = Vec::new();
-        match walk(path, kinds, &mut files) {
+        match walk(path, &mut files) {
             Ok(()) if files.is_empty() => all.push(Err((
                 path.clone(),
                 anyhow::anyhow!(
-                    "{}: a folder without scenarios ({} files)",
-                    path.display(),
-                    kinds.text
+                    "{}: a folder without scenarios (.toml, .json or .xml files)",
+                    path.display()
                 ),
             ))),
             Ok(()) => all.extend(files.into_iter().map(|file| {
@@ -133,18 +104,9 @@ fn stem(relative: &Path) -> String {
     parts.join("__")
 }
 
-/// Files of these kinds below a folder; empty if the folder is unreadable.
-pub fn below(folder: &Path, kinds: &Kinds) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    match walk(folder, kinds, &mut files) {
-        Ok(()) => files,
-        Err(_) => Vec::new(),
-    }
-}
-
-/// Collects files of these kinds, depth first in order of names. Hidden entries are skipped. Links
+/// Collects files with a known ending, depth first in order of names. Hidden entries are skipped. Links
 /// to folders are not followed, which prevents loops.
-fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let unread = || format!("{}: cannot be read", folder.display());
     let mut entries = fs::read_dir(folder)
         .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
@@ -156,8 +118,8 @@ fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Resul
             continue;
         }
         if entry.file_type().with_context(unread)?.is_dir() {
-            walk(&path, kinds, files)?;
-        } else if kinds.hold(&path) && !path.is_dir() {
+            walk(&path, files)?;
+        } else if has_known_ending(&path) && !path.is_dir() {
             files.push(path);
         }
     }

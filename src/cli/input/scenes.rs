@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use searoom::scenario::import::{Assumed, Contents, Declared, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::super::output::Output;
@@ -149,40 +149,24 @@ fn of_file(
     }
 }
 
-/// Reads a scenario for a command that accepts scenario files only. The error includes the file
-/// name.
-pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
-    let read = Contents::read(file, &Assumed::default()).map_err(|error| error.to_string())?;
-    let is = match read {
-        Contents::Scenario => return Scenario::read(file).map_err(|error| error.to_string()),
-        Contents::Situations { format, .. } => {
-            let other = match format {
-                Format::Dnv => "a DNV traffic situation",
-                Format::Imazu => "Imazu's cases",
-                Format::CommonOcean => "a CommonOcean scenario",
-            };
-            format!("{other}; `searoom import` makes scenario files of it")
-        }
-        Contents::Other(what) => format!("{what}; no scenario in it"),
-    };
-    Err(format!("{}: {is}", file.display()))
-}
-
-/// Notes how many files of imported formats in a folder this command skips.
-pub fn note_foreign(paths: &[PathBuf], output: &Output) {
-    for folder in paths.iter().filter(|path| path.is_dir()) {
-        let is_foreign = |file: &PathBuf| {
-            let read = Contents::read(file, &Assumed::default());
-            matches!(read, Ok(Contents::Situations { .. }))
-        };
-        let all = files::below(folder, &files::FOREIGN);
-        let count = all.into_iter().filter(is_foreign).count();
-        if count > 0 {
-            let (folder, plural) = (folder.display(), if count == 1 { "" } else { "s" });
-            output.note(&format_args!(
-                "{folder}: {count} file{plural} of other formats left out; `searoom import` makes scenario files of them"
-            ));
-        }
+/// Opens a file for a command that takes one scenario. The error includes the file name.
+pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene, String> {
+    let name = file.display();
+    if file.is_dir() {
+        return Err(format!(
+            "{name}: a folder; `searoom suite` runs the scenarios in it"
+        ));
+    }
+    let found = files::find(&[file.to_owned()], output);
+    let mut scenes = open(found, assumed, output);
+    match (scenes.pop(), scenes.len()) {
+        (Some(Ok(scene)), 0) => Ok(scene),
+        (Some(Err(unread)), 0) => Err(unread.error),
+        (None, _) => Err(format!("{name}: no scenario in it")),
+        (_, more) => Err(format!(
+            "{name}: {} situations; `searoom suite` runs them",
+            more + 1
+        )),
     }
 }
 

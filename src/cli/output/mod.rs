@@ -93,6 +93,12 @@ impl Output {
         let _ = writeln!(std::io::stderr(), "error: {error}");
     }
 
+    /// Prints an error of the input or of its use.
+    pub fn refuse(&self, error: &impl Display) -> ExitStatus {
+        self.error(error);
+        ExitStatus::BadInput
+    }
+
     /// Prints a note.
     pub fn note(&self, note: &impl Display) {
         let note = printable_lines(&note.to_string());

@@ -66,30 +66,19 @@ impl Products {
         }
         let is_recording = |path: &Path| path.extension().is_some_and(|e| e == "rrd");
         let is_figure = |path: &Path| FigureFormat::of(path).is_some();
-        if let Some(path) = recordings.filter(|path| !is_recording(path) && is_another_file(path)) {
-            let path = path.display();
-            bail!("--rrd: {path}: a recording ends in .rrd, a folder that is to be made in '/'");
-        }
-        for (option, folder) in [("--plans", plans), ("--report", report)] {
-            if let Some(path) = folder.filter(|path| is_another_file(path)) {
-                let path = path.display();
-                bail!(
-                    "{option}: {path}: a folder; one with an ending that is to be made ends in '/'"
-                );
-            }
-        }
+        let place = |option, path: &Path, is_file, endings| {
+            Place::prepare(option, path, is_file, endings, found.len())
+        };
         let recordings = recordings
-            .map(|path| Place::prepare("--rrd", path, is_recording(path), found.len()))
+            .map(|path| place("--rrd", path, is_recording(path), ".rrd"))
             .transpose()?;
-        if let Some(path) = figures.filter(|path| !is_figure(path) && is_another_file(path)) {
-            let file = path.to_owned();
-            bail!("--figure: {}", FigureError::Format { file });
-        }
         let figures = figures
-            .map(|path| Place::prepare("--figure", path, is_figure(path), found.len()))
+            .map(|path| place("--figure", path, is_figure(path), ".svg or .png"))
             .transpose()?;
-        for folder in plans.into_iter().chain(report) {
-            make(folder)?;
+        for (option, folder) in [("--plans", plans), ("--report", report)] {
+            if let Some(folder) = folder {
+                place(option, folder, false, "")?;
+            }
         }
         Ok(Self {
             recordings,
@@ -203,17 +192,29 @@ impl Products {
 }
 
 impl Place {
-    /// Prepares one output path; `file` is true if its name has the extension of such a file.
-    fn prepare(option: &str, path: &Path, file: bool, scenarios: usize) -> anyhow::Result<Self> {
-        if !file || path.is_dir() {
+    /// Prepares one output path; `is_file` is true if its name has one of the `endings` of such a
+    /// file. Without `endings`, it is a folder.
+    fn prepare(
+        option: &str,
+        path: &Path,
+        is_file: bool,
+        endings: &str,
+        scenarios: usize,
+    ) -> anyhow::Result<Self> {
+        let shown = path.display();
+        if !is_file && is_another_file(path) {
+            let file = match endings {
+                "" => String::new(),
+                endings => format!("a file ends in {endings}, "),
+            };
+            bail!("{option}: {shown}: {file}a folder that is to be made ends in '/'");
+        }
+        if !is_file || path.is_dir() {
             make(path)?;
             return Ok(Self::Folder(path.to_owned()));
         }
         if scenarios > 1 {
-            bail!(
-                "{option} {}: a file, but there are {scenarios} scenarios; name a folder",
-                path.display(),
-            );
+            bail!("{option} {shown}: a file, but there are {scenarios} scenarios; name a folder");
         }
         if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
             make(folder)?;

@@ -1,11 +1,12 @@
-//! Data that all views of a recording share: the scenario with its sets, the times that are shown, the
-//! part of the sea that is shown, colours.
+//! Data that all views of a recording share: the scenario with its sets, the times and the part of
+//! the sea that are shown, colours.
 
+mod lines;
 mod motion;
-pub mod simplify;
 pub mod style;
 mod view_model;
 
+pub use lines::{Lines, labelled};
 pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;
 
@@ -51,10 +52,6 @@ impl Bounds {
             low: self.low.add_scalar(-by),
             high: self.high.add_scalar(by),
         }
-    }
-
-    pub fn contains(&self, p: &Vector) -> bool {
-        p.x > self.low.x && p.x < self.high.x && p.y > self.low.y && p.y < self.high.y
     }
 
     pub fn size(&self) -> Vector {
@@ -135,11 +132,6 @@ impl<'a> Canvas<'a> {
     pub fn with_domain<'s>(&self, sets: &'s TargetSets) -> Option<&'s Obstacle> {
         let is_used = self.scenario.compliance != Compliance::None;
         (is_used && sets.with_domain != sets.hard).then_some(&sets.with_domain)
-    }
-
-    /// Largest error of a line that is drawn with fewer points, metres.
-    pub fn line_tolerance(&self) -> f64 {
-        simplify::TOLERANCE * self.bounds.extent()
     }
 
     /// The unit vector from the first waypoint to the last; own ship's first heading on a round

@@ -23,20 +23,13 @@ pub struct Pane {
 }
 
 /// The layout that is being built.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Panes {
     rec: Recorder,
     panes: u64,
 }
 
 impl Panes {
-    pub fn new() -> Self {
-        Self {
-            rec: Recorder::of_section(0),
-            panes: 0,
-        }
-    }
-
     /// Adds a view of a class, with its name and the entity at its origin.
     pub fn view<V: View>(&mut self, name: &str, origin: &str) -> RecordingStreamResult<Pane> {
         let pane = self.pane("view");

@@ -1,10 +1,8 @@
 //! Reads a recording back, offline and whole.
 
-mod csv;
 mod table;
 mod values;
 
-pub use csv::Columns;
 pub use table::{EntityRow, EntityTable};
 
 use std::collections::BTreeMap;
@@ -12,11 +10,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rerun::external::re_log_encoding::{DecoderApp, RRD_FOURCC, StreamHeader};
-use rerun::external::re_log_types::TimeType;
 use rerun::log::{Chunk, LogMsg};
 
 use super::checksum::is_sealed;
-use super::{COMPARISON, DOCUMENT};
+use super::{COMPARISON, DOCUMENT, TIMELINE};
 
 /// Longest file that is read: 1 GiB. The whole file is held in memory.
 const FILE_BYTES: u64 = 1 << 30;
@@ -57,9 +54,10 @@ pub struct Recorded {
 }
 
 /// Contents of one entity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct EntityContents {
     /// With a leading slash.
+    #[serde(rename = "entity")]
     pub path: String,
     /// Rows of all its chunks together.
     pub rows: usize,
@@ -70,11 +68,11 @@ pub struct EntityContents {
 }
 
 /// The range of a timeline that is used.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TimelineContents {
     /// Its name.
     pub name: String,
-    /// `"s"` for durations and for instants since 1970, else empty.
+    /// `"s"`.
     pub unit: &'static str,
     /// The first time.
     pub first: f64,
@@ -162,9 +160,9 @@ impl Recorded {
         all.map(|(path, chunks)| contents(path, chunks)).collect()
     }
 
-    /// Lists every timeline of all entities, sorted by name.
+    /// The timeline of all entities.
     pub fn timelines(&self) -> Vec<TimelineContents> {
-        spans(self.chunks.values().flatten())
+        span(self.chunks.values().flatten())
     }
 
     /// All rows of an entity, in order of time; `None` when there is no such entity. A leading
@@ -222,37 +220,27 @@ fn contents(path: &str, chunks: &[Chunk]) -> EntityContents {
         path: path.to_owned(),
         rows: chunks.iter().map(Chunk::num_rows).sum(),
         components,
-        timelines: spans(chunks),
+        timelines: span(chunks),
     }
 }
 
-fn spans<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Vec<TimelineContents> {
-    let mut spans: BTreeMap<String, TimelineContents> = BTreeMap::new();
-    for column in chunks.into_iter().flat_map(|c| c.timelines().values()) {
-        let (unit, scale) = unit(column.timeline().typ());
-        let times = column.times_raw();
-        let (Some(first), Some(last)) = (times.iter().min(), times.iter().max()) else {
-            continue;
-        };
-        let (first, last) = (*first as f64 / scale, *last as f64 / scale);
-        let span = spans
-            .entry(column.name().to_owned())
-            .or_insert_with(|| TimelineContents {
-                name: column.name().to_owned(),
-                unit,
-                first,
-                last,
-            });
-        span.first = span.first.min(first);
-        span.last = span.last.max(last);
-    }
-    spans.into_values().collect()
+/// The times of a chunk's rows, in seconds; none for what holds at all times.
+fn seconds(chunk: &Chunk) -> impl Iterator<Item = f64> {
+    let columns = chunk.timelines().values();
+    let times = columns.flat_map(|column| column.times_raw());
+    times.map(|time| *time as f64 / NANOSECONDS)
 }
 
-/// The unit of a timeline, and how many ticks it has.
-fn unit(kind: TimeType) -> (&'static str, f64) {
-    match kind {
-        TimeType::Sequence => ("", 1.0),
-        TimeType::DurationNs | TimeType::TimestampNs => ("s", NANOSECONDS),
-    }
+/// The timeline of some chunks; none for what holds at all times.
+fn span<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Vec<TimelineContents> {
+    let times: Vec<f64> = chunks.into_iter().flat_map(seconds).collect();
+    let first = times.iter().copied().reduce(f64::min);
+    let last = times.iter().copied().reduce(f64::max);
+    let span = first.zip(last).map(|(first, last)| TimelineContents {
+        name: TIMELINE.to_owned(),
+        unit: "s",
+        first,
+        last,
+    });
+    span.into_iter().collect()
 }

@@ -1,12 +1,13 @@
 //! The rows of an entity as JSON values.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use rerun::log::Chunk;
 use serde_json::Value;
 
-use super::unit;
+use super::seconds;
 use super::values::instances;
+use crate::recording::TIMELINE;
 
 /// The component that names the curves of a plot.
 const NAMES: &str = "SeriesLines:names";
@@ -17,8 +18,6 @@ const TEXT: &str = "TextDocument:text";
 /// Everything that an entity holds, a row per time and write.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityTable {
-    /// The timelines, with their unit.
-    pub timelines: Vec<String>,
     /// The components, sorted.
     pub components: Vec<String>,
     /// In order of time; what holds at all times first.
@@ -30,51 +29,32 @@ pub struct EntityTable {
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityRow {
-    /// One per timeline; `None` for what holds at all times.
-    pub times: Vec<Option<f64>>,
+    /// Seconds; `None` for what holds at all times.
+    pub time: Option<f64>,
     /// The instances of each component; null where the row has none.
     pub values: Vec<Value>,
 }
 
 impl EntityTable {
     pub(super) fn of(chunks: &[Chunk]) -> Self {
-        let mut timelines: BTreeMap<String, usize> = BTreeMap::new();
-        let mut components: BTreeMap<String, usize> = BTreeMap::new();
-        for chunk in chunks {
-            for column in chunk.timelines().values() {
-                let (unit, _) = unit(column.timeline().typ());
-                timelines.insert(titled(column.name(), unit), 0);
-            }
-            for component in chunk.components_identifiers() {
-                components.insert(component.to_string(), 0);
-            }
-        }
-        let number = |names: &mut BTreeMap<String, usize>| {
-            names
-                .values_mut()
-                .enumerate()
-                .for_each(|(i, place)| *place = i);
-        };
-        number(&mut timelines);
-        number(&mut components);
+        let components = chunks.iter().flat_map(Chunk::components_identifiers);
+        let components: BTreeSet<String> = components.map(|c| c.to_string()).collect();
+        let components: Vec<String> = components.into_iter().collect();
         let mut rows: Vec<EntityRow> = Vec::new();
         for chunk in chunks {
             let begun = rows.len();
             let empty = || EntityRow {
-                times: vec![None; timelines.len()],
+                time: None,
                 values: vec![Value::Null; components.len()],
             };
             rows.resize_with(begun + chunk.num_rows(), empty);
-            for column in chunk.timelines().values() {
-                let (unit, scale) = unit(column.timeline().typ());
-                let place = timelines[&titled(column.name(), unit)];
-                for (row, time) in rows[begun..].iter_mut().zip(column.times_raw()) {
-                    row.times[place] = Some(*time as f64 / scale);
-                }
+            for (row, time) in rows[begun..].iter_mut().zip(seconds(chunk)) {
+                row.time = Some(time);
             }
             for component in chunk.components_identifiers() {
-                let place = components[&component.to_string()];
-                let Some(list) = chunk.components().get_array(component) else {
+                let place = components.iter().position(|c| *c == component.as_str());
+                let list = chunk.components().get_array(component);
+                let Some((place, list)) = place.zip(list) else {
                     continue;
                 };
                 for (index, row) in rows[begun..].iter_mut().enumerate() {
@@ -83,24 +63,63 @@ impl EntityTable {
             }
         }
         // a stable sort keeps the order of writing at equal times
-        rows.sort_by(|a, b| {
-            let pairs = a.times.iter().zip(&b.times);
-            pairs
-                .map(|(a, b)| match (a, b) {
-                    (Some(a), Some(b)) => a.total_cmp(b),
-                    (a, b) => a.is_some().cmp(&b.is_some()),
-                })
-                .find(|order| order.is_ne())
-                .unwrap_or(std::cmp::Ordering::Equal)
-        });
+        let time = |row: &EntityRow| row.time.unwrap_or(f64::NEG_INFINITY);
+        rows.sort_by(|a, b| time(a).total_cmp(&time(b)));
         let mut table = Self {
-            timelines: timelines.into_keys().collect(),
-            components: components.into_keys().collect(),
+            components,
             rows,
             names: Vec::new(),
         };
         table.names = table.texts(NAMES);
         table
+    }
+
+    /// The table for a CSV file, its header first: the times, then a column for each named curve
+    /// and one for each other component, as JSON. Where something changes in time, what holds at
+    /// all times is left out.
+    pub fn csv_rows(&self) -> Vec<Vec<String>> {
+        let is_timed = |row: &EntityRow| row.time.is_some();
+        let any_timed = self.rows.iter().any(is_timed);
+        let shown = |row: &&EntityRow| is_timed(row) || !any_timed;
+        let is_curves =
+            |component: &str| component.starts_with("Scalars:") && !self.names.is_empty();
+        let used = |c: &usize| {
+            self.rows
+                .iter()
+                .filter(shown)
+                .any(|r| !r.values[*c].is_null())
+        };
+        let used: Vec<usize> = (0..self.components.len()).filter(used).collect();
+        let mut header = Vec::new();
+        if any_timed {
+            header.push(format!("{TIMELINE}_s"));
+        }
+        for component in used.iter().map(|c| &self.components[*c]) {
+            if is_curves(component) {
+                header.extend_from_slice(&self.names);
+            } else {
+                let short = component.rsplit(':').next().unwrap_or(component);
+                header.push(short.to_owned());
+            }
+        }
+        let mut rows = vec![header];
+        for row in self.rows.iter().filter(shown) {
+            let mut cells: Vec<String> = row.time.iter().map(f64::to_string).collect();
+            for &c in &used {
+                if is_curves(&self.components[c]) {
+                    let value = |i| {
+                        row.values[c]
+                            .get(i)
+                            .map_or_else(String::new, Value::to_string)
+                    };
+                    cells.extend((0..self.names.len()).map(value));
+                } else {
+                    cells.push(row.values[c].to_string());
+                }
+            }
+            rows.push(cells);
+        }
+        rows
     }
 
     /// The text of a document, the last one written.
@@ -119,14 +138,5 @@ impl EntityTable {
         texts
             .filter_map(|v| v.as_str().map(str::to_owned))
             .collect()
-    }
-}
-
-/// The name of a timeline with its unit.
-fn titled(name: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{name}_{unit}")
     }
 }

@@ -2,7 +2,7 @@
 
 use rerun::external::arrow::array::{Array, AsArray, ListArray};
 use rerun::external::arrow::datatypes::{
-    DataType, Float32Type, Float64Type, Int64Type, UInt8Type, UInt32Type, UInt64Type,
+    DataType, Float32Type, Float64Type, UInt8Type, UInt32Type,
 };
 use serde_json::Value;
 
@@ -36,8 +36,6 @@ fn values(array: &dyn Array) -> Value {
     match array.data_type() {
         DataType::Float64 => each(&|i| array.as_primitive::<Float64Type>().value(i).into()),
         DataType::Float32 => each(&|i| shortest(array.as_primitive::<Float32Type>().value(i))),
-        DataType::Int64 => each(&|i| array.as_primitive::<Int64Type>().value(i).into()),
-        DataType::UInt64 => each(&|i| array.as_primitive::<UInt64Type>().value(i).into()),
         DataType::UInt32 => each(&|i| array.as_primitive::<UInt32Type>().value(i).into()),
         DataType::UInt8 => each(&|i| array.as_primitive::<UInt8Type>().value(i).into()),
         DataType::Boolean => each(&|i| array.as_boolean().value(i).into()),
@@ -45,19 +43,6 @@ fn values(array: &dyn Array) -> Value {
         DataType::List(_) => each(&|i| values(array.as_list::<i32>().value(i).as_ref())),
         DataType::FixedSizeList(..) => {
             each(&|i| values(array.as_fixed_size_list().value(i).as_ref()))
-        }
-        DataType::Struct(fields) => {
-            let columns: Vec<Value> = array
-                .as_struct()
-                .columns()
-                .iter()
-                .map(|c| values(c.as_ref()))
-                .collect();
-            each(&|i| {
-                let field = |(name, column): (&String, &Value)| (name.clone(), column[i].clone());
-                let names: Vec<String> = fields.iter().map(|f| f.name().clone()).collect();
-                Value::Object(names.iter().zip(&columns).map(field).collect())
-            })
         }
         other => {
             let kind = other.to_string();

@@ -1,18 +1,16 @@
-//! Static parts of the chart: grid, legend, desired and planned trajectory, closest points.
+//! Static parts of the chart: grid, desired and planned trajectory, time marks, closest points.
 
-use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
+use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult};
 
-use super::ships::{DOMAIN_RADIUS, HARD_RADIUS, domain_color};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Bounds, Canvas, Palette, ShownMotion, ViewModel, desired_leg, flat, round_down,
+    Bounds, Canvas, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{MAP, path};
 use crate::target::Target;
-use crate::tolerance;
 use crate::trajectory::{Cubic, Segment, Trajectory};
 
 /// Turn between two drawn points of an arc, radians.
@@ -21,32 +19,9 @@ const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 /// A line of the chart.
 pub type Strip = Vec<[f32; 2]>;
 
-/// Lines, each with its style.
-#[derive(Debug, Default)]
-pub struct Lines {
-    strips: Vec<Strip>,
-    colors: Vec<Color>,
-    radii: Vec<Radius>,
-}
-
-impl Lines {
-    pub fn add(&mut self, strip: Strip, color: Color, radius: Radius) {
-        self.strips.push(strip);
-        self.colors.push(color);
-        self.radii.push(radius);
-    }
-
-    pub fn archetype(self) -> LineStrips2D {
-        LineStrips2D::new(self.strips)
-            .with_colors(self.colors)
-            .with_radii(self.radii)
-    }
-}
-
 /// Logs everything of the chart that does not move.
 pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     log_waters(rec, model)?;
-    log_legend(rec, model, plan_legend(model), 1)?;
     log_planned(rec, model)?;
     log_time_marks(rec, model)?;
     log_closest_points(rec, model)?;
@@ -70,37 +45,27 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
 fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     let Bounds { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.extent());
     let spacing = grid_spacing(canvas);
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for east in multiples(low.x, high.x, spacing) {
         let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
-        lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
+        lines.add(ends.map(flat), style::GRID, 0.5);
     }
     for north in multiples(low.y, high.y, spacing) {
         let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
-        lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
+        lines.add(ends.map(flat), style::GRID, 0.5);
     }
-
     let unit = canvas.bounds.extent() / 100.0;
     let corner = Vector::new(canvas.bounds.low.x, canvas.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
-    let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
-    for strip in [vec![foot, head], vec![barbs[0], head, barbs[1]]] {
-        lines.add(
-            strip.into_iter().map(flat).collect(),
-            style::chart_text(),
-            style::points(1.0),
-        );
-    }
-    let name = Points2D::new([flat(head + Vector::new(0.0, 4.0 * unit))])
-        .with_colors([style::chart_text()])
-        .with_radii([style::points(0.5)])
-        .with_labels(["N"])
-        .with_show_labels(true);
-    rec.log_static(
-        path(&[MAP, "grid"]),
-        &[&lines.archetype() as &dyn AsComponents, &name],
-    )
+    let [left, right] = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
+    lines.add([foot, head].map(flat), style::CHART_TEXT, 1.0);
+    lines.add([left, head, right].map(flat), style::CHART_TEXT, 1.0);
+    let name = flat(head + Vector::new(0.0, 4.0 * unit));
+    let name = labelled([name], style::CHART_TEXT, 0.5, ["N"]);
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&lines, &name];
+    rec.log_static(path(&[MAP, "grid"]), &parts)
 }
 
 /// Metres between two lines of the grid.
@@ -114,114 +79,16 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     (first..=last).map(move |i| step * i as f64)
 }
 
-/// The name of a line in the legend, its colour and its width.
-pub type Key = (String, Color, Radius);
-
-fn plan_legend(model: &ViewModel) -> Vec<Key> {
-    let mut entries = vec![("desired".into(), style::desired(), style::points(0.8))];
-    for pace in shown_speeds(model) {
-        entries.push((pace.name().into(), pace.color(), pace.radius()));
-    }
-    entries.extend(waters_legend(model));
-    entries
-}
-
-/// The keys of the sets, the land and the grid.
-pub fn waters_legend(canvas: &Canvas) -> Vec<Key> {
-    let mut entries: Vec<Key> = Vec::new();
-    // the methods of a comparison may have sets of their own
-    let whose = match canvas.palette {
-        Palette::Targets => "",
-        Palette::OwnShips => " of the scenario",
-    };
-    if !canvas.sets.is_empty() {
-        entries.push((
-            format!("hard set{whose}"),
-            canvas.target_color(0),
-            HARD_RADIUS,
-        ));
-        if canvas.sets.iter().any(|s| canvas.with_domain(s).is_some()) {
-            entries.push((
-                format!("set with domain{whose}"),
-                domain_color(canvas, 0),
-                DOMAIN_RADIUS,
-            ));
-        }
-    }
-    if canvas.scenario.land.is_some() {
-        entries.push(("land".into(), style::land(), style::points(1.2)));
-    }
-    entries.push((
-        format!("grid {:.0} m", grid_spacing(canvas)),
-        style::chart_text(),
-        style::points(0.5),
-    ));
-    entries
-}
-
-/// Logs samples of the line styles with their meaning, in rows below the bounds.
-pub fn log_legend(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    entries: Vec<Key>,
-    rows: usize,
-) -> RecordingStreamResult<()> {
-    let bounds = canvas.bounds;
-    let columns = entries.len().div_ceil(rows.max(1)).max(1);
-    // the view is wider than it is high, so there may be space beside the bounds
-    let height = bounds.size().y + legend_height(canvas, rows);
-    let whole = bounds.size().x.max(LEGEND_SHAPE * height);
-    let width = whole / columns as f64;
-    let mut lines = Lines::default();
-    let mut labels = Vec::new();
-    for (index, (label, color, radius)) in entries.into_iter().enumerate() {
-        let (row, column) = (index / columns, index % columns);
-        let north = bounds.low.y - (0.25 + LEGEND_ROW * row as f64) * legend_height(canvas, 1);
-        let west = bounds.center().x - 0.5 * whole + width * (column as f64 + 0.2);
-        let ends = [
-            Vector::new(west, north),
-            Vector::new(west + 0.6 * width, north),
-        ];
-        lines.add(ends.map(flat).to_vec(), color, radius);
-        labels.push(label);
-    }
-    rec.log_static(
-        path(&[MAP, "legend"]),
-        &lines.archetype().with_labels(labels).with_show_labels(true),
-    )
-}
-
-/// Least width of a legend as a multiple of the height of the view.
-const LEGEND_SHAPE: f64 = 1.36;
-
-/// Height of each further row of a legend as a fraction of the first.
-const LEGEND_ROW: f64 = 0.7;
-
-/// Metres below the bounds for a legend with `rows`.
-pub fn legend_height(canvas: &Canvas, rows: usize) -> f64 {
-    let further = rows.saturating_sub(1) as f64;
-    0.1 * canvas.bounds.extent() * (1.0 + LEGEND_ROW * further)
-}
-
-fn shown_speeds(model: &ViewModel) -> Vec<SpeedClass> {
-    let all = [SpeedClass::Slow, SpeedClass::Desired, SpeedClass::Fast];
-    let used: Vec<SpeedClass> = planned_strips(model).into_iter().map(|(p, _)| p).collect();
-    all.into_iter().filter(|pace| used.contains(pace)).collect()
-}
-
 /// Logs the desired trajectory, dashed.
 fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     let dash = canvas.bounds.extent() / 120.0;
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for leg in canvas.scenario.desired.legs() {
         let mut along = 0.0;
         while along < leg.length {
             let ends = [along, (along + dash).min(leg.length)];
-            lines.add(
-                ends.map(|s| flat(leg.start + leg.direction * s)).to_vec(),
-                style::desired(),
-                style::points(0.8),
-            );
+            let ends = ends.map(|s| flat(leg.start + leg.direction * s));
+            lines.add(ends, style::DESIRED, 0.8);
             along += 2.0 * dash;
         }
     }
@@ -233,9 +100,9 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<(
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for (pace, points) in planned_strips(model) {
-        let strip = points.into_iter().map(|(p, _)| flat(p)).collect();
+        let strip: Strip = points.into_iter().map(|(p, _)| flat(p)).collect();
         lines.add(strip, pace.color(), pace.radius());
     }
     rec.log_static(path(&[MAP, "planned"]), &lines.archetype())
@@ -319,17 +186,10 @@ fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
         .collect();
     // a plan has no positions after arrival
     let times = model.motion.until_arrival(&times);
-    let points = times
-        .iter()
-        .map(|&t| flat(model.motion.pose_at(t).position));
-    rec.log_static(
-        path(&[MAP, "time_marks"]),
-        &Points2D::new(points)
-            .with_colors([style::own_ship()])
-            .with_radii([style::points(3.0)])
-            .with_labels(times.iter().map(|t| format!("{t:.0} s")))
-            .with_show_labels(true),
-    )
+    let points = times.iter().map(|&t| model.motion.pose_at(t).position);
+    let labels = times.iter().map(|t| format!("{t:.0} s"));
+    let marks = labelled(points.map(flat), style::OWN_SHIP, 3.0, labels);
+    rec.log_static(path(&[MAP, "time_marks"]), &marks)
 }
 
 /// Logs where a target is expected, with the same time marks.
@@ -356,53 +216,26 @@ fn log_track(
     )
 }
 
-/// Logs a line between own ship and each target at their closest approach, and the distance and
-/// time of the least.
+/// Logs a line between own ship and each target at their closest approach. Distance and time are
+/// shown where a line is pointed at.
 fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
-    let beyond = model.bounds.extent() / 10.0;
-    let mut lines = Lines::default();
-    let mut nearest: Option<(f64, Vector, String)> = None;
+    let mut lines = Lines::new();
+    let mut labels = Vec::new();
     for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
         let own = model.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
-        lines.add(
-            [own, other].map(flat).to_vec(),
-            style::chart_text(),
-            style::points(0.8),
-        );
-        if nearest.as_ref().is_none_or(|n| passage.dcpa < n.0) {
-            // on the far side of the target: own ship's name and time marks are on the near one
-            let away = (other - own)
-                .try_normalize(0.0)
-                .unwrap_or_else(Vector::zeros);
-            let label = format!("CPA {}", approach(passage.dcpa, passage.tcpa));
-            nearest = Some((passage.dcpa, other + away * beyond, label));
-        }
+        lines.add([own, other].map(flat), style::CHART_TEXT, 0.8);
+        // adding +0.0 converts a negative zero to zero
+        let distance = (passage.dcpa * 10.0).round() / 10.0 + 0.0;
+        let time = passage.tcpa;
+        labels.push(format!("CPA {distance} m at {time:.0} s"));
     }
-    let Some((_, place, label)) = nearest else {
-        return Ok(());
-    };
-    let lines = lines.archetype();
-    let name = Points2D::new([flat(place)])
-        .with_colors([style::chart_text()])
-        .with_radii([style::points(0.0)])
-        .with_labels([label])
-        .with_show_labels(true);
-    let parts: [&dyn AsComponents; 2] = [&lines, &name];
-    rec.log_static(path(&[MAP, "closest_points"]), &parts)
-}
-
-/// A closest approach in words: metres between the hulls, negative in overlap, and seconds.
-/// Touching is no collision.
-fn approach(distance: f64, time: f64) -> String {
-    if distance < -tolerance::DEPTH_M {
-        format!("collision at {time:.0} s")
-    } else {
-        format!("{:.0} m at {time:.0} s", distance.max(0.0))
-    }
+    let lines = lines.archetype().with_labels(labels);
+    let lines = lines.with_show_labels(false);
+    rec.log_static(path(&[MAP, "closest_points"]), &lines)
 }
 
 /// Logs, without a plan, where own ship on the desired trajectory first enters a set.
@@ -422,46 +255,19 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<
     let Some((place, label)) = inside else {
         return Ok(());
     };
-    rec.log_static(
-        path(&[MAP, "conflict"]),
-        &Points2D::new([flat(place)])
-            .with_colors([style::alarm()])
-            .with_radii([style::points(6.0)])
-            .with_labels([label])
-            .with_show_labels(true),
-    )
+    let mark = labelled([flat(place)], style::ALARM, 6.0, [label]);
+    rec.log_static(path(&[MAP, "conflict"]), &mark)
 }
 
 /// Logs where the independent check found a fault.
 fn log_violations(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
-    let Some(evaluation) = &model.run.evaluation else {
-        return Ok(());
+    let violations = match &model.run.evaluation {
+        Some(evaluation) if !evaluation.violations.is_empty() => &evaluation.violations,
+        _ => return Ok(()),
     };
-    if evaluation.violations.is_empty() {
-        return Ok(());
-    }
-    let points = evaluation
-        .violations
-        .iter()
-        .map(|v| flat(model.motion.pose_at(v.time).position));
-    rec.log_static(
-        path(&[MAP, "violations"]),
-        &Points2D::new(points)
-            .with_colors([style::alarm()])
-            .with_radii([style::points(7.0)])
-            .with_labels(evaluation.violations.iter().map(|v| v.what.clone()))
-            .with_show_labels(true),
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn touching_is_no_collision() {
-        assert_eq!(approach(-1e-8, 600.0), "0 m at 600 s");
-        assert_eq!(approach(-1e-5, 600.0), "collision at 600 s");
-        assert_eq!(approach(0.6, 12.0), "1 m at 12 s");
-    }
+    let places = violations.iter().map(|v| model.motion.pose_at(v.time));
+    let places = places.map(|pose| flat(pose.position));
+    let labels = violations.iter().map(|v| v.what.as_str());
+    let marks = labelled(places, style::ALARM, 7.0, labels);
+    rec.log_static(path(&[MAP, "violations"]), &marks)
 }

@@ -1,15 +1,21 @@
-//! Curves over time: clearance, margin, risk, speed, course.
+//! Curves over time: clearance, margin, risk, speed, course; for a plan of forces also velocities
+//! and forces.
 
 use rerun::components::{AggregationPolicy, InterpolationMode};
-use rerun::{EntityPath, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
+use rerun::{Color, EntityPath, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
-use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
+use crate::frame::{
+    clockwise_deg_per_s, course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps,
+    wrap,
+};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg, style};
+use crate::recording::canvas::style::{self, SpeedClass};
+use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg};
 use crate::recording::write::Recorder;
 use crate::recording::{TIMELINE, path};
 use crate::target::Target;
 use crate::tolerance;
+use crate::trajectory::{ForceNode, Steered};
 
 /// Distance between the hulls, for each target.
 pub const CLEARANCE: &str = "curves/clearance_m";
@@ -21,85 +27,55 @@ pub const RISK: &str = "curves/risk";
 pub const SPEED: &str = "curves/speed_kn";
 /// Course, continuous: it may leave 0..360 rather than jump.
 pub const COURSE: &str = "curves/course_deg";
-
-/// The curves that the layout needs, too, at every sample.
-pub struct Curves {
-    /// One per target, and the safety margin last.
-    clearances: Vec<Series>,
-    /// The first is that of the hard sets; empty without sets.
-    margins: Vec<Series>,
-    /// Own ship's course, degrees, continuous.
-    courses: Vec<f64>,
-}
-
-impl Curves {
-    pub fn of(model: &ViewModel) -> Self {
-        let is_met = !model.sets.is_empty();
-        Self {
-            clearances: clearance_curves(model),
-            margins: if is_met {
-                margin_curves(model)
-            } else {
-                Vec::new()
-            },
-            courses: courses(model),
-        }
-    }
-
-    /// The greatest of the targets' least clearances, metres; 0 without targets.
-    pub fn farthest_passage(&self) -> f64 {
-        let targets = self.clearances.split_last().map_or(&[][..], |(_, of)| of);
-        targets.iter().map(Series::least).fold(0.0, f64::max)
-    }
-
-    /// Least distance from the hard sets, metres; infinite without sets.
-    pub fn least_margin(&self) -> f64 {
-        self.margins.first().map_or(f64::INFINITY, Series::least)
-    }
-
-    /// Least and greatest course, degrees.
-    pub fn course_range(&self) -> [f64; 2] {
-        let all = || self.courses.iter().copied();
-        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
-        [all().fold(low, f64::min), all().fold(high, f64::max)]
-    }
-}
+/// Surge, sway and yaw rate at the nodes.
+pub const STATES: &str = "curves/states";
+/// Surge force, sway force and yaw moment, held from node to node.
+pub const FORCES: &str = "curves/forces";
 
 /// Logs all curves.
-pub fn log_curves(
-    rec: &mut Recorder,
-    model: &ViewModel,
-    curves: &Curves,
-) -> RecordingStreamResult<()> {
-    let (samples, between) = (&model.samples, InterpolationMode::Linear);
-    log_plot(
-        rec,
-        path(&[CLEARANCE]),
-        samples,
-        between,
-        &curves.clearances,
-    )?;
-    if !curves.margins.is_empty() {
-        log_plot(rec, path(&[MARGIN]), samples, between, &curves.margins)?;
+pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let mut log = |entity: &str, times: &[f64], series: &[Series]| {
+        log_plot(
+            rec,
+            path(&[entity]),
+            times,
+            InterpolationMode::Linear,
+            series,
+        )
+    };
+    log(CLEARANCE, &model.samples, &clearance_curves(model))?;
+    if !model.sets.is_empty() {
+        log(MARGIN, &model.samples, &margin_curves(model))?;
     }
-    log_risks(rec, model)?;
+    let times = risk_times(model);
+    log(RISK, &times, &risk_curves(model, &times))?;
+    log(COURSE, &model.samples, &course_curves(model))?;
     log_speed(rec, model)?;
-    log_course(rec, model, &curves.courses)
+    match steered(model) {
+        Some(motion) => log_forces(rec, motion),
+        None => Ok(()),
+    }
 }
 
 /// One curve of a plot.
 pub struct Series {
     /// The name in the legend.
     pub name: String,
-    pub color: rerun::Color,
-    pub width: f32,
+    color: Color,
+    width: f32,
     /// One per time.
     pub values: Vec<f64>,
 }
 
 impl Series {
-    fn least(&self) -> f64 {
-        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+    pub fn new(name: impl Into<String>, color: Color, width: f32, values: Vec<f64>) -> Self {
+        let name = name.into();
+        Self {
+            name,
+            color,
+            width,
+            values,
+        }
     }
 }
 
@@ -131,49 +107,29 @@ pub fn log_plot(
 
 fn clearance_curves(model: &ViewModel) -> Vec<Series> {
     let targets = model.scenario.targets.iter().enumerate();
-    let mut series: Vec<Series> = targets
-        .map(|(index, target)| Series {
-            name: target.name.clone(),
-            color: style::target(index),
-            width: 2.0,
-            values: clearances(model, &model.motion, target),
-        })
-        .collect();
+    let curve = |(index, target): (usize, &Target)| {
+        let values = clearances(model, &model.motion, target);
+        Series::new(&target.name, style::target(index), 2.0, values)
+    };
+    let mut series: Vec<Series> = targets.map(curve).collect();
     series.push(safety_margin(model));
     series
 }
 
 /// The required distance between the hulls, at every sample.
 pub fn safety_margin(canvas: &Canvas) -> Series {
-    Series {
-        name: "safety margin".to_owned(),
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![canvas.scenario.own_ship.safety_margin; canvas.samples.len()],
-    }
+    let margin = canvas.scenario.own_ship.safety_margin;
+    let values = vec![margin; canvas.samples.len()];
+    Series::new("safety margin", style::ALARM, 1.0, values)
 }
 
-/// Metres between own hull and the target's expected hull, at every sample until arrival; negative
-/// in overlap. For a target that is a set: from own ship's centre, as the set includes its hull.
+/// Metres between own ship and the target's expected hull or set, at every sample until arrival;
+/// see [`Target::distance_from`].
 pub fn clearances(canvas: &Canvas, motion: &ShownMotion, target: &Target) -> Vec<f64> {
     let own = &canvas.scenario.own_ship.hull;
-    let at = |&time: &f64| {
-        let pose = motion.pose_at(time);
-        match (target.ship(), target.outer_set_at(time)) {
-            (Some(ship), _) => {
-                let hull = ship.hull.polygon(&ship.pose_at(time));
-                own.polygon(&pose).separation(&hull)
-            }
-            (None, Some(set)) => set.signed_distance(pose.position),
-            // a target is a ship or a set
-            (None, None) => f64::NAN,
-        }
-    };
-    motion
-        .until_arrival(&canvas.samples)
-        .iter()
-        .map(at)
-        .collect()
+    let times = motion.until_arrival(&canvas.samples).iter();
+    let distance = |&time: &f64| target.distance_from(own, &motion.pose_at(time), time);
+    times.map(distance).collect()
 }
 
 /// Margins to the hard sets, to those with ship domains, and to those that were planned against
@@ -184,36 +140,22 @@ pub fn margin_curves(model: &ViewModel) -> Vec<Series> {
     let with_domain: Vec<&Obstacle> = (sets.iter())
         .map(|s| model.with_domain(s).unwrap_or(&s.hard))
         .collect();
-    let mut series = vec![Series {
-        name: "hard sets".to_owned(),
-        color: style::own_ship(),
-        width: 2.0,
-        values: margins(model, &hard),
-    }];
+    let curve = |name: &str, color: Color, sets: &[&Obstacle]| {
+        Series::new(name, color, 2.0, margins(model, sets))
+    };
+    let mut series = vec![curve("hard sets", style::OWN_SHIP, &hard)];
     if hard != with_domain {
-        series.push(Series {
-            name: "sets with domains".to_owned(),
-            color: style::SpeedClass::Slow.color(),
-            width: 2.0,
-            values: margins(model, &with_domain),
-        });
+        let color = SpeedClass::Slow.color();
+        series.push(curve("sets with domains", color, &with_domain));
     }
     // level sets of an accepted risk, or ellipsoids around the others
     let avoided: Vec<&Obstacle> = model.run.obstacles().collect();
     if avoided != hard && avoided != with_domain {
-        series.push(Series {
-            name: "sets kept out of".to_owned(),
-            color: style::SpeedClass::Fast.color(),
-            width: 2.0,
-            values: margins(model, &avoided),
-        });
+        let color = SpeedClass::Fast.color();
+        series.push(curve("sets kept out of", color, &avoided));
     }
-    series.push(Series {
-        name: "contact".to_owned(),
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![0.0; model.samples.len()],
-    });
+    let contact = vec![0.0; model.samples.len()];
+    series.push(Series::new("contact", style::ALARM, 1.0, contact));
     series
 }
 
@@ -229,18 +171,6 @@ pub fn margins(model: &ViewModel, sets: &[&Obstacle]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_risks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
-    let times = risk_times(model);
-    let series = risk_curves(model, &times);
-    log_plot(
-        rec,
-        path(&[RISK]),
-        &times,
-        InterpolationMode::Linear,
-        &series,
-    )
-}
-
 /// The risks against the sets that were planned against, as the plan document reports them, and
 /// those against the hard sets where these differ.
 pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
@@ -248,25 +178,19 @@ pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
     for (index, target) in model.run.targets.iter().enumerate() {
         let (avoided, sets) = (&target.whole, &target.sets);
         let name = sets.hard.name();
-        let curve = |name: String, width: f32, set: &Obstacle| Series {
-            name,
-            color: style::target(index),
-            width,
-            values: risks(model, set, times),
+        let mut curve = |name: String, width: f32, set: &Obstacle| {
+            let values = risks(model, set, times);
+            series.push(Series::new(name, style::target(index), width, values));
         };
         if *avoided == sets.hard {
-            series.push(curve(name.to_owned(), 2.0, avoided));
+            curve(name.to_owned(), 2.0, avoided);
         } else {
-            series.push(curve(format!("{name}, with domain"), 2.0, avoided));
-            series.push(curve(format!("{name}, hard set"), 1.0, &sets.hard));
+            curve(format!("{name}, with domain"), 2.0, avoided);
+            curve(format!("{name}, hard set"), 1.0, &sets.hard);
         }
     }
-    series.push(Series {
-        name: "accepted".to_owned(),
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![model.run.max_risk; times.len()],
-    });
+    let accepted = vec![model.run.max_risk; times.len()];
+    series.push(Series::new("accepted", style::ALARM, 1.0, accepted));
     series
 }
 
@@ -293,27 +217,17 @@ fn risks(model: &ViewModel, set: &Obstacle, times: &[f64]) -> Vec<f64> {
 
 fn log_speed(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     let wanted = ShownMotion::Nominal(&model.scenario.desired);
-    let mut shown = vec![(wanted, "desired", style::desired(), 1.0)];
+    let mut shown = vec![(wanted, "desired", style::DESIRED, 1.0)];
     if model.motion.is_planned() {
-        shown.push((model.motion, "own ship", style::own_ship(), 2.0));
+        shown.push((model.motion, "own ship", style::OWN_SHIP, 2.0));
     }
     let times = step_times(model, shown.iter().map(|(motion, ..)| motion));
-    let series = shown
-        .into_iter()
-        .map(|(motion, name, color, width)| Series {
-            name: name.to_owned(),
-            color,
-            width,
-            values: speeds(&motion, &times),
-        });
-    let series: Vec<Series> = series.collect();
-    log_plot(
-        rec,
-        path(&[SPEED]),
-        &times,
-        InterpolationMode::StepAfter,
-        &series,
-    )
+    let curve = |(motion, name, color, width): (ShownMotion, &str, Color, f32)| {
+        Series::new(name, color, width, speeds(&motion, &times))
+    };
+    let series: Vec<Series> = shown.into_iter().map(curve).collect();
+    let between = InterpolationMode::StepAfter;
+    log_plot(rec, path(&[SPEED]), &times, between, &series)
 }
 
 /// Times at which one of the speeds changes or ends, seconds.
@@ -347,46 +261,18 @@ pub fn speeds(motion: &ShownMotion, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_course(rec: &mut Recorder, model: &ViewModel, own: &[f64]) -> RecordingStreamResult<()> {
+fn course_curves(model: &ViewModel) -> Vec<Series> {
+    let start = course_deg_from_heading(model.motion.pose_at(0.0).heading);
+    let times = model.samples.iter();
     let desired = &model.scenario.desired;
-    let wanted = model
-        .samples
-        .iter()
-        .map(|&t| heading_of(desired_leg(desired, t).direction));
-    let mut series = vec![Series {
-        name: "desired".to_owned(),
-        color: style::desired(),
-        width: 1.0,
-        values: continuous_courses(start_course(model), wanted),
-    }];
+    let wanted = times.clone().map(|&t| desired_leg(desired, t).direction);
+    let wanted = continuous_courses(start, wanted.map(heading_of));
+    let mut series = vec![Series::new("desired", style::DESIRED, 1.0, wanted)];
     if model.motion.is_planned() {
-        series.push(Series {
-            name: "own ship".to_owned(),
-            color: style::own_ship(),
-            width: 2.0,
-            values: own.to_vec(),
-        });
+        let own = continuous_courses(start, times.map(|&t| model.motion.pose_at(t).heading));
+        series.push(Series::new("own ship", style::OWN_SHIP, 2.0, own));
     }
-    log_plot(
-        rec,
-        path(&[COURSE]),
-        &model.samples,
-        InterpolationMode::Linear,
-        &series,
-    )
-}
-
-/// Own ship's course at every sample, degrees, continuous.
-fn courses(model: &ViewModel) -> Vec<f64> {
-    let headings = model
-        .samples
-        .iter()
-        .map(|&t| model.motion.pose_at(t).heading);
-    continuous_courses(start_course(model), headings)
-}
-
-fn start_course(model: &ViewModel) -> f64 {
-    course_deg_from_heading(model.motion.pose_at(0.0).heading)
+    series
 }
 
 /// Courses in degrees without jumps at north, the first within half a circle of `near`.
@@ -398,6 +284,49 @@ fn continuous_courses(near: f64, headings: impl Iterator<Item = f64>) -> Vec<f64
             Some(*last)
         })
         .collect()
+}
+
+/// The motion under forces, where the plan is one.
+pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
+    match model.motion {
+        ShownMotion::Planned(trajectory) => trajectory.steered(),
+        ShownMotion::Nominal(_) => None,
+    }
+}
+
+/// A quantity at a node, with its name and unit.
+type Quantity = (&'static str, fn(&ForceNode) -> f64);
+
+const STATE: [Quantity; 3] = [
+    ("surge, m/s", |n| n.velocity.x),
+    ("sway to starboard, m/s", |n| -n.velocity.y),
+    ("yaw rate clockwise, deg/s", |n| {
+        clockwise_deg_per_s(n.yaw_rate)
+    }),
+];
+
+const FORCE: [Quantity; 3] = [
+    ("surge, N", |n| n.force.x),
+    ("sway to starboard, N", |n| -n.force.y),
+    ("yaw clockwise, Nm", |n| -n.moment),
+];
+
+fn log_forces(rec: &mut Recorder, motion: &Steered) -> RecordingStreamResult<()> {
+    let nodes = motion.nodes();
+    let times: Vec<f64> = nodes.iter().map(|n| n.time).collect();
+    for (entity, between, quantities) in [
+        (STATES, InterpolationMode::Linear, STATE),
+        (FORCES, InterpolationMode::StepAfter, FORCE),
+    ] {
+        let quantities = quantities.into_iter().enumerate();
+        let series = quantities.map(|(index, (name, value))| {
+            let values = nodes.iter().map(value).collect();
+            Series::new(name, style::target(index), 2.0, values)
+        });
+        let series: Vec<Series> = series.collect();
+        log_plot(rec, path(&[entity]), &times, between, &series)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

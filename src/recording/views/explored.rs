@@ -20,10 +20,10 @@ const FREE: &str = "free";
 pub const BLOCKED: &str = "blocked";
 
 /// Most points of all edges of a plan. A point takes 24 bytes in both views together.
-pub const POINT_BUDGET: usize = 2400;
+const POINT_BUDGET: usize = 5000;
 
 /// How much of the graph is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct DrawnGraph {
     /// Edges in the recording.
     pub edges: usize,
@@ -40,7 +40,7 @@ struct Kind {
     reasons: Vec<String>,
 }
 
-/// Logs tested edges, in the order in which they were made, until `budget` points are used.
+/// Logs tested edges, in the order in which they were made, until [`POINT_BUDGET`] is used.
 ///
 /// They lie below `folders`, on the chart and in the volume. Blocked edges carry the reason as a
 /// label, which is shown where one is pointed at. Returns how many edges were drawn.
@@ -48,8 +48,7 @@ pub fn log_explored(
     rec: &mut Recorder,
     canvas: &Canvas,
     run: &Run,
-    folders: [EntityPath; 2],
-    budget: usize,
+    folders: &[EntityPath; 2],
 ) -> RecordingStreamResult<DrawnGraph> {
     let kind = |name, color| Kind {
         name,
@@ -58,14 +57,11 @@ pub fn log_explored(
         reasons: Vec::new(),
     };
     let mut kinds = [
-        kind(FREE, style::graph_free()),
-        kind(BLOCKED, style::graph_blocked()),
+        kind(FREE, style::GRAPH_FREE),
+        kind(BLOCKED, style::GRAPH_BLOCKED),
     ];
     let judge = Judge::new(run);
-    let mut drawn = DrawnGraph {
-        edges: 0,
-        tested: 0,
-    };
+    let mut drawn = DrawnGraph::default();
     let mut points = 0;
     for edge in run.planned.explored.edge_weights() {
         let (kind, obstacle) = match edge.verdict {
@@ -80,7 +76,7 @@ pub fn log_explored(
         }
         drawn.tested += 1;
         points += strip.len();
-        if points <= budget {
+        if points <= POINT_BUDGET {
             drawn.edges += 1;
             kind.strips.push(strip);
             let reason = obstacle.map(|o| judge.reason(&edge.segments, o));
@@ -88,7 +84,7 @@ pub fn log_explored(
         }
     }
     for kind in kinds {
-        log_kind(rec, canvas, kind, &folders)?;
+        log_kind(rec, canvas, kind, folders)?;
     }
     Ok(drawn)
 }
@@ -108,8 +104,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle` is an index of
-    /// [`Run::targets`], or behind the last for land.
+    /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle` is
+    /// an index of [`Run::targets`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles().nth(obstacle) else {
             let land_obstacle = self
@@ -158,19 +154,12 @@ fn reason(what: &str, met: Option<f64>, limit: &str) -> String {
     }
 }
 
-/// The line of an edge, its arcs coarser than those of the plan.
+/// The line of an edge through its segments; empty for one that takes no time.
 fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
     let mut line: Vec<(Vector, f64)> = Vec::new();
     for segment in edge.segments.iter().filter(|s| s.duration > 0.0) {
-        let fine = polyline(segment);
-        let last = fine.len() - 1;
-        let kept = fine
-            .into_iter()
-            .enumerate()
-            .filter(|&(i, _)| i == last || i.is_multiple_of(4))
-            .map(|(_, point)| point);
         let joint = usize::from(!line.is_empty());
-        line.extend(kept.skip(joint));
+        line.extend(polyline(segment).into_iter().skip(joint));
     }
     line
 }
@@ -186,16 +175,14 @@ fn log_kind(
     }
     let [on, over] = folders.each_ref().map(|f| f.join(&kind.name.into()));
     let on_chart = kind.strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
-    let on_chart = LineStrips2D::new(on_chart)
+    let mut on_chart = LineStrips2D::new(on_chart)
         .with_colors([kind.color])
         .with_radii([style::points(0.5)])
         // below everything but the grid
         .with_draw_order(5.0);
-    let on_chart = if kind.reasons.is_empty() {
-        on_chart
-    } else {
-        on_chart.with_labels(kind.reasons).with_show_labels(false)
-    };
+    if !kind.reasons.is_empty() {
+        on_chart = on_chart.with_labels(kind.reasons).with_show_labels(false);
+    }
     rec.log_static(on, &on_chart)?;
     let in_volume = kind
         .strips

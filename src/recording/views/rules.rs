@@ -1,13 +1,11 @@
 //! Own ship's roles over time, the rules that it breaks, and how long it stands on.
 
 use rerun::{
-    AsComponents, Color, Points2D, Points3D, RecordingStreamResult, StateChange,
-    StateConfiguration, TimeColumn,
+    Color, Points2D, Points3D, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn,
 };
 
-use super::chart::Lines;
 use crate::colregs::compliance::{ComplianceReport, MonitorResult, MonitorVerdict};
-use crate::frame::{Side, Vector, clockwise_deg, knots_from_mps};
+use crate::frame::{Side, clockwise_deg, knots_from_mps};
 use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{ViewModel, flat};
@@ -22,6 +20,7 @@ pub const ROLES: &str = "rules/roles";
 const LANE_STRENGTH: f32 = 0.55;
 
 /// One lane of the view: states from a time on, in order of time; an empty text ends one.
+#[derive(Default)]
 struct Lane {
     states: Vec<(f64, String)>,
     /// One per state.
@@ -29,13 +28,6 @@ struct Lane {
 }
 
 impl Lane {
-    fn new() -> Self {
-        Self {
-            states: Vec::new(),
-            colors: Vec::new(),
-        }
-    }
-
     fn add(&mut self, time: f64, text: String, color: Color) {
         self.states.push((time, text));
         self.colors
@@ -43,7 +35,7 @@ impl Lane {
     }
 
     fn end(&mut self, time: f64) {
-        self.add(time, String::new(), style::background());
+        self.add(time, String::new(), style::BACKGROUND);
     }
 
     /// The text at a time; the last where several begin at once.
@@ -92,7 +84,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
     let end = model.motion.end().min(model.end);
     let mut lanes = Vec::new();
     if let Some(escape) = model.run.planned.escape {
-        let mut lane = Lane::new();
+        let mut lane = Lane::default();
         let held = "own ship holds course and speed".to_owned();
         lane.add(0.0, held, SpeedClass::Slow.color());
         let away = format!("own ship escapes: {}", manoeuvre(&escape));
@@ -101,7 +93,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         lanes.push(lane);
     }
     for (index, name, conduct) in judged(model) {
-        let mut roles = Lane::new();
+        let mut roles = Lane::default();
         for state in &conduct.roles {
             let text = format!("{name}: {}", state.role.name());
             roles.add(state.from, text, style::target(index));
@@ -109,13 +101,13 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         }
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
-        let mut breaks = Lane::new();
+        let mut breaks = Lane::default();
         for each in violated(conduct) {
             if !rules.contains(&each.rule) {
                 rules.push(each.rule);
             }
             let text = format!("{name}: violates {}", rules.join(", "));
-            breaks.add(each.time, text, style::alarm());
+            breaks.add(each.time, text, style::ALARM);
         }
         if !rules.is_empty() {
             breaks.end(end);
@@ -162,22 +154,15 @@ pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     log_marks(rec, model)
 }
 
-/// Distance between the names of two marks, as a fraction of the bounds.
-const ABOVE: f64 = 1.0 / 22.0;
-
-/// Logs where own ship breaks a rule, and where it stops standing on.
+/// Logs where own ship breaks a rule, and where it stops standing on. A mark is named where it is
+/// pointed at.
 fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
-    let several = judged(model).count() > 1;
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
     for (_, name, conduct) in judged(model) {
-        for each in conduct.violations.iter() {
-            let toward = if several {
-                format!(", toward {name}")
-            } else {
-                String::new()
-            };
-            let text = format!("{} at {:.0} s{toward}", each.rule, each.time);
-            marks.push((each.time, text, style::alarm()));
+        for violation in &conduct.violations {
+            let (rule, time) = (violation.rule, violation.time);
+            let text = format!("{rule} at {time:.0} s, toward {name}");
+            marks.push((time, text, style::ALARM));
         }
     }
     if let Some(escape) = model.run.planned.escape {
@@ -187,42 +172,16 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
     if marks.is_empty() {
         return Ok(());
     }
-    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // several at one time are one mark
-    marks.dedup_by(|later, earlier| {
-        let one = later.0 == earlier.0;
-        if one {
-            earlier.1 = format!("{}\n{}", earlier.1, later.1);
-        }
-        one
-    });
     let place = |time: f64| model.motion.pose_at(time).position;
     let colors: Vec<Color> = marks.iter().map(|m| m.2).collect();
     let labels: Vec<&str> = marks.iter().map(|m| m.1.as_str()).collect();
-    // names of ships and of time marks are near the track: these are off it, one above another
-    let off = ABOVE * model.bounds.extent();
-    let above = |(k, m): (usize, &(f64, String, Color))| {
-        place(m.0) + Vector::new(0.0, off * (2.0 + k as f64))
-    };
-    let mut leaders = Lines::default();
-    for (k, mark) in marks.iter().enumerate() {
-        let ends = [place(mark.0), above((k, mark))];
-        leaders.add(ends.map(flat).to_vec(), mark.2, style::points(0.5));
-    }
-    let leaders = leaders.archetype();
-    let spots = marks.iter().map(|m| flat(place(m.0)));
-    let names = marks.iter().enumerate().map(|mark| flat(above(mark)));
-    // the first points have the labels, the marks themselves have none
-    let radii = names.clone().map(|_| style::points(0.0));
-    let radii = radii.chain(spots.clone().map(|_| style::points(4.5)));
-    let on_chart = Points2D::new(names.chain(spots))
-        .with_colors([&colors[..], &colors[..]].concat())
-        .with_radii(radii)
-        .with_labels(labels.iter().copied().chain(labels.iter().map(|_| "")))
-        .with_show_labels(true)
+    let on_chart = Points2D::new(marks.iter().map(|m| flat(place(m.0))))
+        .with_colors(colors.iter().copied())
+        .with_radii([style::points(4.5)])
+        .with_labels(labels.iter().copied())
+        .with_show_labels(false)
         .with_draw_order(40.0);
-    let parts: [&dyn AsComponents; 2] = [&leaders, &on_chart];
-    rec.log_static(path(&[MAP, "rules"]), &parts)?;
+    rec.log_static(path(&[MAP, "rules"]), &on_chart)?;
     let in_volume = Points3D::new(marks.iter().map(|m| model.lifted(place(m.0), m.0)))
         .with_colors(colors)
         .with_radii([style::points(4.5)])

@@ -1,23 +1,25 @@
 //! Moving parts of the chart: ships and the sections of their sets.
 
 use rerun::{
-    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius,
-    RecordingStreamResult, TimeColumn, Transform3D,
+    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, RecordingStreamResult,
+    TimeColumn, Transform3D,
 };
 
-use super::chart::{Lines, Strip};
+use super::chart::Strip;
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, flat, round_down, style};
+use crate::recording::canvas::{
+    Canvas, Lines, ShownMotion, ViewModel, flat, labelled, round_down, style,
+};
 use crate::recording::write::Recorder;
 use crate::recording::{MAP, TIMELINE, TRAILS, path};
 use crate::target::Target;
 
 /// Line width of hard sets.
-pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
+pub const HARD_RADIUS: f32 = 1.6;
 /// Line width of sets with a ship domain, thinner than that of the hard ones.
-pub const DOMAIN_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
+pub const DOMAIN_RADIUS: f32 = 0.7;
 
 /// Colour of the outline of a set with a ship domain.
 pub fn domain_color(canvas: &Canvas, index: usize) -> Color {
@@ -28,16 +30,9 @@ pub fn domain_color(canvas: &Canvas, index: usize) -> Color {
 #[derive(Debug, Clone)]
 pub struct DrawnShip<'a> {
     pub motion: ShownMotion<'a>,
-    /// Shown beside it on the chart, or, where there is no room, when it is pointed at.
+    /// Shown at it on the chart, or, among several, when it is pointed at.
     pub name: String,
     pub color: Color,
-}
-
-/// On which side of a northward or southward track a name stands.
-#[derive(Debug, Clone, Copy)]
-enum Side {
-    West,
-    East,
 }
 
 /// Logs everything that moves on the chart.
@@ -51,7 +46,7 @@ pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     let own = DrawnShip {
         motion: model.motion,
         name: name.to_owned(),
-        color: style::own_ship(),
+        color: style::OWN_SHIP,
     };
     log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own, true)?;
     log_trails(rec, model, &[own])
@@ -77,10 +72,10 @@ pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
 }
 
 /// The style of the outline of a set.
-pub fn set_style(color: Color, radius: Radius) -> LineStrips2D {
+pub fn set_style(color: Color, radius: f32) -> LineStrips2D {
     LineStrips2D::update_fields()
         .with_colors([color])
-        .with_radii([radius])
+        .with_radii([style::points(radius)])
 }
 
 /// Logs the outline of the section at every cursor time.
@@ -117,20 +112,15 @@ fn log_target(
 ) -> RecordingStreamResult<()> {
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     if let Some(ship) = target.ship() {
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
-        lines.add(
-            outline(&ship.hull.polygon(&here)),
-            color,
-            style::points(1.0),
-        );
+        lines.add(outline(&ship.hull.polygon(&here)), color, 1.0);
         let tip = ship.velocity() * vector_seconds(canvas);
-        lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
+        lines.add([[0.0, 0.0], flat(tip)], color, 0.8);
     }
     let lines = lines.archetype();
-    let way = target.position_at(canvas.end) - target.position_at(0.0);
-    let name = label(canvas, color, &target.name, way, Side::East);
+    let name = label(canvas, color, &target.name);
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
     let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
     log_places(rec, canvas, entity, &parts, places)
@@ -145,8 +135,7 @@ pub fn log_own_ship(
     own: &DrawnShip,
     named: bool,
 ) -> RecordingStreamResult<()> {
-    let name = label(canvas, own.color, &own.name, canvas.ahead(), Side::West);
-    let name = name.with_show_labels(named);
+    let name = label(canvas, own.color, &own.name).with_show_labels(named);
     let places = canvas
         .cursor_times
         .iter()
@@ -234,20 +223,10 @@ pub fn vector_seconds(canvas: &Canvas) -> f64 {
     round_down(canvas.end / 6.0)
 }
 
-/// A name beside the track of a ship: north of one to the east or west, as time marks have theirs
-/// south of it; else to one side, farther off, as names are wide.
-fn label(canvas: &Canvas, color: Color, name: &str, way: Vector, side: Side) -> Points2D {
-    let extent = canvas.bounds.extent();
-    let off = match side {
-        _ if way.x.abs() >= way.y.abs() => Vector::new(0.0, extent / 22.0),
-        Side::West => Vector::new(-extent / 9.0, 0.0),
-        Side::East => Vector::new(extent / 9.0, 0.0),
-    };
-    Points2D::new([flat(off)])
-        .with_colors([color])
-        .with_radii([style::points(0.0)])
-        .with_labels([name])
-        .with_show_labels(true)
+/// A name north of a ship, as time marks have theirs south of it.
+fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
+    let off = (canvas.bounds.extent() / 22.0) as f32;
+    labelled([[0.0, off]], color, 0.0, [name])
 }
 
 /// About the vertical, counter-clockwise seen from above.

@@ -1,16 +1,16 @@
 //! The space-time volume: east, north and, upward, time.
 
 use rerun::{
-    AsComponents, Color, LineStrips3D, Points3D, Radius, RecordingStreamResult, Transform3D,
+    AsComponents, Color, LineStrips3D, Points3D, RecordingStreamResult, Transform3D,
     ViewCoordinates,
 };
 
-use super::body::{mesh, prisms};
+use super::body::mesh;
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
 use super::ships::DrawnShip;
 use crate::frame::{Vector, to_port};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Bounds, Canvas, ViewModel, style};
+use crate::recording::canvas::{Bounds, Canvas, Lines, ViewModel, style};
 use crate::recording::write::Recorder;
 use crate::recording::{VOLUME, path};
 
@@ -22,28 +22,6 @@ pub const DOMAIN_ALPHA: u8 = 16;
 /// Opacity of the body of a hard set, of 255.
 const HARD_ALPHA: u8 = 36;
 
-/// Lines in space-time, each with its style.
-#[derive(Debug, Default)]
-struct Lines {
-    strips: Vec<Vec<[f32; 3]>>,
-    colors: Vec<Color>,
-    radii: Vec<Radius>,
-}
-
-impl Lines {
-    fn add(&mut self, strip: Vec<[f32; 3]>, color: Color, radius: f32) {
-        self.strips.push(strip);
-        self.colors.push(color);
-        self.radii.push(style::points(radius));
-    }
-
-    fn archetype(self) -> LineStrips3D {
-        LineStrips3D::new(self.strips)
-            .with_colors(self.colors)
-            .with_radii(self.radii)
-    }
-}
-
 /// Logs the whole volume.
 pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     log_waters(rec, model)?;
@@ -51,7 +29,7 @@ pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
     let own = DrawnShip {
         motion: model.motion,
         name: "Own ship".to_owned(),
-        color: style::own_ship(),
+        color: style::OWN_SHIP,
     };
     log_now(rec, model, &[own])
 }
@@ -78,26 +56,20 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
 fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     let Bounds { low, high } = canvas.bounds;
     let spacing = grid_spacing(canvas);
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     let ground = |east: f64, north: f64| canvas.lifted(Vector::new(east, north), 0.0);
     for east in multiples(low.x, high.x, spacing) {
-        lines.add(
-            vec![ground(east, low.y), ground(east, high.y)],
-            style::grid(),
-            0.5,
-        );
+        let ends = [ground(east, low.y), ground(east, high.y)];
+        lines.add(ends, style::GRID, 0.5);
     }
     for north in multiples(low.y, high.y, spacing) {
-        lines.add(
-            vec![ground(low.x, north), ground(high.x, north)],
-            style::grid(),
-            0.5,
-        );
+        let ends = [ground(low.x, north), ground(high.x, north)];
+        lines.add(ends, style::GRID, 0.5);
     }
-    let text = style::chart_text();
+    let text = style::CHART_TEXT;
     let axis = axis_corner(canvas);
     let axis_line = [0.0, canvas.end].map(|t| canvas.lifted(axis, t));
-    lines.add(axis_line.to_vec(), text, 1.0);
+    lines.add(axis_line, text, 1.0);
     let mut places = Vec::new();
     let mut labels = Vec::new();
     for time in multiples(0.0, canvas.end, 2.0 * mark_step(canvas)) {
@@ -146,15 +118,15 @@ pub fn log_body(
     set: &Obstacle,
     (color, alpha): (Color, u8),
 ) -> RecordingStreamResult<()> {
-    let prisms = prisms(canvas, set);
-    let body = mesh(canvas, &prisms).with_albedo_factor(style::translucent(color, alpha).0);
+    let body = mesh(canvas, set).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * canvas.end) {
-        if let Some(prism) = prisms.iter().find(|s| s.contains(time)) {
-            lines.add(prism.ring(canvas, time), faint, 0.6);
-        }
+        let section = set.outer_section(time);
+        let ring = section.vertices().iter().chain(section.vertices().first());
+        let ring = ring.map(|point| canvas.lifted(*point, time));
+        lines.add(ring.collect::<Vec<_>>(), faint, 0.6);
     }
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&body, &lines];
@@ -166,13 +138,13 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<(
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::default();
-    let shadow = style::toward_background(style::own_ship(), SHADOW);
+    let mut lines = Lines::new();
+    let shadow = style::toward_background(style::OWN_SHIP, SHADOW);
     for (pace, points) in planned_strips(model) {
-        let risen = points.iter().map(|&(p, t)| model.lifted(p, t)).collect();
-        lines.add(risen, pace.color(), 2.0);
-        let fallen = points.iter().map(|&(p, _)| model.lifted(p, 0.0)).collect();
-        lines.add(fallen, shadow, 0.8);
+        let risen = points.iter().map(|&(p, t)| model.lifted(p, t));
+        lines.add(risen.collect::<Vec<_>>(), pace.color(), 2.0);
+        let fallen = points.iter().map(|&(p, _)| model.lifted(p, 0.0));
+        lines.add(fallen.collect::<Vec<_>>(), shadow, 0.8);
     }
     rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())
 }
@@ -180,26 +152,26 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<(
 /// Logs the desired motion and the expected ones of the targets.
 fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     let desired = &canvas.scenario.desired;
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     let mut strip: Vec<_> = desired
         .legs()
         .iter()
         .map(|l| canvas.lifted(l.start, l.start_time))
         .collect();
     strip.push(canvas.lifted(desired.end(), desired.duration()));
-    lines.add(strip, style::desired(), 0.9);
+    lines.add(strip, style::DESIRED, 0.9);
     rec.log_static(path(&[VOLUME, "desired"]), &lines.archetype())?;
     if canvas.scenario.targets.is_empty() {
         return Ok(());
     }
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         let mut times = vec![0.0];
         times.extend(target.changes().into_iter().filter(|&t| t < canvas.end));
         times.push(canvas.end);
         let places = times.iter();
         let strip = places.map(|&t| canvas.lifted(target.position_at(t), t));
-        lines.add(strip.collect(), canvas.target_color(index), 1.0);
+        lines.add(strip.collect::<Vec<_>>(), canvas.target_color(index), 1.0);
     }
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
 }
@@ -220,7 +192,7 @@ pub fn log_now(
     ]
     .map(|[east, north]| canvas.lifted(Vector::new(east, north), 0.0));
     let frame = LineStrips3D::new([frame])
-        .with_colors([style::toward_background(style::own_ship(), 0.5)])
+        .with_colors([style::toward_background(style::OWN_SHIP, 0.5)])
         .with_radii([style::points(0.6)]);
     let targets = &canvas.scenario.targets;
     let others = (0..targets.len()).map(|index| canvas.target_color(index));

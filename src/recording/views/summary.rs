@@ -96,10 +96,13 @@ fn claim(model: &ViewModel) -> String {
 /// How to read the chart.
 fn key(model: &ViewModel) -> String {
     format!(
-        "Chart: own ship is white; thin lines ahead of ships are speed vectors of {:.0} s; dots on \
-         the tracks are every {:.0} s. Sets apply to own ship's centre: they include its hull and \
-         the margin.",
+        "Chart: own ship is white, its plan yellow and thick where it is faster than desired, blue \
+         and thin where it is slower; the desired trajectory is dashed. A target has a colour: \
+         thick for its hard set, thin for the set with its ship domain. Thin lines ahead of ships \
+         are speed vectors of {:.0} s; dots on the tracks are every {:.0} s; the grid has {:.0} m. \
+         Sets apply to own ship's centre: they include its hull and the margin.",
         vector_seconds(model),
-        super::chart::mark_step(model)
+        super::chart::mark_step(model),
+        super::chart::grid_spacing(model),
     )
 }

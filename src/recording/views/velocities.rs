@@ -2,12 +2,12 @@
 
 use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
 
-use super::chart::{Lines, Strip};
-use super::ships::{HARD_RADIUS, outline};
+use super::chart::Strip;
+use super::ships::{HARD_RADIUS, outline, set_style};
 use crate::frame::{Vector, direction};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{ViewModel, flat, style};
+use crate::recording::canvas::{Lines, ViewModel, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{PLANE, path};
 
@@ -33,9 +33,7 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
     log_axes(rec, model)?;
     for (index, sets) in model.sets.iter().enumerate() {
         let entity = path(&[PLANE, "obstacles", sets.hard.name()]);
-        let style = LineStrips2D::update_fields()
-            .with_colors([style::target(index)])
-            .with_radii([HARD_RADIUS]);
+        let style = set_style(style::target(index), HARD_RADIUS);
         let outlines = model
             .cursor_times
             .iter()
@@ -47,7 +45,7 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
     }
     let entity = path(&[PLANE, "own_ship"]);
     let style = Points2D::update_fields()
-        .with_colors([style::own_ship()])
+        .with_colors([style::OWN_SHIP])
         .with_radii([style::points(4.0)])
         .with_labels(["Own ship"])
         .with_show_labels(true);
@@ -65,23 +63,16 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
 /// Logs the axes, and a circle for each of own ship's speeds.
 fn log_axes(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     let limit = limit(model);
-    let mut lines = Lines::default();
+    let mut lines = Lines::new();
     for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {
-        lines.add(
-            vec![flat(-axis), flat(axis)],
-            style::grid(),
-            style::points(0.5),
-        );
+        lines.add([-axis, axis].map(flat), style::GRID, 0.5);
     }
     for &speed in &model.scenario.own_ship.speeds {
         let circle = (0..=72).map(|k| flat(direction(f64::from(k) * CIRCLE_STEP) * speed));
-        lines.add(circle.collect(), style::grid(), style::points(0.8));
+        lines.add(circle.collect::<Strip>(), style::GRID, 0.8);
     }
-    let names = Points2D::new([flat(Vector::new(limit, 0.0)), flat(Vector::new(0.0, limit))])
-        .with_colors([style::chart_text()])
-        .with_radii([style::points(0.0)])
-        .with_labels(["E", "N"])
-        .with_show_labels(true);
+    let ends = [Vector::new(limit, 0.0), Vector::new(0.0, limit)].map(flat);
+    let names = labelled(ends, style::CHART_TEXT, 0.0, ["E", "N"]);
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&lines, &names];
     rec.log_static(path(&[PLANE, "axes"]), &parts)

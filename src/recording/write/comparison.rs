@@ -8,43 +8,40 @@ use rerun::{
     Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, RecordingStreamResult, TextDocument,
 };
 
-use super::{Recorder, RecordingError, Stores, put};
-use crate::frame::{Vector, knots_from_mps};
+use super::{Recorder, RecordingError, put};
+use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
 use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
-use crate::recording::views::chart::{self, Key};
+use crate::recording::views::chart;
 use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
 use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
-use crate::recording::{COMPARISON, MAP, SUMMARY, VOLUME, layout, path};
+use crate::recording::{COMPARISON, EXPLORED, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, LineStyle, Method};
+use crate::study::compare::{Entry, Method, Stroke};
 
 /// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
 
-/// Length of a dash as a fraction of the bounds.
-const DASH: f64 = 1.0 / 60.0;
-
-/// Most points of the graph of one candidate.
-const POINT_BUDGET: usize = 1200;
-
-/// Keys in a row of the legend: their names are long.
-const KEYS: usize = 3;
-
 /// Radius on the screen for one pixel of a figure's line.
 const RADIUS: f64 = 0.6;
 
-/// Radius in the volume of a line that is wide on the chart, as it often lies under another.
-const VOLUME_RADIUS: f32 = 0.7;
+/// Radius in the volume, where lines lie behind one another.
+const VOLUME_RADIUS: f32 = 0.9;
 
 /// Greatest width of a curve, pixels: the plots are low.
 const WIDEST: f32 = 3.0;
 
 /// Strength of the colour of the last risk of a sweep, of 1.
 const WEAKEST: f32 = 0.45;
+
+/// Strength of a method's colour for the sets that it avoids, of 1.
+const SET_STRENGTH: f32 = 0.7;
+
+/// Draw order above sets and tracks.
+const FIRST_ORDER: f32 = 30.0;
 
 /// A comparison of one scenario, with the texts of its recording.
 #[derive(Debug, Clone, Copy)]
@@ -81,8 +78,8 @@ pub struct Compared<'a> {
 /// ```
 pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
     let title = &compared.scenario.title;
-    put(path, title, (COMPARISON, compared.document), || {
-        log(compared)
+    put(path, title, (COMPARISON, compared.document), |rec| {
+        log(rec, compared)
     })
 }
 
@@ -90,12 +87,10 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
 struct Candidate<'a> {
     entry: &'a Entry,
     own: DrawnShip<'a>,
-    style: LineStyle,
+    style: Stroke,
 }
 
-fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
-    let mut recording = Recorder::of_section(1);
-    let rec = &mut recording;
+fn log(rec: &mut Recorder, compared: &Compared) -> RecordingStreamResult<Recorder> {
     let Compared {
         scenario, entries, ..
     } = *compared;
@@ -112,52 +107,38 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
     let canvas = Canvas::new(scenario, &sets, &plans, end, Palette::OwnShips);
 
-    let legend = legend(&canvas, &candidates, &sets);
-    let rows = legend.len().div_ceil(KEYS);
     let own: Vec<DrawnShip> = candidates.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
-    chart::log_legend(rec, &canvas, legend, rows)?;
     ships::log_others(rec, &canvas)?;
     ships::log_trails(rec, &canvas, &own)?;
     space_time::log_waters(rec, &canvas)?;
     space_time::log_now(rec, &canvas, &own)?;
     let mut graphs = Vec::new();
-    let mut hidden = [Vec::new(), Vec::new()];
     for (index, candidate) in candidates.iter().enumerate() {
         // the first row on top
         let order = (candidates.len() - index) as f32;
         log_way(rec, &canvas, candidate, order)?;
-        let ship = path(&[MAP, METHODS, &candidate.own.name, "own_ship"]);
+        let name = candidate.own.name.as_str();
+        let ship = path(&[MAP, METHODS, name, "own_ship"]);
         ships::log_own_ship(rec, &canvas, ship, &candidate.own, false)?;
         let Some(run) = &candidate.entry.run else {
             continue;
         };
-        let folders =
-            [MAP, VOLUME].map(|view| path(&[view, METHODS, &candidate.own.name, "explored"]));
-        let folders_of_sets =
-            [MAP, VOLUME].map(|view| path(&[view, METHODS, &candidate.own.name, "sets"]));
-        log_kept_out_of(rec, &canvas, candidate, run, &folders_of_sets)?;
-        if !has_sets_of_its_own(run, &sets) {
-            for (folders, folder) in hidden.iter_mut().zip(folders_of_sets) {
-                folders.push(folder);
-            }
+        if has_sets_of_its_own(run, &sets) {
+            log_kept_out_of(rec, &canvas, candidate, run)?;
         }
-        let drawn = log_explored(rec, &canvas, run, folders.clone(), POINT_BUDGET)?;
+        let folders = [path(&[EXPLORED, name]), path(&[VOLUME, "explored", name])];
+        let drawn = log_explored(rec, &canvas, run, &folders)?;
         if drawn.edges > 0 {
-            let (name, shown, tested) = (&candidate.own.name, drawn.edges, drawn.tested);
-            graphs.push(format!("{name} {shown} of {tested} edges"));
-            for (folders, folder) in hidden.iter_mut().zip(folders) {
-                folders.push(folder);
-            }
+            graphs.push(format!("{name} {} of {} edges", drawn.edges, drawn.tested));
         }
     }
-    let plots = log_curves(rec, &canvas, &candidates)?;
+    log_curves(rec, &canvas, &candidates)?;
     let text = text(compared.table, &graphs);
     let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
     rec.log_static(SUMMARY, &text)?;
-    let layout = layout::of_comparison(&canvas, rows, &hidden, &plots)?;
-    Ok(Stores { recording, layout })
+    layout::of_comparison(&canvas)
 }
 
 /// The entries with a motion. In a sweep a method keeps its colour, weaker with more risk.
@@ -169,7 +150,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
     let sailing = entries.iter().filter_map(|entry| {
         let motion = ShownMotion::Planned(entry.trajectory()?);
         let candidate = entry.candidate;
-        let style = LineStyle::of(candidate.method);
+        let style = Stroke::of(candidate.method);
         let all: Vec<f64> = risks(candidate.method).collect();
         let place = all.iter().position(|r| *r == candidate.max_risk);
         let share = place.unwrap_or(0) as f32 / (all.len().max(2) - 1) as f32;
@@ -190,10 +171,6 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
     sailing.collect()
 }
 
-fn radius(style: &LineStyle) -> rerun::Radius {
-    style::points((RADIUS * style.width) as f32)
-}
-
 /// True where a method avoids sets that are not those of the scenario: ellipses around them, or
 /// level sets of a risk that it accepts.
 fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
@@ -207,40 +184,19 @@ fn log_kept_out_of(
     canvas: &Canvas,
     candidate: &Candidate,
     run: &Run,
-    [on_chart, in_volume]: &[EntityPath; 2],
 ) -> RecordingStreamResult<()> {
-    let color = style::toward_background(candidate.own.color, SET_STRENGTH);
+    let DrawnShip { name, color, .. } = &candidate.own;
+    let faint = style::toward_background(*color, SET_STRENGTH);
     for set in run.obstacles() {
-        let below = |folder: &EntityPath| folder.join(&path(&["", set.name()]));
-        let name = format!("{} avoids: {}", candidate.own.name, set.name());
-        let style = ships::set_style(color, ships::DOMAIN_RADIUS)
-            .with_labels([name])
+        let below = |view: &str| path(&[view, METHODS, name, "sets", set.name()]);
+        let style = ships::set_style(faint, ships::DOMAIN_RADIUS)
+            .with_labels([format!("{name} avoids: {}", set.name())])
             .with_show_labels(false);
-        ships::log_sections(rec, canvas, below(on_chart), set, &style)?;
-        let style = (candidate.own.color, space_time::DOMAIN_ALPHA);
-        space_time::log_body(rec, canvas, below(in_volume), set, style)?;
+        ships::log_sections(rec, canvas, below(MAP), set, &style)?;
+        let style = (*color, space_time::DOMAIN_ALPHA);
+        space_time::log_body(rec, canvas, below(VOLUME), set, style)?;
     }
     Ok(())
-}
-
-/// Strength of a method's colour for the sets that it avoids, of 1.
-const SET_STRENGTH: f32 = 0.7;
-
-fn legend(canvas: &Canvas, candidates: &[Candidate], sets: &[TargetSets]) -> Vec<Key> {
-    let mut keys: Vec<Key> = candidates
-        .iter()
-        .map(|c| (c.own.name.clone(), c.own.color, radius(&c.style)))
-        .collect();
-    let of_its_own =
-        |c: &Candidate| (c.entry.run.as_deref()).is_some_and(|run| has_sets_of_its_own(run, sets));
-    if let Some(first) = candidates.iter().find(|c| of_its_own(c)) {
-        let color = style::toward_background(first.own.color, SET_STRENGTH);
-        let name = "a method's own sets".to_owned();
-        keys.push((name, color, ships::DOMAIN_RADIUS));
-    }
-    keys.push(("desired".into(), style::desired(), style::points(0.8)));
-    keys.extend(chart::waters_legend(canvas));
-    keys
 }
 
 /// Logs the motion on the chart and in the volume.
@@ -259,85 +215,34 @@ fn log_way(
         let joint = usize::from(!line.is_empty());
         line.extend(strip.into_iter().skip(joint));
     }
-    let strips = if style.dashed {
-        dashes(canvas, &line)
-    } else {
-        vec![line]
-    };
-    let on_chart = strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
-    let on_chart = LineStrips2D::new(on_chart)
+    let radius = style::points((RADIUS * style.width) as f32);
+    let entity = |view: &str| -> EntityPath { path(&[view, METHODS, &own.name, "way"]) };
+    let on_chart = LineStrips2D::new([line.iter().map(|&(p, _)| flat(p))])
         .with_colors([own.color])
-        .with_radii([radius(style)])
+        .with_radii([radius])
         .with_labels([own.name.as_str()])
         .with_show_labels(false)
         .with_draw_order(FIRST_ORDER + order);
-    let entity = |view: &str| -> EntityPath { path(&[view, METHODS, &own.name, "way"]) };
     rec.log_static(entity(MAP), &on_chart)?;
-    let in_volume = strips
-        .iter()
-        .map(|s| s.iter().map(|&(p, t)| canvas.lifted(p, t)));
-    // a wide line would hide the one that it lies under on the chart, seen from any side
-    let radius = if style.is_wide() {
-        style::points(VOLUME_RADIUS)
-    } else {
-        radius(style)
-    };
-    let in_volume = LineStrips3D::new(in_volume)
+    let in_volume = LineStrips3D::new([line.iter().map(|&(p, t)| canvas.lifted(p, t))])
         .with_colors([own.color])
-        .with_radii([radius])
+        .with_radii([style::points(VOLUME_RADIUS)])
         .with_labels([own.name.as_str()])
         .with_show_labels(false);
     rec.log_static(entity(VOLUME), &in_volume)
 }
 
-/// Draw order above sets and tracks.
-const FIRST_ORDER: f32 = 30.0;
-
-/// A dashed line. Dashes have equal length in the volume, so that waiting is dashed, too.
-fn dashes(canvas: &Canvas, line: &[(Vector, f64)]) -> Vec<Vec<(Vector, f64)>> {
-    let dash = DASH * canvas.bounds.extent();
-    let mut strips: Vec<Vec<(Vector, f64)>> = vec![line.first().copied().into_iter().collect()];
-    let (mut drawn, mut left) = (true, dash);
-    for pair in line.windows(2) {
-        let [(a, from), (b, to)] = [pair[0], pair[1]];
-        let rise = (to - from) * canvas.metres_per_second;
-        let length = (b - a).norm().hypot(rise);
-        let mut along = 0.0;
-        while length - along > left {
-            along += left;
-            let share = along / length;
-            let here = (a + (b - a) * share, from + (to - from) * share);
-            if drawn {
-                strips.last_mut().into_iter().for_each(|s| s.push(here));
-            } else {
-                strips.push(vec![here]);
-            }
-            (drawn, left) = (!drawn, dash);
-        }
-        left -= length - along;
-        if drawn {
-            strips.last_mut().into_iter().for_each(|s| s.push((b, to)));
-        }
-    }
-    strips.retain(|strip| strip.len() > 1);
-    strips
-}
-
-/// Logs the distance from the nearest target that keeps course and speed, and the speed. Returns
-/// the plots for the layout.
+/// Logs the distance from the nearest target that keeps course and speed, and the speed.
 fn log_curves(
     rec: &mut Recorder,
     canvas: &Canvas,
     candidates: &[Candidate],
-) -> RecordingStreamResult<Vec<(&'static str, &'static str, [f64; 2])>> {
-    let series = |c: &Candidate, values: Vec<f64>| Series {
-        name: c.own.name.clone(),
-        color: c.own.color,
-        width: (c.style.width as f32).min(WIDEST),
-        values,
+) -> RecordingStreamResult<()> {
+    let series = |c: &Candidate, values: Vec<f64>| {
+        let width = (c.style.width as f32).min(WIDEST);
+        Series::new(&c.own.name, c.own.color, width, values)
     };
     let targets = &canvas.scenario.targets;
-    let mut plots = Vec::new();
     if !targets.is_empty() {
         let nearest = |c: &Candidate| -> Vec<f64> {
             let all = targets
@@ -348,8 +253,6 @@ fn log_curves(
             all.reduce(nearer).unwrap_or_default()
         };
         let mut curves: Vec<Series> = candidates.iter().map(|c| series(c, nearest(c))).collect();
-        let least = |s: &Series| s.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let farthest = curves.iter().map(least).fold(0.0, f64::max);
         curves.push(curves::safety_margin(canvas));
         // each ends with its motion, so each is an entity
         for curve in curves {
@@ -357,40 +260,26 @@ fn log_curves(
             let (times, between) = (&canvas.samples, InterpolationMode::Linear);
             curves::log_plot(rec, entity, times, between, &[curve])?;
         }
-        let margin = canvas.scenario.own_ship.safety_margin;
-        let range = layout::near_zero(canvas, farthest, margin);
-        plots.push(("Distance from the nearest target (m)", CLEARANCE, range));
     }
     let times = curves::step_times(canvas, candidates.iter().map(|c| &c.own.motion));
-    let speeds: Vec<Series> = candidates
-        .iter()
-        .map(|c| series(c, curves::speeds(&c.own.motion, &times)))
-        .collect();
-    curves::log_plot(
-        rec,
-        path(&[SPEED]),
-        &times,
-        InterpolationMode::StepAfter,
-        &speeds,
-    )?;
-    let fastest = knots_from_mps(canvas.scenario.own_ship.max_speed());
-    plots.push(("Speed (kn)", SPEED, [0.0, 1.4 * fastest]));
-    Ok(plots)
+    let speed = |c: &Candidate| series(c, curves::speeds(&c.own.motion, &times));
+    let speeds: Vec<Series> = candidates.iter().map(speed).collect();
+    let between = InterpolationMode::StepAfter;
+    curves::log_plot(rec, path(&[SPEED]), &times, between, &speeds)
 }
 
 fn text(table: &str, graphs: &[String]) -> String {
     let mut parts = vec![table.to_owned()];
     parts.push(
-        "Point at a line for its name; dashed lines are baselines. Grey sets are those of the \
-         scenario. The sets that a method avoids are under `methods/<method>/sets` on the chart \
-         and in the volume, in its colour. They are shown where they are not those of the scenario \
-         (ellipses around them, level sets of an accepted risk), else hidden."
+        "The plots name the colours; point at a line for its name. Grey sets are those of the \
+         scenario. A method that avoids others (ellipses around them, level sets of an accepted \
+         risk) has them in its colour."
             .to_owned(),
     );
     if !graphs.is_empty() {
         parts.push(format!(
-            "Explored graphs are hidden, under `methods/…/explored` on the chart and in the volume \
-             ({}). Point at a blocked edge for what it meets, when, and by which rule or limit.",
+            "Explored graphs are hidden, under `explored` on the chart and in the volume ({}). \
+             Point at a blocked edge for what it meets, when, and by which rule or limit.",
             graphs.join("; ")
         ));
     }

@@ -9,15 +9,11 @@ pub use recorder::Recorder;
 
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use rerun::components::MediaType;
 use rerun::{EntityPath, RecordingInfo, RecordingStreamResult, TextDocument};
 
 use super::canvas::ViewModel;
-use super::views::curves::Curves;
-use super::views::{
-    chart, curves, explored, forces, land, path_time, rules, ships, space_time, summary, velocities,
-};
+use super::views::{chart, curves, explored, land, rules, ships, space_time, summary, velocities};
 use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
 use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
@@ -72,8 +68,8 @@ pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// ```
 pub fn write(run: &Run, plan: &PlanDocument, path: &Path) -> Result<(), RecordingError> {
     let text = document::json(plan).map_err(|source| encoding_error(path, source))?;
-    put(path, &run.scenario.title, (DOCUMENT, &text), || {
-        log_run(&ViewModel::new(run), plan)
+    put(path, &run.scenario.title, (DOCUMENT, &text), |rec| {
+        log_run(rec, &ViewModel::new(run), plan)
     })
 }
 
@@ -84,18 +80,13 @@ fn encoding_error(path: &Path, source: impl Into<Failure>) -> RecordingError {
     }
 }
 
-/// The two stores of a file.
-struct Stores {
-    recording: Recorder,
-    layout: Recorder,
-}
-
-/// Encodes what `log` logs, with a document at its entity, and writes the file.
+/// Encodes what `log` logs, behind the title and a document at its entity, with the layout that it
+/// returns, and writes the file.
 fn put(
     path: &Path,
     title: &str,
     document: (&str, &str),
-    log: impl FnOnce() -> RecordingStreamResult<Stores>,
+    log: impl FnOnce(&mut Recorder) -> RecordingStreamResult<Recorder>,
 ) -> Result<(), RecordingError> {
     let bytes = bytes(title, document, log).map_err(|source| encoding_error(path, source))?;
     let written = std::fs::create_dir_all(folder_of(path)).and_then(|()| write_whole(path, &bytes));
@@ -108,61 +99,34 @@ fn put(
 fn bytes(
     title: &str,
     (entity, document): (&str, &str),
-    log: impl FnOnce() -> RecordingStreamResult<Stores>,
+    log: impl FnOnce(&mut Recorder) -> RecordingStreamResult<Recorder>,
 ) -> Result<Vec<u8>, Failure> {
-    let Stores { recording, layout } = log()?;
-    let mut whole = Recorder::of_section(0);
+    let mut recording = Recorder::default();
     let name = RecordingInfo::update_fields().with_name(title);
-    whole.log_static(EntityPath::properties(), &name)?;
+    recording.log_static(EntityPath::properties(), &name)?;
     let document = TextDocument::new(document).with_media_type(MediaType::from(JSON));
-    whole.log_static(entity, &document)?;
-    whole.append(recording);
-    encoding::encode(whole, layout)
+    recording.log_static(entity, &document)?;
+    let layout = log(&mut recording)?;
+    encoding::encode(recording, layout)
 }
 
 const JSON: &str = "application/json";
 
-/// A part of the views of a run.
-type Section = fn(&mut Recorder, &ViewModel, &Curves, &PlanDocument) -> RecordingStreamResult<()>;
-
-/// The sections, which are logged in parallel, the longest first.
-const SECTIONS: [Section; 6] = [
-    |rec, model, _, _| ships::log_ships(rec, model),
-    |rec, model, _, _| velocities::log_velocities(rec, model),
-    |rec, model, _, _| {
-        land::log_land(rec, model)?;
-        chart::log_chart(rec, model)?;
-        space_time::log_volume(rec, model)
-    },
-    |rec, model, curves, _| {
-        curves::log_curves(rec, model, curves)?;
-        forces::log_forces(rec, model)
-    },
-    |rec, model, _, document| {
-        let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
-        let budget = explored::POINT_BUDGET;
-        let drawn = explored::log_explored(rec, model, model.run, folders, budget)?;
-        summary::log_summary(rec, model, document, drawn)
-    },
-    |rec, model, _, _| {
-        path_time::log_path_time(rec, model)?;
-        rules::log_rules(rec, model)
-    },
-];
-
-fn log_run(model: &ViewModel, document: &PlanDocument) -> RecordingStreamResult<Stores> {
-    let curves = Curves::of(model);
-    let logged = |(index, log): (usize, &Section)| {
-        let mut rec = Recorder::of_section(index + 1);
-        log(&mut rec, model, &curves, document)?;
-        Ok(rec)
-    };
-    let sections = SECTIONS.par_iter().enumerate().map(logged);
-    let sections: RecordingStreamResult<Vec<Recorder>> = sections.collect();
-    let mut recording = Recorder::of_section(0);
-    for section in sections? {
-        recording.append(section);
-    }
-    let layout = layout::of_run(model, &curves)?;
-    Ok(Stores { recording, layout })
+/// Logs all views of a run and returns their layout.
+fn log_run(
+    rec: &mut Recorder,
+    model: &ViewModel,
+    plan: &PlanDocument,
+) -> RecordingStreamResult<Recorder> {
+    ships::log_ships(rec, model)?;
+    velocities::log_velocities(rec, model)?;
+    land::log_land(rec, model)?;
+    chart::log_chart(rec, model)?;
+    space_time::log_volume(rec, model)?;
+    curves::log_curves(rec, model)?;
+    let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
+    let drawn = explored::log_explored(rec, model, model.run, &folders)?;
+    summary::log_summary(rec, model, plan, drawn)?;
+    rules::log_rules(rec, model)?;
+    layout::of_run(model)
 }

@@ -9,22 +9,12 @@ use rerun::{
 /// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
 /// environment variables that redirect it; this has none, so that the same run makes the same
 /// recording.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Recorder {
-    /// High half of the chunk ids: sections of a store are logged in parallel.
-    section: u64,
     chunks: Vec<Chunk>,
 }
 
 impl Recorder {
-    /// Creates one of the sections of a store, numbered in their order.
-    pub fn of_section(section: usize) -> Self {
-        Self {
-            section: section as u64 + 1,
-            chunks: Vec::new(),
-        }
-    }
-
     /// Logs what holds at all times.
     pub fn log_static(
         &mut self,
@@ -61,7 +51,7 @@ impl Recorder {
         let times = times.map(|column| (*column.timeline().name(), column));
         let columns = columns.into_iter().map(|c| (c.descriptor, c.list_array));
         // the ids of the rows follow from that of the chunk
-        let number = (self.section << 32) + self.chunks.len() as u64;
+        let number = 1 + self.chunks.len() as u64;
         self.chunks.push(Chunk::from_auto_row_ids(
             ChunkId::from_tuid(Tuid::from_nanos_and_inc(number, 0)),
             entity.into(),
@@ -69,11 +59,6 @@ impl Recorder {
             columns.collect(),
         )?);
         Ok(())
-    }
-
-    /// Appends a later section.
-    pub fn append(&mut self, later: Self) {
-        self.chunks.extend(later.chunks);
     }
 
     /// The chunks, in their order.

@@ -1,10 +1,10 @@
 //! Figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
-use super::outline::{Stroke, curve, mark};
+use super::outline::{curve, mark};
 use super::panel::AREA;
 use super::sections::{seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::OwnSituation;
@@ -13,16 +13,10 @@ use crate::study::assess::OwnSituation;
 const FASTEST: f64 = 1.3;
 
 /// Stroke of own ship's track.
-const OWN: Stroke = Stroke {
-    colour: "#000000",
-    width: 1.6,
-    dashed: false,
-};
+const OWN: Stroke = Stroke::solid("#000000", 1.6);
 
-/// Sizes in pixels: gap between a set and the base line of its name, line height, and letter width.
+/// Gap in pixels between a set and the base line of its name.
 const GAP: f64 = 5.0;
-const LINE: f64 = 14.0;
-const LETTER: f64 = 6.6;
 
 /// Number of panels in a row.
 const COLUMNS: usize = 2;
@@ -76,40 +70,12 @@ const OWN_ON_FIELD: Stroke = Stroke {
     ..OWN
 };
 
-/// Writes the targets' names above their first sections. A name that would overlap an earlier one
-/// moves up a line, or below its set at the edge of the panel.
+/// Writes the targets' names above their first sections.
 fn name(panel: &mut Panel, situation: &OwnSituation) {
-    let window = panel.window();
-    let pixel = window.size().x / AREA[0];
-    let mut taken: Vec<(Vector, f64)> = Vec::new();
+    let gap = GAP * panel.window().size().x / AREA[0];
     for target in situation.obstacles {
         let reach = |x: f64, y: f64| target.section(0.0).support(Vector::new(x, y));
-        let half = 0.5 * LETTER * pixel * target.name().chars().count() as f64;
-        let middle = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));
-        let (left, right) = (window.low.x + half, window.high.x - half);
-        let east = if left < right {
-            middle.clamp(left, right)
-        } else {
-            middle
-        };
-        let mut at = Vector::new(east, reach(0.0, 1.0) + GAP * pixel);
-        let overlaps = |at: Vector| {
-            let line = LINE * pixel * (1.0 - 1e-9);
-            let hides = |(other, wide): &(Vector, f64)| {
-                (at.y - other.y).abs() < line && (at.x - other.x).abs() < half + wide
-            };
-            taken.iter().any(hides)
-        };
-        while overlaps(at) {
-            at.y += LINE * pixel;
-        }
-        if at.y + LINE * pixel > window.high.y {
-            at.y = -reach(0.0, -1.0) - (GAP + LINE) * pixel;
-            while overlaps(at) {
-                at.y -= LINE * pixel;
-            }
-        }
-        taken.push((at, half));
-        panel.note(target.name(), at);
+        let east = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));
+        panel.note(target.name(), Vector::new(east, reach(0.0, 1.0) + gap));
     }
 }

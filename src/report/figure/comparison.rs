@@ -1,17 +1,17 @@
 //! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
 //! risk.
 
-use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
+use super::outline::{area, curve, marks, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, LineStyle, Method};
+use crate::study::compare::{Entry, Method};
 
 /// Colour of the targets' sets.
 const SETS: &str = "#888888";
@@ -24,9 +24,6 @@ const STEP: f64 = 2.0;
 
 /// Maximum of the distance axis as a multiple of the largest minimum distance.
 const SHOWN: f64 = 4.0;
-
-/// Size of the smallest symbol in pixels.
-const LEAST_SYMBOL: f64 = 3.4;
 
 /// Draws one row of panels per scenario: the chart, the distance to the nearest target over time,
 /// and in a sweep the cost over the accepted risk.
@@ -65,7 +62,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
                     None => "no plan".to_owned(),
                 },
                 diagram,
-                stroke: stroke(method),
+                stroke: Stroke::of(method),
             };
             let title = match entry.candidate.max_risk {
                 risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
@@ -81,19 +78,6 @@ fn is_sweep(entries: &[Entry]) -> bool {
     entries.iter().any(|e| risk(e) != risk(&entries[0]))
 }
 
-fn stroke(method: Method) -> Stroke {
-    let LineStyle {
-        colour,
-        width,
-        dashed,
-    } = LineStyle::of(method);
-    Stroke {
-        colour,
-        width,
-        dashed,
-    }
-}
-
 fn times(entry: &Entry) -> Vec<f64> {
     let end = entry.trajectory().map_or(0.0, |t| t.end_time());
     let steps = (end / STEP).ceil().max(1.0) as usize;
@@ -105,7 +89,7 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
     for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
         let method = entry.candidate.method;
         if last != Some(method) {
-            panel.line_key(&named(method, entries), stroke(method));
+            panel.line_key(&named(method, entries), Stroke::of(method));
             last = Some(method);
         }
     }
@@ -132,16 +116,14 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .map(|entry| {
             let at = |time| entry.position_at(time);
             let way = times(entry).into_iter().filter_map(at).collect();
-            (stroke(entry.candidate.method), way)
+            (Stroke::of(entry.candidate.method), way)
         })
         .collect();
     let waypoints = scenario.desired.waypoints();
     let end = scenario.desired.duration();
     // a motion that continues to the horizon would shrink all others
     let reach = PlotWindow::around(waypoints.iter().copied(), 0.35);
-    let within = |p: &Vector| {
-        p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
-    };
+    let within = |p: &Vector| reach.contains(*p);
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
     let mut sets: Vec<Vec<Vector>> = Vec::new();
@@ -173,11 +155,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     }
     keys(&mut panel, entries);
     panel.line_key("desired", DESIRED);
-    let wide = |colour| Stroke {
-        colour,
-        width: 3.0,
-        dashed: false,
-    };
+    let wide = |colour| Stroke::solid(colour, 3.0);
     let thirds: Vec<String> = (0..MOMENTS)
         .map(|k| format!("{:.0}", end * k as f64 / (MOMENTS - 1) as f64))
         .collect();
@@ -199,17 +177,12 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .map(|entry| {
             let line = times(entry).into_iter().filter_map(|time| {
                 let pose = entry.trajectory()?.pose_at(time);
-                let apart = scenario.targets.iter().map(|target| match target.ship() {
-                    Some(ship) => {
-                        (own.polygon(&pose)).separation(&ship.hull.polygon(&ship.pose_at(time)))
-                    }
-                    None => (target.outer_set_at(time))
-                        .map_or(f64::INFINITY, |set| set.signed_distance(pose.position)),
-                });
+                let targets = scenario.targets.iter();
+                let apart = targets.map(|target| target.distance_from(own, &pose, time));
                 let nearest = apart.fold(f64::INFINITY, f64::min);
                 nearest.is_finite().then(|| Vector::new(time, nearest))
             });
-            (stroke(entry.candidate.method), line.collect())
+            (Stroke::of(entry.candidate.method), line.collect())
         })
         .collect();
     let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -227,35 +200,9 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let title = format!("{}: distance from the nearest target", scenario.title);
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
-        for part in parts_below(line, window.high.y) {
-            panel.plots.push(curve(&part, false, *stroke));
-        }
+        panel.plots.push(curve(line, false, *stroke));
     }
     panel
-}
-
-/// Clips a polyline to the parts below a height.
-fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
-    let mut parts: Vec<Vec<Vector>> = vec![Vec::new()];
-    let clamp = |p: &Vector| Vector::new(p.x, p.y.max(0.0));
-    for pair in line.windows(2) {
-        let (a, b) = (clamp(&pair[0]), clamp(&pair[1]));
-        let cut = || a + (b - a) * ((top - a.y) / (b.y - a.y));
-        match (a.y <= top, b.y <= top) {
-            (true, true) => parts.last_mut().into_iter().for_each(|p| p.extend([a, b])),
-            (true, false) => {
-                parts
-                    .last_mut()
-                    .into_iter()
-                    .for_each(|p| p.extend([a, cut()]));
-                parts.push(Vec::new());
-            }
-            (false, true) => parts.push(vec![cut(), b]),
-            (false, false) => {}
-        }
-    }
-    parts.retain(|part| part.len() > 1);
-    parts
 }
 
 /// Draws the cost over accepted risk, one line per planner. Baselines are omitted because their
@@ -297,23 +244,18 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         ["Accepted risk [-]", "Space-time error J [m²]"],
         window,
     );
-    for (index, (method, line)) in lines.iter().enumerate() {
-        let (Some(first), Some(last)) = (line.first(), line.last()) else {
-            panel.line_key(&format!("{method}: none within the risk"), stroke(*method));
-            continue;
-        };
-        // show the costs, because lines may coincide
-        let label = format!("{method}: {:.0} to {:.0} m²", first.y, last.y);
-        let symbol = SYMBOLS[index % SYMBOLS.len()];
-        panel.symbol_key(&label, symbol, stroke(*method).colour);
-    }
-    // lines that are often covered are wide and have larger symbols
-    for (index, (method, line)) in lines.iter().enumerate().rev() {
-        let stroke = stroke(*method);
-        let symbol = SYMBOLS[index % SYMBOLS.len()];
+    for (method, line) in lines.iter().rev() {
+        let stroke = Stroke::of(*method);
         panel.plots.push(curve(line, false, stroke));
-        let size = LEAST_SYMBOL + stroke.width / 2.0;
-        panel.plots.push(symbols(line, symbol, size, stroke.colour));
+        panel.plots.push(marks(line, stroke.colour));
+    }
+    for (method, line) in &lines {
+        // show the costs, because lines may coincide
+        let label = match (line.first(), line.last()) {
+            (Some(first), Some(last)) => format!("{method}: {:.0} to {:.0} m²", first.y, last.y),
+            _ => format!("{method}: none within the risk"),
+        };
+        panel.line_key(&label, Stroke::of(*method));
     }
     panel
 }

@@ -6,10 +6,10 @@ use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
 use super::outline::{
-    Approaching, Stroke, area, curve, mark, outer_velocities_within, sampled_boundary, square,
+    Approaching, area, curve, mark, outer_velocities_within, sampled_boundary, square,
 };
 use super::sections::PLAN;
-use super::{Panel, PlotWindow};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -21,18 +21,10 @@ const RISK_BANDS: usize = 20;
 const DISTANCE_BANDS: f64 = 20.0;
 
 /// Boundary of a set over a field.
-const BOUNDARY: Stroke = Stroke {
-    colour: "#ffffff",
-    width: 1.6,
-    dashed: false,
-};
+const BOUNDARY: Stroke = Stroke::solid("#ffffff", 1.6);
 
 /// Boundary of a velocity obstacle, which is white.
-const VELOCITY_OBSTACLE: Stroke = Stroke {
-    colour: "#000000",
-    width: 1.6,
-    dashed: false,
-};
+const VELOCITY_OBSTACLE: Stroke = Stroke::solid("#000000", 1.6);
 
 /// Colour of own ship on dark and light backgrounds.
 pub(super) const OWN: &str = "#d55e00";

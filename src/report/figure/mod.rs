@@ -19,7 +19,6 @@ pub use assessment::assessment_figure;
 pub use comparison::comparison_figure;
 pub(super) use comparison::{comparison_panels, diagram_panels};
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
-pub use outline::Stroke;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};
 pub(super) use plan::plan_panels;
@@ -27,3 +26,5 @@ pub use plan::{chart_panel, explored_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
 pub use window::PlotWindow;
+
+pub use crate::study::compare::Stroke;

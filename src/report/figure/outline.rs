@@ -1,28 +1,18 @@
 //! Drawable curves and areas of sets.
 
-use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
+use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
+use crate::study::compare::Stroke;
 
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
 /// Accuracy of a drawn velocity obstacle of ellipses, as a fraction of the limit.
 const FINENESS: f64 = 5e-4;
-
-/// Stroke of a curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
-    /// Colour as `#rrggbb`.
-    pub colour: &'static str,
-    /// Width in pixels.
-    pub width: f64,
-    /// True for a dashed curve.
-    pub dashed: bool,
-}
 
 /// Boundary of a section, counter-clockwise; ellipses are sampled.
 pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
@@ -53,23 +43,10 @@ pub fn mark(at: Vector, colour: &str) -> Plot {
     Plot::Scatter(point.with_color(colour).with_size(4.5))
 }
 
-/// Symbols that distinguish coincident points of different curves.
-pub(super) const SYMBOLS: [MarkerShape; 8] = [
-    MarkerShape::Circle,
-    MarkerShape::Square,
-    MarkerShape::Diamond,
-    MarkerShape::Triangle,
-    MarkerShape::Star,
-    MarkerShape::TriangleDown,
-    MarkerShape::Cross,
-    MarkerShape::Plus,
-];
-
-/// Draws points with one symbol; `size` is the distance in pixels from its centre to its edge.
-pub(super) fn symbols(at: &[Vector], symbol: MarkerShape, size: f64, colour: &str) -> Plot {
+/// Draws the points of a curve.
+pub(super) fn marks(at: &[Vector], colour: &str) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
-    let points = points.with_color(colour).with_size(size);
-    Plot::Scatter(points.with_marker(symbol))
+    Plot::Scatter(points.with_color(colour).with_size(4.0))
 }
 
 /// Draws a filled convex polygon as the band between its lower and upper chain. `None` if its area

@@ -1,13 +1,11 @@
 //! Panel: one pair of axes.
 
-use kuva::plot::MarkerShape;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
-use super::PlotWindow;
-use super::outline::Stroke;
+use super::{PlotWindow, Stroke};
 use crate::frame::Vector;
 
 /// Size in pixels of the area between the axes.
@@ -91,16 +89,6 @@ impl Panel {
             label: label.to_owned(),
             color: colour.to_owned(),
             shape: LegendShape::Circle,
-            dasharray: None,
-        });
-    }
-
-    /// Adds a legend entry for a symbol of [`super::outline::symbols`].
-    pub(super) fn symbol_key(&mut self, label: &str, symbol: MarkerShape, colour: &str) {
-        self.legend.push(LegendEntry {
-            label: label.to_owned(),
-            color: colour.to_owned(),
-            shape: LegendShape::Marker(symbol),
             dasharray: None,
         });
     }

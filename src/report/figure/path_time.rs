@@ -1,30 +1,23 @@
 //! Path-time diagram: distance along the path horizontally, time vertically, paper figures 5b and
 //! 6b.
 
-use super::outline::{Stroke, area, curve};
-use super::{Panel, PlotWindow};
+use super::outline::{area, curve};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::PathTime;
 use crate::planner::path_time::PathTimeDiagram;
 
 /// Stroke at joints of legs.
-const JOINT: Stroke = Stroke {
-    colour: "#bbbbbb",
-    width: 0.8,
-    dashed: true,
-};
+const JOINT: Stroke = Stroke::dashed("#bbbbbb", 0.8);
 
 /// Colours of successive targets; they also differ in lightness.
 const COLOURS: [&str; 7] = [
     "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31",
 ];
 
-/// Time shown after the content, as a fraction of its duration.
-const AFTER: f64 = 0.08;
-
-/// Fraction by which an obstacle may outlast the last arrival and still be shown in full.
-const MUCH: f64 = 0.5;
+/// Time shown after the last arrival, as a fraction of the time until then.
+const AFTER: f64 = 0.2;
 
 /// Colour of a target by its index.
 pub(super) fn target_colour(index: usize) -> &'static str {
@@ -53,16 +46,8 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
         .fold(0.0, f64::max);
     let diagram = profiles.first().map(|line| line.diagram);
     let horizon = diagram.map_or(1.0, |d| d.horizon);
-    // show obstacles that start before the last arrival in full, unless they last much longer
-    let whole = diagram
-        .iter()
-        .flat_map(|d| &d.obstacles)
-        .filter(|seen| seen.corners.iter().any(|c| c.time < arrival))
-        .flat_map(|seen| seen.corners.iter().map(|c| c.time))
-        .filter(|time| *time < (1.0 + MUCH) * arrival)
-        .fold(arrival, f64::max);
     let top = if arrival > 0.0 {
-        (whole * (1.0 + AFTER)).min(horizon)
+        (arrival * (1.0 + AFTER)).min(horizon)
     } else {
         horizon
     };
@@ -80,11 +65,7 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
         panel
             .plots
             .extend(polygon.and_then(|p| area(&p, colour, 0.35)));
-        let outline = Stroke {
-            colour,
-            width: 1.0,
-            dashed: false,
-        };
+        let outline = Stroke::solid(colour, 1.0);
         panel.plots.push(curve(&corners, true, outline));
         if corners.iter().any(|c| c.y < top) {
             named.push(seen.obstacle);
@@ -102,11 +83,7 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     named.sort_unstable();
     named.dedup();
     for index in named {
-        let stroke = Stroke {
-            colour: target_colour(index),
-            width: 3.0,
-            dashed: false,
-        };
+        let stroke = Stroke::solid(target_colour(index), 3.0);
         panel.line_key(names.get(index).copied().unwrap_or_default(), stroke);
     }
     panel

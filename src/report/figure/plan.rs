@@ -4,10 +4,10 @@
 use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
-use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::outline::{area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow};
+use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
@@ -19,42 +19,22 @@ use crate::scenario::Land;
 use crate::trajectory::Trajectory;
 
 /// Stroke of the desired trajectory.
-pub(super) const DESIRED: Stroke = Stroke {
-    colour: "#777777",
-    width: 1.4,
-    dashed: true,
-};
+pub(super) const DESIRED: Stroke = Stroke::dashed("#777777", 1.4);
 
 /// Stroke of the planned trajectory.
-pub(super) const PLANNED: Stroke = Stroke {
-    colour: "#000000",
-    width: 2.4,
-    dashed: false,
-};
+pub(super) const PLANNED: Stroke = Stroke::solid("#000000", 2.4);
 
 /// Stroke of alternative paths.
-const ALTERNATIVE: Stroke = Stroke {
-    colour: "#b0b0b0",
-    width: 1.4,
-    dashed: false,
-};
+const ALTERNATIVE: Stroke = Stroke::solid("#b0b0b0", 1.4);
 
 /// Stroke of motions found by a search.
-const FOUND: Stroke = Stroke {
-    colour: "#009e73",
-    width: 0.8,
-    dashed: false,
-};
+const FOUND: Stroke = Stroke::solid("#009e73", 0.8);
 
 /// Colour of land.
 pub(super) const LAND: &str = "#d9cba3";
 
 /// Outline of land.
-const LAND_OUTLINE: Stroke = Stroke {
-    colour: LAND,
-    width: 0.8,
-    dashed: false,
-};
+const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
 /// Number of instants at which the sets are drawn, including the start.
 const MOMENTS: usize = 4;
@@ -79,10 +59,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let plan = run.planned.outcome.plan();
     let mut panels = vec![chart_panel("Chart", run)];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
-        panels.extend(force_panels(
-            motion,
-            &scenario.settings.optimal_control.force_limits,
-        ));
+        panels.extend(force_panels(motion));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
@@ -162,9 +139,8 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
             .plots
             .extend(polygon.and_then(|p| area(&p, colour, opacity)));
         let outline = Stroke {
-            colour,
-            width: 1.0,
             dashed: *k > 0,
+            ..Stroke::solid(colour, 1.0)
         };
         panel.plots.push(curve(boundary, true, outline));
     }
@@ -188,19 +164,11 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     }
     panel.line_key("desired", DESIRED);
     if land.is_some() {
-        let stroke = Stroke {
-            colour: LAND,
-            width: 3.0,
-            dashed: false,
-        };
+        let stroke = Stroke::solid(LAND, 3.0);
         panel.line_key("land", stroke);
     }
     for (index, obstacle) in run.obstacles().enumerate() {
-        let stroke = Stroke {
-            colour: target_colour(index),
-            width: 3.0,
-            dashed: false,
-        };
+        let stroke = Stroke::solid(target_colour(index), 3.0);
         panel.line_key(&format!("set of {}", obstacle.name()), stroke);
     }
     panel

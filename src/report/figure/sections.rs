@@ -1,7 +1,7 @@
 //! Figures of target sets: the two sets, and sections over time.
 
-use super::outline::{Stroke, area, curve, sampled_boundary};
-use super::{Panel, PlotWindow};
+use super::outline::{area, curve, sampled_boundary};
+use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::obstacle::Obstacle;
@@ -10,25 +10,13 @@ use crate::obstacle::Obstacle;
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
 
 /// Stroke of the first section.
-pub(super) const INITIAL: Stroke = Stroke {
-    colour: "#0072b2",
-    width: 2.4,
-    dashed: false,
-};
+pub(super) const INITIAL: Stroke = Stroke::solid("#0072b2", 2.4);
 
 /// Stroke of later sections.
-pub(super) const LATER: Stroke = Stroke {
-    colour: "#009e73",
-    width: 1.4,
-    dashed: false,
-};
+pub(super) const LATER: Stroke = Stroke::solid("#009e73", 1.4);
 
 /// Stroke of the area covered by the sections.
-const COVERED: Stroke = Stroke {
-    colour: "#d55e00",
-    width: 1.6,
-    dashed: true,
-};
+const COVERED: Stroke = Stroke::dashed("#d55e00", 1.6);
 
 /// Number of sections used to draw the area covered by ellipses; its sides are nearly straight
 /// between them.

@@ -6,13 +6,13 @@
 
 mod applies;
 mod baseline;
-mod line_style;
 mod method;
+mod stroke;
 
 pub use applies::{Inapplicable, Methods, methods};
 pub use baseline::{ComparedMotion, constant_velocity, hold_course};
-pub(crate) use line_style::LineStyle;
 pub use method::Method;
+pub use stroke::Stroke;
 
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::evaluation::{Evaluation, Safety, counted_error};

@@ -1,13 +1,11 @@
 //! `searoom inspect`: contents of a recording.
 
-mod difference;
-
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
 use searoom::document::{PlanDocument, ScenarioComparisonDocument};
-use searoom::recording::{EntityTable, Recorded, TimelineContents};
+use searoom::recording::{EntityContents, EntityTable, Recorded, TimelineContents};
 use searoom::report::{comparison_table, plan_document_text};
 use serde::Serialize;
 use serde_json::Value;
@@ -16,23 +14,15 @@ use super::args::InspectArgs;
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded;
-use difference::two;
 
 /// Maximum number of similar entity names suggested for a missing one.
 const OFFERED: usize = 3;
 
-/// Shows one recording, a part of it, or the differences of two.
+/// Shows a recording, or a part of it.
 pub fn inspect(args: &InspectArgs, output: &Output) -> ExitStatus {
-    let asked = || match &args.other {
-        None => one(args, output),
-        Some(other) => two(args, other, output),
-    };
-    match guarded(asked) {
+    match guarded(|| one(args, output)) {
         Ok(Ok(status)) => status,
-        Ok(Err(error)) => {
-            output.error(&format_args!("{error:#}"));
-            ExitStatus::BadInput
-        }
+        Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
         Err(fault) => {
             output.error(&fault);
             ExitStatus::InternalFault
@@ -41,7 +31,7 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> ExitStatus {
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.
-pub fn read(path: &Path) -> anyhow::Result<Recorded> {
+fn read(path: &Path) -> anyhow::Result<Recorded> {
     match guarded(|| Recorded::read(path)) {
         // the message already includes its cause
         Ok(read) => read.map_err(|error| anyhow!("{error}")),
@@ -77,11 +67,7 @@ fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     if let Some(entity) = &args.csv {
         let table = table(&recorded, entity, &args.recording)?;
-        return Ok(if args.json {
-            output.document(&EntityDocument::of(entity, table))
-        } else {
-            output.result(csv(&table)?.trim_end())
-        });
+        return Ok(output.result(csv(&table)?.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
     Ok(if args.json {
@@ -115,47 +101,12 @@ fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<Entit
 }
 
 fn csv(table: &EntityTable) -> anyhow::Result<String> {
-    let columns = table.columns();
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(&columns.header)?;
-    for row in &columns.rows {
+    for row in table.csv_rows() {
         writer.write_record(row)?;
     }
     let bytes = writer.into_inner().context("the rows cannot be written")?;
     Ok(String::from_utf8(bytes)?)
-}
-
-/// One entity with its values.
-#[derive(Debug, Serialize)]
-struct EntityDocument {
-    entity: String,
-    timelines: Vec<String>,
-    components: Vec<String>,
-    rows: Vec<RowDocument>,
-}
-
-/// Times by timeline, null if the row has none, and values by component.
-#[derive(Debug, Serialize)]
-struct RowDocument {
-    times: Vec<Option<f64>>,
-    values: Vec<Value>,
-}
-
-impl EntityDocument {
-    fn of(entity: &str, table: EntityTable) -> Self {
-        let rows = table.rows.into_iter();
-        Self {
-            entity: format!("/{}", entity.trim_start_matches('/')),
-            timelines: table.timelines,
-            components: table.components,
-            rows: rows
-                .map(|row| RowDocument {
-                    times: row.times,
-                    values: row.values,
-                })
-                .collect(),
-        }
-    }
 }
 
 /// Contents of a recording.
@@ -183,53 +134,16 @@ struct Contents {
     plan: Option<PlanDocument>,
     #[serde(skip)]
     compared: Option<ScenarioComparisonDocument>,
-    timelines: Vec<TimelineDocument>,
-    entities: Vec<ContentsDocument>,
+    timelines: Vec<TimelineContents>,
+    entities: Vec<EntityContents>,
 }
 
-/// Entity in a list.
-#[derive(Debug, Serialize)]
-struct ContentsDocument {
-    entity: String,
-    rows: usize,
-    components: Vec<String>,
-    timelines: Vec<TimelineDocument>,
-}
-
-/// Timeline and its range.
-#[derive(Debug, Serialize)]
-struct TimelineDocument {
-    name: String,
-    unit: &'static str,
-    first: f64,
-    last: f64,
-}
-
-impl TimelineDocument {
-    fn all(timelines: Vec<TimelineContents>) -> Vec<Self> {
-        timelines
-            .into_iter()
-            .map(|t| Self {
-                name: t.name,
-                unit: t.unit,
-                first: t.first,
-                last: t.last,
-            })
-            .collect()
-    }
-
-    fn text(&self) -> String {
-        let Self {
-            name,
-            unit,
-            first,
-            last,
-        } = self;
-        let [first, last] = [first, last].map(|time| (time * 1e3).round() / 1e3);
-        format!("{name} {first} to {last} {unit}")
-            .trim_end()
-            .to_owned()
-    }
+/// A timeline with its range, to the millisecond.
+fn range(timeline: &TimelineContents) -> String {
+    let milliseconds = |time: f64| (time * 1e3).round() / 1e3;
+    let [first, last] = [timeline.first, timeline.last].map(milliseconds);
+    let text = format!("{} {first} to {last} {}", timeline.name, timeline.unit);
+    text.trim_end().to_owned()
 }
 
 impl Contents {
@@ -270,17 +184,8 @@ impl Contents {
             plan: serde_json::from_value(document).ok(),
             compared: serde_json::from_value(comparison.clone()).ok(),
             comparison,
-            timelines: TimelineDocument::all(recorded.timelines()),
-            entities: recorded
-                .entities()
-                .into_iter()
-                .map(|e| ContentsDocument {
-                    entity: e.path,
-                    rows: e.rows,
-                    components: e.components,
-                    timelines: TimelineDocument::all(e.timelines),
-                })
-                .collect(),
+            timelines: recorded.timelines(),
+            entities: recorded.entities(),
         }
     }
 
@@ -300,8 +205,8 @@ impl Contents {
             (None, None) => "no plan document in it".to_owned(),
         });
         lines.push(String::new());
-        let timelines: Vec<String> = self.timelines.iter().map(TimelineDocument::text).collect();
-        lines.push(format!("Timelines: {}", list(&timelines)));
+        let timelines = list(&self.timelines, "none");
+        lines.push(format!("Timelines: {timelines}"));
         lines.push(format!("Entities: {}", self.entities.len()));
         let mut table = Table::new();
         table
@@ -311,21 +216,12 @@ impl Contents {
             .force_no_tty();
         table.style_mut().row_separator = presets::NOTHING.row_separator;
         for entity in &self.entities {
-            let times: Vec<String> = entity
-                .timelines
-                .iter()
-                .map(TimelineDocument::text)
-                .collect();
             let short = |c: &String| c.rsplit(':').next().unwrap_or(c).to_owned();
             let components: Vec<String> = entity.components.iter().map(short).collect();
             table.add_row([
-                entity.entity.clone(),
+                entity.path.clone(),
                 entity.rows.to_string(),
-                if times.is_empty() {
-                    "always".to_owned()
-                } else {
-                    times.join(", ")
-                },
+                list(&entity.timelines, "always"),
                 components.join(", "),
             ]);
         }
@@ -334,10 +230,10 @@ impl Contents {
     }
 }
 
-fn list(texts: &[String]) -> String {
-    if texts.is_empty() {
-        "none".to_owned()
-    } else {
-        texts.join(", ")
+fn list(timelines: &[TimelineContents], none: &str) -> String {
+    if timelines.is_empty() {
+        return none.to_owned();
     }
+    let texts: Vec<String> = timelines.iter().map(range).collect();
+    texts.join(", ")
 }

@@ -1,9 +1,5 @@
-//! Detection of scenario faults without planning: targets that never matter, missing ships,
-//! mirrored geometry, and repeated scenarios.
-
-mod likeness;
-
-pub use likeness::{Likeness, likenesses};
+//! Detection of scenario faults without planning: targets that never matter, missing ships and
+//! mirrored geometry.
 
 use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
 use crate::frame::{Side, relative_bearing};

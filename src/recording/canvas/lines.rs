@@ -1,0 +1,60 @@
+//! Lines with one style each, on the chart and in the space-time volume.
+
+use rerun::{Color, LineStrips2D, LineStrips3D, Points2D, Radius};
+
+use super::style;
+
+/// Lines of one entity.
+#[derive(Debug)]
+pub struct Lines<const AXES: usize> {
+    strips: Vec<Vec<[f32; AXES]>>,
+    colors: Vec<Color>,
+    radii: Vec<Radius>,
+}
+
+impl<const AXES: usize> Lines<AXES> {
+    pub fn new() -> Self {
+        Self {
+            strips: Vec::new(),
+            colors: Vec::new(),
+            radii: Vec::new(),
+        }
+    }
+
+    /// Adds a line; `radius` is its half width in points of the screen.
+    pub fn add(&mut self, strip: impl Into<Vec<[f32; AXES]>>, color: Color, radius: f32) {
+        self.strips.push(strip.into());
+        self.colors.push(color);
+        self.radii.push(style::points(radius));
+    }
+}
+
+impl Lines<2> {
+    pub fn archetype(self) -> LineStrips2D {
+        LineStrips2D::new(self.strips)
+            .with_colors(self.colors)
+            .with_radii(self.radii)
+    }
+}
+
+impl Lines<3> {
+    pub fn archetype(self) -> LineStrips3D {
+        LineStrips3D::new(self.strips)
+            .with_colors(self.colors)
+            .with_radii(self.radii)
+    }
+}
+
+/// Points of one colour and radius whose labels are always shown.
+pub fn labelled(
+    points: impl IntoIterator<Item = [f32; 2]>,
+    color: Color,
+    radius: f32,
+    labels: impl IntoIterator<Item = impl Into<rerun::components::Text>>,
+) -> Points2D {
+    Points2D::new(points)
+        .with_colors([color])
+        .with_radii([style::points(radius)])
+        .with_labels(labels)
+        .with_show_labels(true)
+}
