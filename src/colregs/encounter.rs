@@ -1,7 +1,7 @@
 //! Encounters along the desired trajectory, for planning once (docs/colregs.md 1.3).
 
 use super::role::{Role, SteadyShip, raw_role};
-use super::thresholds::RiskLimits;
+use super::thresholds::{RiskLimits, Thresholds};
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
 use crate::target::{Motion, ShipTrack, Target};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory};
@@ -54,7 +54,7 @@ pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
 
 /// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
 /// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
-/// [`risk_distance`] and [`RiskLimits::time_of`] seconds. Searched from 0 to the horizon or the desired arrival,
+/// [`risk_distance`] and [`Thresholds::risk_time`] seconds. Searched from 0 to the horizon or the desired arrival,
 /// whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
 /// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
@@ -66,7 +66,7 @@ pub fn first_risk(
     horizon: f64,
 ) -> Option<Risk> {
     let allowed = risk_distance(own, target);
-    let soon = RiskLimits::STANDARD.time_of(own.hull.length);
+    let soon = Thresholds::STANDARD.risk_time(own.hull.length);
     desired.legs().iter().find_map(|leg| {
         let from = leg.start_time;
         let until = leg.end_time().min(horizon);

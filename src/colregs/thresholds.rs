@@ -26,6 +26,9 @@ pub struct Thresholds {
     pub score: ScoreLimits,
     /// Compliance monitors.
     pub monitor: MonitorLimits,
+    /// Factor of the times of risk, of ample time, to react and to manoeuvre for own ships of
+    /// [`LARGE_M`] and more.
+    pub large_factor: f64,
 }
 
 /// When risk of collision begins and ends.
@@ -33,8 +36,6 @@ pub struct Thresholds {
 pub struct RiskLimits {
     /// Longest time to the closest approach, seconds.
     pub time: f64,
-    /// The same for own ships of [`LARGE_M`] and more.
-    pub large_time: f64,
     /// Longest distance of the centres at the closest approach, in lengths.
     pub lengths: f64,
     /// Distance of the hulls, in lengths, at which a target that opens is past and clear.
@@ -97,8 +98,6 @@ pub struct ScoreLimits {
     pub overtaken_lengths: f64,
     /// Rule 8(a): action is in ample time up to this many seconds before the closest approach.
     pub ample_time: f64,
-    /// The same for own ships of [`LARGE_M`] and more.
-    pub large_ample_time: f64,
 }
 
 /// Thresholds of the compliance monitors.
@@ -116,22 +115,10 @@ impl RiskLimits {
     /// Part of [`Thresholds::STANDARD`].
     pub const STANDARD: Self = Self {
         time: 420.0,
-        large_time: 1260.0,
         lengths: 2.0,
         release_lengths: 1.5,
         evaluations: 2,
     };
-}
-
-impl RiskLimits {
-    /// Longest time to the closest approach for an own ship of a length, seconds.
-    pub fn time_of(&self, own_length: f64) -> f64 {
-        if own_length < LARGE_M {
-            self.time
-        } else {
-            self.large_time
-        }
-    }
 }
 
 impl ScoreLimits {
@@ -162,17 +149,7 @@ impl ScoreLimits {
         stage_4_lengths: 4.0,
         overtaken_lengths: 28.0,
         ample_time: 240.0,
-        large_ample_time: 720.0,
     };
-
-    /// Rule 8(a): action is in ample time up to this many seconds before the closest approach.
-    pub fn ample_time_of(&self, own_length: f64) -> f64 {
-        if own_length < LARGE_M {
-            self.ample_time
-        } else {
-            self.large_ample_time
-        }
-    }
 
     /// Distance ahead of a ship, metres, within which its course line must not be crossed.
     pub fn room_ahead(&self, length: f64, speed: f64) -> f64 {
@@ -207,7 +184,7 @@ const FRACTION: Range = Range::between(0.0, 1.0);
 /// A number: its key in files, its range, its place. A key in degrees stands for radians here.
 type Number = (&'static str, Range, fn(&mut Thresholds) -> &mut f64);
 
-const NUMBERS: [Number; 36] = [
+const NUMBERS: [Number; 35] = [
     ("head_on_deg", DEGREES, |t| &mut t.sectors.head_on),
     ("abaft_the_beam_deg", DEGREES, |t| {
         &mut t.sectors.abaft_the_beam
@@ -215,7 +192,9 @@ const NUMBERS: [Number; 36] = [
     ("at_rest_mps", SPEED, |t| &mut t.sectors.at_rest),
     ("closing_mps", SPEED, |t| &mut t.sectors.closing),
     ("risk_time_s", SECONDS, |t| &mut t.risk.time),
-    ("large_risk_time_s", SECONDS, |t| &mut t.risk.large_time),
+    ("large_factor", Range::between(1.0, 100.0), |t| {
+        &mut t.large_factor
+    }),
     ("risk_lengths", LENGTHS, |t| &mut t.risk.lengths),
     ("release_lengths", LENGTHS, |t| &mut t.risk.release_lengths),
     ("collision_lengths", LENGTHS, |t| {
@@ -260,9 +239,6 @@ const NUMBERS: [Number; 36] = [
         &mut t.score.overtaken_lengths
     }),
     ("ample_time_s", SECONDS, |t| &mut t.score.ample_time),
-    ("large_ample_time_s", SECONDS, |t| {
-        &mut t.score.large_ample_time
-    }),
     ("monitor_turn_deg", DEGREES, |t| &mut t.monitor.turn),
     ("react_s", SECONDS, |t| &mut t.monitor.react),
     ("manoeuvre_s", SECONDS, |t| &mut t.monitor.manoeuvre),
@@ -324,7 +300,27 @@ impl Thresholds {
                 ..ScoreLimits::STANDARD
             },
             monitor: MonitorLimits::STANDARD,
+            large_factor: 3.0,
         }
+    }
+
+    /// Factor of the times for an own ship of a length, metres.
+    pub fn time_factor(&self, own_length: f64) -> f64 {
+        if own_length < LARGE_M {
+            1.0
+        } else {
+            self.large_factor
+        }
+    }
+
+    /// Rule 7: longest time to the closest approach for an own ship of a length, seconds.
+    pub fn risk_time(&self, own_length: f64) -> f64 {
+        self.risk.time * self.time_factor(own_length)
+    }
+
+    /// Rule 8(a): action is in ample time up to this many seconds before the closest approach.
+    pub fn ample_time(&self, own_length: f64) -> f64 {
+        self.score.ample_time * self.time_factor(own_length)
     }
 
     /// [`Thresholds::STANDARD`].

@@ -82,14 +82,15 @@ impl Run {
         let plan = self.planned.outcome.plan();
         let own = &self.scenario.own_ship;
         let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own.hull, own.speed));
-        let judge = |target: &crate::target::Target| {
-            Some(ComplianceReport::along(
-                track.as_ref()?,
-                target.ship()?,
-                thresholds,
-            ))
-        };
-        self.scenario.targets.iter().map(judge).collect()
+        let samples = self.scenario.targets.iter().map(|target| {
+            let (track, ship) = (track.as_ref()?, target.ship()?);
+            Some(ComplianceReport::samples(track, ship, thresholds))
+        });
+        let samples: Vec<_> = samples.collect();
+        let mut reports =
+            ComplianceReport::of_all(samples.iter().flatten(), thresholds).into_iter();
+        let report = |samples: &Option<_>| samples.as_ref().and_then(|_| reports.next());
+        samples.iter().map(report).collect()
     }
 
     /// [`Run::conduct`] by the scenario's thresholds.

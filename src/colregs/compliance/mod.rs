@@ -62,12 +62,46 @@ pub struct Manoeuvre {
 }
 
 impl ComplianceReport {
-    /// Assesses an encounter. A target in extremis, restricted visibility and lights are not
-    /// considered. O(samples).
+    /// Assesses the encounter with the only target. A target in extremis, restricted visibility and
+    /// lights are not considered. O(samples).
     pub fn judge(encounter: &EncounterSamples, thresholds: &Thresholds) -> Self {
         let roles = roles(encounter, thresholds);
-        let monitors = monitors(encounter, &roles, thresholds);
-        let judged = scores(encounter, roles.first(), thresholds);
+        Self::within(encounter, roles, f64::INFINITY, thresholds)
+    }
+
+    /// Assesses the encounters with all targets, in their order. A ship that keeps clear of one
+    /// target, or may act to avoid it, need not hold its course for another: it is excused from
+    /// then on. O(targets × samples).
+    pub fn of_all<'s>(
+        encounters: impl Iterator<Item = &'s EncounterSamples> + Clone,
+        thresholds: &Thresholds,
+    ) -> Vec<Self> {
+        let all: Vec<_> = (encounters.clone())
+            .map(|encounter| roles(encounter, thresholds))
+            .collect();
+        let frees: Vec<f64> = (encounters.clone().zip(&all))
+            .map(|(encounter, roles)| monitor::frees_at(encounter, roles, thresholds))
+            .collect();
+        (encounters.zip(all).enumerate())
+            .map(|(index, (encounter, roles))| {
+                let others = frees
+                    .iter()
+                    .enumerate()
+                    .filter(|(other, _)| *other != index);
+                let excused_from = others.map(|(_, time)| *time).fold(f64::INFINITY, f64::min);
+                Self::within(encounter, roles, excused_from, thresholds)
+            })
+            .collect()
+    }
+
+    fn within(
+        encounter: &EncounterSamples,
+        roles: Vec<RoleInterval>,
+        excused_from: f64,
+        thresholds: &Thresholds,
+    ) -> Self {
+        let monitors = monitors(encounter, &roles, excused_from, thresholds);
+        let judged = scores(encounter, roles.first(), excused_from, thresholds);
         Self {
             roles,
             scores: judged.scores,
@@ -77,16 +111,19 @@ impl ComplianceReport {
         }
     }
 
-    /// Assesses own ship toward one target. A target that stays too far away for any role is
-    /// assessed by the nearest sample alone.
-    pub(crate) fn along(track: &OwnSamples, target: &ShipTrack, thresholds: &Thresholds) -> Self {
+    /// Samples of one target. One that stays too far away for any role has its nearest sample
+    /// alone.
+    pub(crate) fn samples(
+        track: &OwnSamples,
+        target: &ShipTrack,
+        thresholds: &Thresholds,
+    ) -> EncounterSamples {
         let risk = &thresholds.risk;
         let near = risk.lengths * track.hull().length.max(target.hull.length);
-        let soon = risk
-            .time_of(track.hull().length)
-            .max(thresholds.monitor.manoeuvre);
+        let factor = thresholds.time_factor(track.hull().length);
+        let soon = factor * risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);
-        Self::judge(&track.encounter(target, far), thresholds)
+        track.encounter(target, far)
     }
 
     /// True without a rule violation and without a violated monitor.

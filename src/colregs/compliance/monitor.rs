@@ -63,6 +63,10 @@ struct Trace<'a> {
     samples: &'a [EncounterSample],
     roles: &'a [RoleInterval],
     t: &'a Thresholds,
+    /// Factor of the times.
+    factor: f64,
+    /// Seconds from which on an alteration for another target excuses the ship that stands on.
+    excused_from: f64,
     /// Of the longer ship, metres.
     length: f64,
     /// m/s.
@@ -87,7 +91,7 @@ impl Trace<'_> {
 
     /// True if the role is the same after the time to react, with course and speed held.
     fn persists(&self, sample: &EncounterSample, role: Role) -> bool {
-        let seconds = self.t.monitor.react;
+        let seconds = self.factor * self.t.monitor.react;
         let on = |ship: &SteadyShip, speed: f64| {
             let ship = SteadyShip { speed, ..*ship };
             SteadyShip {
@@ -139,7 +143,7 @@ impl Trace<'_> {
         let mut open = false;
         for (_, samples) in self.wanted(wanted) {
             let first = &samples[0];
-            let until = first.time + m.react + 2.0 * m.manoeuvre;
+            let until = first.time + self.factor * (m.react + 2.0 * m.manoeuvre);
             let closing = |s: &&EncounterSample| s.time <= until && s.opening() <= 0.0;
             let meanwhile = samples.iter().take_while(closing).count();
             let turn = samples[..meanwhile]
@@ -183,6 +187,22 @@ impl Trace<'_> {
         Self::result("R6", Measure::Angle, worst, false)
     }
 
+    /// First time at which own ship need not hold its course, as it keeps clear or may act.
+    fn frees_at(&self) -> f64 {
+        let keeps_clear = (self.roles.iter()).filter(|r| r.role.duties().keeps_clear);
+        let acts = self.wanted(|r| r.duties().stands_on);
+        let acts = acts.filter_map(|(role, samples)| {
+            let mut may = samples
+                .iter()
+                .filter(|s| self.may_act(role, &samples[0], s));
+            may.next().map(|s| s.time)
+        });
+        keeps_clear
+            .map(|r| r.from)
+            .chain(acts)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// True from stage 3 on and in extremis: a stand-on ship may act, Rule 17(a)(ii) and (b).
     fn may_act(&self, role: Role, first: &EncounterSample, sample: &EncounterSample) -> bool {
         let limits = &self.t.score;
@@ -192,7 +212,9 @@ impl Trace<'_> {
         } else {
             sample.range() <= limits.stage_3_lengths * self.length
         };
-        stage_3 || sample.meets_in <= self.t.monitor.manoeuvre
+        stage_3
+            || sample.time >= self.excused_from
+            || sample.meets_in <= self.factor * self.t.monitor.manoeuvre
     }
 
     /// `G(the hulls are apart)`.
@@ -211,7 +233,7 @@ impl Trace<'_> {
     /// within the time to manoeuvre if both hold course and speed.
     fn leaves_extremis(&self) -> MonitorResult {
         // negated on purpose: what is not known to be later is within
-        let within = |s: &&EncounterSample| !(s.meets_in > self.t.monitor.manoeuvre);
+        let within = |s: &&EncounterSample| !(s.meets_in > self.factor * self.t.monitor.manoeuvre);
         let in_extremis = self.samples.iter().filter(within);
         let worst = in_extremis
             .map(|s| (s.meets_in, s.time))
@@ -252,19 +274,42 @@ impl Trace<'_> {
     }
 }
 
-/// Results of every monitor over one encounter. O(samples).
-pub fn monitors(
-    encounter: &EncounterSamples,
-    roles: &[RoleInterval],
-    t: &Thresholds,
-) -> [MonitorResult; 6] {
-    let trace = Trace {
+fn trace<'a>(
+    encounter: &'a EncounterSamples,
+    roles: &'a [RoleInterval],
+    excused_from: f64,
+    t: &'a Thresholds,
+) -> Trace<'a> {
+    Trace {
         samples: encounter.samples(),
         roles,
         t,
+        factor: t.time_factor(encounter.own_length()),
+        excused_from,
         length: encounter.length(),
         ordered_speed: encounter.ordered_speed(),
-    };
+    }
+}
+
+/// First time at which own ship need not hold its course because of this target; infinite if that
+/// never is.
+pub(super) fn frees_at(
+    encounter: &EncounterSamples,
+    roles: &[RoleInterval],
+    t: &Thresholds,
+) -> f64 {
+    trace(encounter, roles, f64::INFINITY, t).frees_at()
+}
+
+/// Results of every monitor over one encounter. `excused_from` as in
+/// [`ComplianceReport::of_all`](super::ComplianceReport::of_all). O(samples).
+pub fn monitors(
+    encounter: &EncounterSamples,
+    roles: &[RoleInterval],
+    excused_from: f64,
+    t: &Thresholds,
+) -> [MonitorResult; 6] {
+    let trace = trace(encounter, roles, excused_from, t);
     [
         trace.apart(),
         trace.leaves_extremis(),

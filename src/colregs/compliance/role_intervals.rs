@@ -21,7 +21,7 @@ fn at_risk(sample: &EncounterSample, encounter: &EncounterSamples, t: &Threshold
     let ahead = sample.ahead();
     sample.opening() < 0.0
         && ahead.time >= 0.0
-        && ahead.time <= t.risk.time_of(encounter.own_length())
+        && ahead.time <= t.risk_time(encounter.own_length())
         && ahead.distance <= t.risk.lengths * encounter.length()
 }
 

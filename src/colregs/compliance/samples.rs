@@ -475,7 +475,8 @@ mod tests {
                 domain: DomainKind::Hull,
             };
             let whole = EncounterSamples::along(&own, hull, 6.0, &target);
-            let found = ComplianceReport::along(&track, &target, standard());
+            let samples = ComplianceReport::samples(&track, &target, standard());
+            let found = ComplianceReport::judge(&samples, standard());
             assert_eq!(found, ComplianceReport::judge(&whole, standard()));
             match track.encounter(&target, 12e3).samples().len() {
                 1 => few += 1,

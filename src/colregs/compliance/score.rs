@@ -3,6 +3,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+#[cfg(doc)]
+use super::ComplianceReport;
 use super::role_intervals::RoleInterval;
 use super::samples::{
     EncounterSample, EncounterSamples, alterations, speed_changed, speed_changes,
@@ -70,6 +72,8 @@ struct Act<'a> {
     length: f64,
     own_length: f64,
     ordered_speed: f64,
+    /// Seconds from which on an alteration for another target excuses the ship that stands on.
+    excused_from: f64,
     /// At least one.
     samples: &'a [EncounterSample],
     /// From the closest approach on.
@@ -150,7 +154,7 @@ impl Act<'_> {
 
     /// The sample from which on waiting is delay: the first that is not in ample time.
     fn no_longer_ample(&self) -> &EncounterSample {
-        let ample = self.t.score.ample_time_of(self.own_length);
+        let ample = self.t.ample_time(self.own_length);
         let due = |s: &&EncounterSample| !(self.undisturbed_tcpa(s) >= ample);
         self.samples.iter().find(due).unwrap_or(self.closest())
     }
@@ -387,6 +391,7 @@ impl Act<'_> {
             }
             Role::StandOn | Role::Overtaken => {
                 let must_hold = |sample: &&EncounterSample| match self.role {
+                    _ if sample.time >= self.excused_from => false,
                     Role::Overtaken => {
                         self.undisturbed_tcpa(self.first()) - (sample.time - self.first().time)
                             > s.overtaken_lengths * self.length / self.ordered_speed
@@ -447,10 +452,11 @@ pub(super) struct Judged {
 
 /// Scores, rule violations and the manoeuvre of own ship in a role, from its beginning to the
 /// closest approach of the hulls; crossing ahead is also judged after it. Without a role, the
-/// safety alone. O(samples).
+/// safety alone. `excused_from` as in [`ComplianceReport::of_all`]. O(samples).
 pub(super) fn scores(
     encounter: &EncounterSamples,
     interval: Option<&RoleInterval>,
+    excused_from: f64,
     t: &Thresholds,
 ) -> Judged {
     let all = encounter.samples();
@@ -470,6 +476,7 @@ pub(super) fn scores(
         length: encounter.length(),
         own_length: encounter.own_length(),
         ordered_speed: encounter.ordered_speed(),
+        excused_from,
         samples: &all[begin..=nearest],
         after: &all[nearest..],
         target_length: encounter.target_length(),

@@ -131,9 +131,8 @@ impl Entry {
         let own = &scenario.own_ship;
         let samples =
             ships.map(|ship| EncounterSamples::along(trajectory, own.hull, own.speed, ship));
-        samples
-            .map(|samples| ComplianceReport::judge(&samples, thresholds))
-            .collect()
+        let samples: Vec<_> = samples.collect();
+        ComplianceReport::of_all(samples.iter(), thresholds)
     }
 
     /// Position at a time in metres; after the end, the last position.

@@ -10,7 +10,7 @@
 //! first; the best of those that are clear of every set until arrival is improved by a pattern
 //! search. There are few turns and few changes of speed by construction.
 
-use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Encountered, Role, ScoreLimits};
+use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Encountered, Role, ScoreLimits, Thresholds};
 use crate::frame::{Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
 use crate::obstacle::{PolytopeObstacle, contact};
@@ -47,6 +47,9 @@ const LEAVE: [f64; 3] = [1.0, 0.6, 0.2];
 
 /// Seconds. The first alteration of a ship that meets a risk follows at once.
 const REACT_S: f64 = 20.0;
+
+/// Seconds in which a harbour vessel sails its turning radius.
+const NORMAL_TURN_S: f64 = 20.0;
 
 /// Seconds of the least segment.
 const LEAST_S: f64 = 3.0;
@@ -146,6 +149,8 @@ pub(crate) struct Manoeuvres<'s, 'a> {
     clock: Clock,
     /// True where no target is passed nearer than a length, Rule 8(d).
     keeps_a_length: bool,
+    /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
+    unit: f64,
 }
 
 impl<'s, 'a> Manoeuvres<'s, 'a> {
@@ -155,6 +160,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         clock: Clock,
     ) -> Self {
         let own = &context.problem.own.hull;
+        let radius = context.problem.own.turning_radius;
         let passing = context.problem.encountered.iter().map(|encountered| {
             let (hull, ship) = (&encountered.hull, &encountered.ship);
             let around = own.half_diagonal() + own.length.max(hull.length);
@@ -172,6 +178,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             passing: passing.collect(),
             clock,
             keeps_a_length: true,
+            unit: (radius / ManoeuvreSpeeds::of(context.problem).normal / NORMAL_TURN_S).max(1.0),
         }
     }
 
@@ -203,7 +210,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             self.keeps_a_length = false;
             latest = self.latest_escape(contact);
         }
-        let latest = latest?;
+        let mut latest = latest?;
+        if latest < may && may < contact && self.cheapest(may).is_some() {
+            latest = may;
+        }
         let [near, nearest] = ESCAPE_LENGTHS.map(|lengths| self.comes_within(lengths));
         let wanted = (latest - SPARE_S).min(near).max(may).min(nearest.max(may));
         // it cannot hold on for as long as it must: then not longer than is safe
@@ -253,7 +263,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// Latest time of the first alteration that is in ample time for every target, seconds.
     fn ample(&self) -> f64 {
-        let ample = ScoreLimits::STANDARD.ample_time_of(self.problem().own.hull.length);
+        let ample = Thresholds::STANDARD.ample_time(self.problem().own.hull.length);
         let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
         let latest = self.passing.iter().filter(keeps_clear).map(|p| {
             let e = p.encountered;
@@ -273,7 +283,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 _ => self.comes_within_of(e, limits.stage_3_lengths * length),
             }
         });
-        times.fold(0.0, f64::max)
+        // to act for one target excuses toward the others
+        times.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
     fn length(&self, e: &Encountered) -> f64 {
@@ -340,7 +351,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     continue;
                 }
                 for turn in TURNS.map(|turn| turn * APPARENT_TURN * side.turn_sign()) {
-                    let aside = ASIDE_S.into_iter();
+                    let aside = ASIDE_S.map(|aside| aside * self.unit).into_iter();
                     all.extend(aside.map(|aside| FirstAlteration::Turn { turn, aside, speed }));
                 }
             }
@@ -381,6 +392,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             FirstAlteration::Slow { .. } => &BACK[..1],
         };
         AFTER_S
+            .map(|after| after * self.unit)
             .into_iter()
             .flat_map(|after| angles.iter().map(move |back| (after, *back)))
     }
@@ -431,7 +443,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     if self.clock.is_up() {
                         return best;
                     }
-                    let tried = best.manoeuvre.stepped(parameter, sign * step);
+                    let tried = best.manoeuvre.stepped(parameter, sign * step, self.unit);
                     let Some(mut tried) = tried.filter(|t| *t != best.manoeuvre) else {
                         continue;
                     };
@@ -605,7 +617,7 @@ fn tidy_time(time: f64) -> f64 {
 
 impl Manoeuvre {
     /// One parameter changed by a step; `None` where it has none.
-    fn stepped(&self, parameter: usize, step: f64) -> Option<Self> {
+    fn stepped(&self, parameter: usize, step: f64, unit: f64) -> Option<Self> {
         let mut next = *self;
         match (parameter, &mut next.first) {
             (0, FirstAlteration::Turn { turn, .. }) => {
@@ -613,13 +625,13 @@ impl Manoeuvre {
                 *turn = more * turn.signum();
             }
             (1, FirstAlteration::Turn { aside, .. }) if aside.is_finite() => {
-                *aside = (*aside + 20.0 * step).max(LEAST_S);
+                *aside = (*aside + 20.0 * unit * step).max(LEAST_S);
             }
-            (2, _) => next.after = (next.after + 20.0 * step).max(0.0),
+            (2, _) => next.after = (next.after + 20.0 * unit * step).max(0.0),
             (3, FirstAlteration::Turn { .. }) => {
                 next.back = (next.back + 0.15 * step).clamp(0.1, 1.4);
             }
-            (4, _) => next.leave += 20.0 * step,
+            (4, _) => next.leave += 20.0 * unit * step,
             _ => return None,
         }
         Some(next)
