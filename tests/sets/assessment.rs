@@ -173,58 +173,6 @@ fn the_least_alteration_is_that_of_a_dense_search() {
     changed.assert_above(50);
 }
 
-fn mirrored(obstacle: &Obstacle) -> Obstacle {
-    let flip = |p: &Vector| Vector::new(p.x, -p.y);
-    let polygon = |set: &ConvexPolygon| {
-        let points: Vec<Vector> = set.vertices().iter().map(flip).collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    };
-    let ellipse = |set: &Ellipse| {
-        let q = set.shape();
-        let shape = nalgebra::Matrix2::new(q[(0, 0)], -q[(0, 1)], -q[(1, 0)], q[(1, 1)]);
-        Ellipse::new(flip(&set.center()), shape).expect("a shape")
-    };
-    let map = |set: &ConvexSet| match set {
-        ConvexSet::Polygon(set) => ConvexSet::from(polygon(set)),
-        ConvexSet::Ellipse(set) => ConvexSet::from(ellipse(set)),
-    };
-    let sets = obstacle.sets();
-    let timed = sets.velocities.iter();
-    let timed = timed.map(|set| TimedVelocitySet::new(set.until, map(&set.velocities)));
-    let sets = Uncertainty::new(map(&sets.initial), timed.collect());
-    Obstacle::new(obstacle.name(), sets).expect("increasing")
-}
-
-fn near(a: Option<f64>, b: Option<f64>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => (a - b).abs() < 1e-6,
-        (None, None) => true,
-        _ => false,
-    }
-}
-
-#[test]
-fn a_mirrored_scene_has_the_mirrored_answer() {
-    check(
-        2,
-        300,
-        (vec(approaching(), 1..4), motion()),
-        |(obstacles, motion)| {
-            let other: Vec<_> = obstacles.iter().map(mirrored).collect();
-            let s = situation(motion, &obstacles);
-            let m = OwnSituation {
-                pose: Pose::new(Vector::zeros(), -s.pose.heading),
-                obstacles: &other,
-                ..s
-            };
-            let (here, there) = (least_alteration(&s), least_alteration(&m));
-            assert!(near(here.starboard, there.port), "{here:?} {there:?}");
-            assert!(near(here.port, there.starboard), "{here:?} {there:?}");
-            assert!(near(here.speed, there.speed), "{here:?} {there:?}");
-        },
-    );
-}
-
 #[test]
 fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
     let around = |center: Vector| {

@@ -93,8 +93,7 @@ fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
         }
         // it grows from any of its sections as from its first
         Obstacle::Ellipsoid(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
-            .velocity_obstacle(own, ahead)
-            .outer_half_planes(limit, TOLERANCE * limit),
+            .outer_velocities_within(own, ahead, 0.0),
         Obstacle::Slabs(o) => {
             let velocities = o.sets().outer_velocities_after(time);
             from(set, time, velocities).velocity_obstacle(own, ahead)
