@@ -10,11 +10,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{EllipsoidObstacle, LandObstacle, Obstacle};
-use searoom::planner::optimal_control::{
-    Controls, KeepOut, Profile, Settings, Task, Weights, profile_along,
-};
-use searoom::planner::{ControlSettings, Objective, Problem, SearchKind};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle};
+use searoom::planner::optimal_control::{Controls, KeepOut, Profile, Task, Weights, profile_along};
+use searoom::planner::{ControlSettings, Problem};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{CyberShip2, Hull, Manoeuvring, OwnShip, StateVector, VesselKind};
 
@@ -129,18 +127,9 @@ pub fn problem<'a>(
     obstacles: &'a [Obstacle],
 ) -> Problem<'a> {
     Problem {
-        own,
-        desired,
-        alternatives: &[],
-        objective: Objective::SpaceTimeError,
-        obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon: DURATION,
         time_weight: 0.05,
-        search: SearchKind::AStar,
         deadline: Duration::from_secs(600),
-        first_turn: None,
-        encountered: &[],
+        ..Problem::new(own, desired, obstacles, DURATION)
     }
 }
 
@@ -171,9 +160,4 @@ pub fn wandering<V: Manoeuvring>(task: &Task<V>, rng: &mut ChaCha8Rng) -> Profil
         })
         .collect();
     profile_along(task, &places)
-}
-
-/// Of a first solve.
-pub fn settings() -> Settings {
-    Settings::default()
 }

@@ -6,8 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
-use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use searoom::scenario::{Compliance, Scenario};
+use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
@@ -240,20 +240,13 @@ pub fn scene(seed: u64) -> Scenario {
             safety_margin: rng.random_range(30.0..150.0),
         },
         desired,
-        alternatives: Vec::new(),
         targets,
-        planner: DEFAULT_PLANNER,
-        objective: Objective::SpaceTimeError,
-        settings: PlannerSettings::at_length(30.0),
-        search: SearchKind::AStar,
         compliance: Compliance::None,
-        arrival_hold: 60.0,
         time_weight: speed * speed,
-        max_risk: 0.0,
         deadline: 600.0,
-        thresholds: None,
-        earth: None,
-        land: None,
+        ..random_traffic(0, 0, Placement::Origin)
+            .expect("drawn")
+            .scenario
     }
 }
 
@@ -269,33 +262,8 @@ pub fn apart(a: Option<f64>, b: Option<f64>) -> f64 {
 /// Relative difference below which costs are equal.
 pub const EQUAL: f64 = 1e-6;
 
-/// Change that enlarges the sets.
-type Change = fn(&mut Scenario);
-const LARGER: [(&str, Change); 4] = [
-    ("margin + 20 m", |s| s.own_ship.safety_margin += 20.0),
-    ("speed spread + 0.1 m/s", |s| {
-        tracks(s).for_each(|ship| ship.speed_spread += 0.1);
-    }),
-    ("course spread + 0.02 rad", |s| {
-        tracks(s).for_each(|ship| ship.course_spread += 0.02);
-    }),
-    ("position deviation + 4 m", |s| {
-        tracks(s).for_each(|ship| ship.position_std += 4.0);
-    }),
-];
-
-fn tracks(scene: &mut Scenario) -> impl Iterator<Item = &mut ShipTrack> {
-    scene
-        .targets
-        .iter_mut()
-        .filter_map(|t| match &mut t.motion {
-            Motion::Ship(ship) => Some(ship),
-            _ => None,
-        })
-}
-
-/// Prints two tables: invariance of plans to translation, rotation, reflection and scaling, and how
-/// often larger sets reduce the cost. Requires every placed scene to have the plan's cost.
+/// Prints a table: invariance of plans to translation, rotation, reflection and scaling. Requires
+/// every placed scene to have the plan's cost.
 pub fn run(seeds: Seeds) -> Report {
     let mut report = Report::default();
     let scenes: Vec<(u64, Scenario, Option<f64>)> = seeds
@@ -332,28 +300,4 @@ pub fn run(seeds: Seeds) -> Report {
         format!("{conflicts} scenes have a conflict")
     });
     report
-}
-
-/// Prints how often larger sets reduce the cost; the planner makes no promise here.
-pub fn print_larger_sets(seeds: Seeds) {
-    println!("\n| larger sets | comparisons | cheaper | with one target | J over J, least |");
-    println!("| --- | --- | --- | --- | --- |");
-    for (name, change) in LARGER {
-        let compared: Vec<(bool, f64)> = seeds
-            .clone()
-            .into_par_iter()
-            .filter_map(|seed| {
-                let mut larger = scene(seed);
-                change(&mut larger);
-                let alone = larger.targets.len() == 1;
-                let (before, after) = (cost(scene(seed))?, cost(larger)?);
-                Some((alone, (after + LEAST_COST) / (before + LEAST_COST)))
-            })
-            .collect();
-        let cheaper: Vec<_> = compared.iter().filter(|c| c.1 < 1.0 - EQUAL).collect();
-        let least = compared.iter().map(|c| c.1).fold(f64::INFINITY, f64::min);
-        let alone = cheaper.iter().filter(|c| c.0).count();
-        let (all, cheaper) = (compared.len(), cheaper.len());
-        println!("| {name} | {all} | {cheaper} | {alone} | {least:.4} |");
-    }
 }

@@ -127,7 +127,7 @@ fn a_controller_goes_on_warm_and_stays_clear() {
     let keep_outs = scenes::figure_9();
     let mut task = scenes::task(&desired, &keep_outs, 50);
     let guess = best(&task).expect("a plan").profile;
-    let mut horizon = RecedingHorizon::new(&task, &guess, scenes::settings(), &|| true);
+    let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let mut steps = 0;
     for k in 0..25 {

@@ -6,7 +6,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::Vector;
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use searoom::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::trajectory::DesiredTrajectory;
 
@@ -191,18 +191,9 @@ fn risk_is_weighed_against_length() {
     let own = own(&path, 5.0);
     let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
     let problem = Problem {
-        first_turn: None,
-        encountered: &[],
-        land_obstacle: LandObstacle::none(),
-        own: &own,
-        desired: &desired,
         alternatives: &detour,
         objective: Objective::Length,
-        obstacles: &obstacles,
-        horizon: 90.0,
-        time_weight: 25.0,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(60),
+        ..Problem::new(&own, &desired, &obstacles, 90.0)
     };
     let at = |risk: f64| {
         let level = [obstacles[0].at_risk(risk)];

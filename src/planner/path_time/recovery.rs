@@ -196,14 +196,11 @@ fn straightness(desired: &DesiredTrajectory) -> f64 {
 mod tests {
     use super::*;
     use crate::frame::{Pose, direction};
-    use crate::obstacle::LandObstacle;
     use crate::planner::cost::space_time_error;
-    use crate::planner::{Objective, SearchKind};
+    use crate::planner::fixtures::own_ship;
     use crate::trajectory::Segment;
-    use crate::vessel::{Hull, OwnShip};
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
-    use std::time::Duration;
 
     fn path(points: &[(f64, f64)]) -> DesiredTrajectory {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
@@ -259,31 +256,11 @@ mod tests {
                 .collect();
             let desired = DesiredTrajectory::new(&points, &speeds).expect("valid");
             let max_speed = rng.random_range(3.0..8.0);
-            let own = OwnShip {
-                pose: Pose::new(points[0], 0.0),
-                speed: max_speed,
-                hull: Hull {
-                    length: 10.0,
-                    beam: 3.0,
-                },
-                turning_radius: 50.0,
-                speeds: vec![max_speed],
-                safety_margin: 5.0,
-            };
+            let own = own_ship(&[max_speed]);
             let q = [25.0, 1.0, 400.0][case % 3];
             let problem = Problem {
-                own: &own,
-                desired: &desired,
-                alternatives: &[],
-                objective: Objective::SpaceTimeError,
-                obstacles: &[],
-                land_obstacle: LandObstacle::none(),
-                horizon: 1e4,
                 time_weight: q,
-                search: SearchKind::AStar,
-                deadline: Duration::from_secs(1),
-                first_turn: None,
-                encountered: &[],
+                ..Problem::new(&own, &desired, &[], 1e4)
             };
             let recovery = Recovery::new(&problem).expect("an open path");
             let length = desired.length();
