@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
 use searoom::obstacle::{EllipsoidObstacle, Obstacle};
-use searoom::planner::optimal_control::{Controls, KeepOut, Profile, Task, Weights, profile_along};
+use searoom::planner::optimal_control::{Controls, KeepOut, Profile, Task, profile_along};
 use searoom::planner::{ControlSettings, Problem};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{CyberShip2, Hull, Manoeuvring, OwnShip, StateVector, VesselKind};
@@ -89,13 +89,7 @@ pub fn task<'a>(
     let settings = ControlSettings::of(VesselKind::CyberShip2);
     Task {
         vessel: &CyberShip2::SMOOTH,
-        controls: Controls {
-            force_limits: settings.force_limits,
-            weights: Weights {
-                state: settings.state_weights,
-                force: settings.force_weights,
-            },
-        },
+        controls: Controls::from(&settings),
         desired,
         keep_outs,
         first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),

@@ -33,64 +33,43 @@ pub struct Placing {
     pub time: f64,
 }
 
-const AS_IT_IS: Placing = Placing {
-    name: "as it is",
-    moved: Vector::new(0.0, 0.0),
-    turned: 0.0,
-    mirrored: false,
-    length: 1.0,
-    time: 1.0,
-};
+const fn placing(name: &'static str, moved: [f64; 2], turned: f64) -> Placing {
+    Placing {
+        name,
+        moved: Vector::new(moved[0], moved[1]),
+        turned,
+        mirrored: false,
+        length: 1.0,
+        time: 1.0,
+    }
+}
+
+const fn sized(name: &'static str, length: f64, time: f64) -> Placing {
+    Placing {
+        length,
+        time,
+        ..placing(name, [0.0; 2], 0.0)
+    }
+}
 
 /// Placements that must not change a plan.
 pub const PLACINGS: [Placing; 9] = [
+    placing("moved by 1.6 km", [1234.5, -987.25], 0.0),
+    placing("moved to UTM coordinates", [569_000.0, 7_034_000.0], 0.0),
+    placing("turned by 90°", [0.0; 2], std::f64::consts::FRAC_PI_2),
+    placing("turned by 142°", [0.0; 2], 2.48),
     Placing {
-        name: "moved by 1.6 km",
-        moved: Vector::new(1234.5, -987.25),
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "moved to UTM coordinates",
-        moved: Vector::new(569_000.0, 7_034_000.0),
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "turned by 90°",
-        turned: std::f64::consts::FRAC_PI_2,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "turned by 142°",
-        turned: 2.48,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "mirrored",
         mirrored: true,
-        ..AS_IT_IS
+        ..placing("mirrored", [0.0; 2], 0.0)
     },
+    sized("three times as large", 3.0, 1.0),
+    sized("a seventh as large", 1.0 / 7.0, 1.0),
+    sized("2.3 times as slow", 1.0, 2.3),
     Placing {
-        name: "three times as large",
-        length: 3.0,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "a seventh as large",
-        length: 1.0 / 7.0,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "2.3 times as slow",
-        time: 2.3,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "all of it",
-        moved: Vector::new(-431_000.0, 6_210_000.0),
-        turned: -0.7,
         mirrored: true,
         length: 1.7,
         time: 0.6,
+        ..placing("all of it", [-431_000.0, 6_210_000.0], -0.7)
     },
 ];
 

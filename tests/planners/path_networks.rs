@@ -10,12 +10,6 @@ use searoom::trajectory::Trajectory;
 use searoom::verification::verify;
 use serde_json::{Value, json};
 
-fn run(text: &str) -> Result<Run, String> {
-    let mut scenario = Scenario::parse(text).map_err(|faults| format!("unreadable: {faults:?}"))?;
-    scenario.planner = &PathTimePlanner;
-    Ok(pipeline::run(scenario))
-}
-
 fn document(run: &Run) -> Value {
     serde_json::to_value(PlanDocument::of(run)).expect("JSON")
 }
@@ -29,21 +23,17 @@ fn faults(document: &Value) -> String {
     }
 }
 
-fn verified(text: &str) -> Result<Run, String> {
-    let run = run(text)?;
-    if run.planned.outcome.plan().is_none() {
-        return Ok(run);
+/// The run of a text, right by its own judgement and by that of its document where it has a plan.
+fn verified(text: &str) -> Run {
+    let mut scenario = Scenario::parse(text).expect("readable");
+    scenario.planner = &PathTimePlanner;
+    let run = pipeline::run(scenario);
+    if run.planned.outcome.plan().is_some() {
+        let judged = run.evaluation.as_ref().expect("every plan is judged");
+        assert!(judged.verified(), "{:?}", judged.violations);
+        assert_eq!(faults(&document(&run)), "");
     }
-    let judged = run.evaluation.as_ref().expect("every plan is judged");
-    if !judged.verified() {
-        return Err(format!("by itself: {:?}", judged.violations));
-    }
-    let faults = faults(&document(&run));
-    if faults.is_empty() {
-        Ok(run)
-    } else {
-        Err(format!("by its document: {faults}"))
-    }
+    run
 }
 
 fn shipped(name: &str) -> String {
@@ -59,7 +49,7 @@ fn trajectory(run: &Run) -> &Trajectory {
 /// arrives at the end.
 #[test]
 fn out_of_a_set_the_plan_goes_on_to_the_end() {
-    let run = verified(include_str!("../faults/exit3-path-time-stops-short.toml")).expect("sound");
+    let run = verified(include_str!("../faults/exit3-path-time-stops-short.toml"));
     assert_eq!(run.level, RelaxationLevel::Inside);
     let plan = run.planned.outcome.plan().expect("a plan");
     let off = (plan.trajectory.end().position - run.scenario.desired.end()).norm();
@@ -72,18 +62,17 @@ fn out_of_a_set_the_plan_goes_on_to_the_end() {
 /// only by sailing the alternative.
 #[test]
 fn one_pass_of_a_place_is_not_another() {
-    verified(include_str!("../faults/exit3-path-time-place-twice.toml")).expect("sound");
+    verified(include_str!("../faults/exit3-path-time-place-twice.toml"));
     verified(include_str!(
         "../faults/exit3-path-time-millimetre-leg.toml"
-    ))
-    .expect("sound");
+    ));
 }
 
 /// Who waits at the start on another course than that of the first leg turns when it moves off.
 #[test]
 fn a_wait_at_the_start_is_not_turned() {
     let text = include_str!("../faults/exit3-path-time-wait-turned.toml");
-    let run = verified(text).expect("sound");
+    let run = verified(text);
     let first = trajectory(&run).segments()[0];
     assert_eq!(
         (first.speed, first.start.heading),
@@ -96,14 +85,14 @@ fn a_wait_at_the_start_is_not_turned() {
 #[test]
 fn the_error_on_an_alternative_is_that_against_the_mission() {
     let text = include_str!("../faults/verify-rejects-path-time-alternative.toml");
-    let run = verified(text).expect("sound");
+    let run = verified(text);
     assert!((trajectory(&run).length() - run.scenario.desired.length()).abs() < 1e-6);
     let cost = |run: &Run| run.planned.outcome.plan().expect("a plan").cost;
     assert!(cost(&run) < 1e-9, "{}", cost(&run));
     // with a wreck on the last leg of the mission alone the alternative is taken, at its price
     let wreck = "\n[[targets]]\nname = \"wreck\"\nposition = { east_m = 100.0, north_m = 75.0 }\ncourse_deg = 0.0\n\
                  speed_mps = 0.0\nlength_m = 10.0\nbeam_m = 6.0\n";
-    let run = verified(&format!("{text}{wreck}")).expect("sound");
+    let run = verified(&format!("{text}{wreck}"));
     let error = run.evaluation.as_ref().expect("judged").space_time_error;
     assert!(run.relaxations.is_empty() && error > 1000.0, "{error}");
     assert!((cost(&run) - error).abs() < 1e-6 * error);
@@ -116,7 +105,7 @@ fn the_error_on_an_alternative_is_that_against_the_mission() {
 /// to the horizon, and says that it does not arrive.
 #[test]
 fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
-    let run = verified(&shipped("scenarios/colregs/overtaking.toml")).expect("sound");
+    let run = verified(&shipped("scenarios/colregs/overtaking.toml"));
     assert_eq!(run.level, RelaxationLevel::Waiting);
     let judged = run.evaluation.as_ref().expect("judged");
     assert!(
@@ -213,7 +202,7 @@ fn before_a_ship_over_the_end_own_ship_stops() {
              [[targets]]\nname = \"anchored\"\nposition = {{ east_m = 600.0, north_m = 0.0 }}\ncourse_deg = 0.0\nspeed_mps = 0.0\n\
              length_m = 40.0\nbeam_m = 8.0\n"
         );
-        verified(&text).expect("sound")
+        verified(&text)
     };
     for horizon in [130.0, 1000.0] {
         let run = anchored(horizon);

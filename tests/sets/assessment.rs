@@ -126,6 +126,19 @@ fn holds(
     }
 }
 
+/// Checks the turns to both sides by `steps` samples of a half turn each.
+fn turns_hold(s: &OwnSituation, found: &Alteration, steps: usize, turned: &Counter) {
+    let step = PI / steps as f64;
+    for (side, sign, exact) in [
+        ("starboard", -1.0, found.starboard),
+        ("port", 1.0, found.port),
+    ] {
+        let free = |turn: f64| is_free(s, s.pose.heading + sign * turn, s.speed);
+        holds(exact, sampled(step, PI, free), step, free, side);
+        turned.add(exact.is_some_and(|t| t > 0.0));
+    }
+}
+
 #[test]
 fn the_least_alteration_is_that_of_a_dense_search() {
     let [turned, none, changed] = [(); 3].map(|()| Counter::default());
@@ -136,16 +149,8 @@ fn the_least_alteration_is_that_of_a_dense_search() {
         |(obstacles, motion)| {
             let s = situation(motion, &obstacles);
             let found = least_alteration(&s);
-            let step = PI / STEPS as f64;
-            for (side, sign, exact) in [
-                ("starboard", -1.0, found.starboard),
-                ("port", 1.0, found.port),
-            ] {
-                let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-                holds(exact, sampled(step, PI, free), step, free, side);
-                turned.add(exact.is_some_and(|t| t > 0.0));
-                none.add(exact.is_none());
-            }
+            turns_hold(&s, &found, STEPS, &turned);
+            none.add(found.starboard.is_none());
             let step = s.max_speed / STEPS as f64;
             let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
             let slower = |change: f64| free(-change);
@@ -269,18 +274,7 @@ fn degenerate_sets_are_left_too() {
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);
         }
         let found = least_alteration(&s);
-        let step = PI / 500.0;
-        for (sign, exact) in [(-1.0, found.starboard), (1.0, found.port)] {
-            let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-            holds(
-                exact,
-                sampled(step, PI, free),
-                step,
-                free,
-                &sign.to_string(),
-            );
-            turned.add(exact.is_some_and(|t| t > 0.0));
-        }
+        turns_hold(&s, &found, 500, &turned);
         if let Some(change) = found.speed {
             assert!(is_free(&s, s.pose.heading, s.speed + change), "{change}");
         }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::ConvexPolygon;
+use crate::geometry::fixtures::random_polygon;
 use rand::{Rng, SeedableRng};
 
 #[test]
@@ -7,15 +8,11 @@ fn the_projection_is_membership_along_the_path() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(51);
     let mut met = 0;
     for _ in 0..300 {
-        let mut set = |n: usize, scale: f64| {
-            let points: Vec<Vector> = (0..n)
-                .map(|_| {
-                    Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale
-                })
-                .collect();
-            ConvexPolygon::hull(&points).expect("finite")
-        };
-        let o = PolytopeObstacle::new("x", set(5, 80.0), set(4, 3.0));
+        let o = PolytopeObstacle::new(
+            "x",
+            random_polygon(&mut rng, 27.0),
+            random_polygon(&mut rng, 1.0),
+        );
         let start = Vector::new(
             rng.random_range(-200.0..0.0),
             rng.random_range(-100.0..100.0),
@@ -46,19 +43,15 @@ fn the_projection_is_membership_along_the_path() {
     assert!(met > 100);
 }
 
-fn random_set(rng: &mut rand_chacha::ChaCha8Rng, n: usize, scale: f64) -> ConvexPolygon {
-    let points: Vec<Vector> = (0..n)
-        .map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale)
-        .collect();
-    ConvexPolygon::hull(&points).expect("finite")
-}
-
 #[test]
 fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(52);
     let (mut met, mut most) = (0, 0);
     for _ in 0..300 {
-        let (initial, velocity) = (random_set(&mut rng, 5, 80.0), random_set(&mut rng, 4, 3.0));
+        let (initial, velocity) = (
+            random_polygon(&mut rng, 27.0),
+            random_polygon(&mut rng, 1.0),
+        );
         let o = EllipsoidObstacle::outer_of(&PolytopeObstacle::new("x", initial, velocity));
         let bend = Vector::new(
             rng.random_range(-150.0..50.0),
@@ -108,8 +101,8 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
     for case in 0..2000 {
         let o = PolytopeObstacle::new(
             "x",
-            random_set(&mut rng, 5, 60.0),
-            random_set(&mut rng, 4, 2.0),
+            random_polygon(&mut rng, 20.0),
+            random_polygon(&mut rng, 0.7),
         );
         let start = Vector::new(rng.random_range(-200.0..0.0), rng.random_range(-60.0..60.0));
         let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
