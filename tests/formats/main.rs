@@ -273,9 +273,7 @@ fn one_mistake_in_a_dnv_file_is_one_fault_with_its_place() {
 #[test]
 fn every_fault_of_a_file_is_named_at_once() {
     let mut document = dnv_01();
-    *document
-        .pointer_mut("/ownShip/static/pathType")
-        .expect("there") = json!("bezier");
+    document["ownShip"]["static"]["pathType"] = json!("bezier");
     *document
         .pointer_mut("/ownShip/waypoints/1/leg/sog")
         .expect("there") = json!(-1);
