@@ -29,7 +29,7 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Campaign {
-    /// Encounters with one target, a quarter of each kind
+    /// Encounters with one target, a fifth of each kind
     Encounters(Scenes<10_000>),
     /// Scenes with 2, 4 and 10 targets, a third of each
     Traffic(Scenes<3_000>),
@@ -96,9 +96,9 @@ impl<const COUNT: u64> Scenes<COUNT> {
 
 fn run(campaign: Campaign) -> Report {
     match campaign {
-        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(4)),
+        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(5)),
         Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
-        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(4)),
+        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(5)),
         Campaign::Compliance { scenes, far } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             compliance::run(scenes.of_each(5), &meeting)
