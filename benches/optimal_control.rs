@@ -18,7 +18,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::planner::optimal_control::solver::{Iterate, Workspace, solve};
 use searoom::planner::optimal_control::{
-    KeepOut, Measured, RecedingHorizon, SolverStatus, StartAttempt, attempt, family,
+    KeepOut, Measured, RecedingHorizon, Settings, SolverStatus, StartAttempt, attempt, family,
 };
 use searoom::vessel::StateVector;
 
@@ -30,7 +30,7 @@ fn best(keep_outs: &[KeepOut], intervals: usize) -> (Option<StartAttempt>, Vec<f
     let mut best: Option<StartAttempt> = None;
     for (_, guess) in family(&task) {
         let begun = Instant::now();
-        let found = attempt(&task, &guess, &scenes::settings(), &|| true);
+        let found = attempt(&task, &guess, &Settings::default(), &|| true);
         times.push(begun.elapsed().as_secs_f64() * 1e3);
         let better = best.as_ref().is_none_or(|b| found.objective < b.objective);
         if found.is_feasible() && better {
@@ -53,7 +53,7 @@ fn solves(c: &mut Criterion) {
         c.bench_function(&format!("one solve, N = {intervals}, 3 ellipsoids"), |b| {
             b.iter(|| {
                 let mut at = cold.clone();
-                let report = solve(&problem, &mut at, &mut work, &scenes::settings(), &|| true);
+                let report = solve(&problem, &mut at, &mut work, &Settings::default(), &|| true);
                 assert_eq!(report.status, SolverStatus::Solved);
                 report.objective
             });
@@ -62,13 +62,13 @@ fn solves(c: &mut Criterion) {
             &format!("clear at all times, N = {intervals}, 3 ellipsoids"),
             |b| {
                 b.iter(|| {
-                    let found = attempt(&task, black_box(&guess), &scenes::settings(), &|| true);
+                    let found = attempt(&task, black_box(&guess), &Settings::default(), &|| true);
                     assert!(found.is_feasible());
                     found.objective
                 });
             },
         );
-        let start = RecedingHorizon::new(&task, &guess, scenes::settings(), &|| true);
+        let start = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
         assert!(start.plan().is_feasible());
         let off = StateVector::new(0.03, -0.03, 0.02, 0.01, -0.01, 0.005);
         let state = start.plan().profile.states[1] + off;
@@ -108,7 +108,7 @@ fn random(_: &mut Criterion) {
             let found = found.expect("every scene has a plan");
             let task = scenes::task(&desired, &keep_outs, 50);
             let mut horizon =
-                RecedingHorizon::new(&task, &found.profile, scenes::settings(), &|| true);
+                RecedingHorizon::new(&task, &found.profile, Settings::default(), &|| true);
             let noise = StateVector::new(0.03, 0.03, 0.02, 0.01, 0.01, 0.005);
             let off = noise.map(|size| size * rng.random_range(-1.0..1.0));
             let measured = Measured {
@@ -146,7 +146,7 @@ fn random(_: &mut Criterion) {
             attempt(
                 &task,
                 &scenes::wandering(&task, &mut rng),
-                &scenes::settings(),
+                &Settings::default(),
                 &|| true,
             )
         })

@@ -1,13 +1,12 @@
 //! The path-time planner over targets and legs. Every bench asserts the answer, then times it.
 
 use std::hint::black_box;
-use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, outer_disc};
-use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use searoom::planner::{Objective, Planned, Problem, SearchKind, path_time};
+use searoom::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use searoom::planner::{Objective, Planned, Problem, path_time};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
@@ -79,18 +78,8 @@ fn scene(targets: usize, legs: usize) -> Scene {
 
 fn problem(scene: &Scene, objective: Objective) -> Problem<'_> {
     Problem {
-        own: &scene.own,
-        desired: &scene.desired,
-        alternatives: &[],
         objective,
-        obstacles: &scene.obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon: scene.horizon,
-        time_weight: SPEED * SPEED,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(60),
-        first_turn: None,
-        encountered: &[],
+        ..Problem::new(&scene.own, &scene.desired, &scene.obstacles, scene.horizon)
     }
 }
 

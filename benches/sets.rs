@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
-use searoom::frame::{Pose, Vector, direction, heading_of};
+use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use searoom::obstacle::contact::line_contact;
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
@@ -67,12 +67,9 @@ fn membership(criterion: &mut Criterion) {
     }
     let o = ellipsoid();
     let x = Vector::new(60.0, 5.0);
-    assert!(o.contains(x, 60.0) && o.sum_contains(x, 60.0));
+    assert!(o.contains(x, 60.0));
     criterion.bench_function("membership/ellipsoid", |b| {
         b.iter(|| o.contains(black_box(x), black_box(60.0)))
-    });
-    criterion.bench_function("membership/sum of ellipses", |b| {
-        b.iter(|| o.sum_contains(black_box(x), black_box(60.0)))
     });
 }
 
@@ -196,35 +193,14 @@ fn velocity_obstacle(criterion: &mut Criterion) {
     }
 }
 
-/// As a region: its sides when it is made, its support in any direction, membership, and the
-/// half-planes of a picture.
+/// The tangents of a picture.
 fn ellipsoid_velocity_obstacle(criterion: &mut Criterion) {
     let (x, v) = (Vector::new(-100.0, 300.0), Vector::new(2.2, -4.5));
     let o = ellipsoid();
-    let region = o.velocity_obstacle(x, 200.0);
+    let region = o.outer_velocities_within(x, 200.0, 0.0);
     assert!(region.contains(v) && !region.contains(-v));
-    let n = direction(heading_of(region.sides().expect("from outside")[0].normal) + 0.4);
-    assert!(region.support(n).is_finite());
-    let picture = |o: &EllipsoidObstacle| {
-        let region = o.velocity_obstacle(x, 200.0);
-        region.outer_half_planes(8.0, 4e-3).half_planes().len()
-    };
-    assert!((8..100).contains(&picture(&o)));
     criterion.bench_function("velocity obstacle/ellipsoid/build", |b| {
-        b.iter(|| {
-            black_box(&o)
-                .velocity_obstacle(black_box(x), black_box(200.0))
-                .sides()
-        })
-    });
-    criterion.bench_function("velocity obstacle/ellipsoid/test", |b| {
-        b.iter(|| region.contains(black_box(v)))
-    });
-    criterion.bench_function("velocity obstacle/ellipsoid/support", |b| {
-        b.iter(|| region.support(black_box(n)))
-    });
-    criterion.bench_function("velocity obstacle/ellipsoid/half-planes", |b| {
-        b.iter(|| picture(black_box(&o)))
+        b.iter(|| black_box(&o).outer_velocities_within(black_box(x), 200.0, 0.0))
     });
 }
 

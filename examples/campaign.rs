@@ -29,7 +29,7 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Campaign {
-    /// Encounters with one target, a quarter of each kind
+    /// Encounters with one target, a fifth of each kind
     Encounters(Scenes<10_000>),
     /// Scenes with 2, 4 and 10 targets, a third of each
     Traffic(Scenes<3_000>),
@@ -43,14 +43,14 @@ enum Campaign {
         #[arg(long)]
         far: bool,
     },
-    /// Traffic among land, as many scenes in each of three waters
-    Harbour(Scenes<100>),
-    /// The path-time planner against a fine grid
-    PathTime(Scenes<3_000>),
+    /// Traffic among land, a third of the scenes in each of three waters
+    Harbour(Scenes<300>),
+    /// The path-time planner against a fine grid: least time, error, ellipsoids and alternatives
+    PathTime(Scenes<7_000>),
     /// The optimal-control planner on random scenes and from random starts
     Control {
-        /// Scenes with three ellipsoids, and as many with six
-        #[arg(long, default_value_t = 200)]
+        /// Number of scenes, half of them with three ellipsoids, half with six
+        #[arg(long, default_value_t = 400)]
         count: usize,
         /// Random starts of each shipped scenario
         #[arg(long, default_value_t = 40)]
@@ -60,9 +60,9 @@ enum Campaign {
     Invariance(Scenes<300>),
     /// Numbers of plan documents altered, each alone
     Mutations {
-        /// Numbers of each document; all of them if not given
+        /// Numbers altered in each document; all of them if not given
         #[arg(long, default_value_t = usize::MAX)]
-        count: usize,
+        numbers: usize,
     },
     /// Scenes of every planner and setting, from text to verification
     Wild {
@@ -96,26 +96,22 @@ impl<const COUNT: u64> Scenes<COUNT> {
 
 fn run(campaign: Campaign) -> Report {
     match campaign {
-        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(4)),
+        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(5)),
         Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
-        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(4)),
+        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(5)),
         Campaign::Compliance { scenes, far } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             compliance::run(scenes.of_each(5), &meeting)
         }
-        Campaign::Harbour(scenes) => harbour::run(scenes.of_each(1)),
+        Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
         Campaign::Control { count, starts } => {
-            let mut report = control::run_scenes(count);
+            let mut report = control::run_scenes(count.div_ceil(2));
             report.missed.extend(control::run_starts(starts).missed);
             report
         }
-        Campaign::Invariance(scenes) => {
-            let report = invariance::run(scenes.of_each(1));
-            invariance::print_larger_sets(scenes.of_each(5));
-            report
-        }
-        Campaign::Mutations { count } => mutations::run(count),
+        Campaign::Invariance(scenes) => invariance::run(scenes.of_each(1)),
+        Campaign::Mutations { numbers } => mutations::run(numbers),
         Campaign::Wild {
             scenes,
             planner,

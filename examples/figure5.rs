@@ -6,11 +6,8 @@
 
 mod shared;
 
-use std::time::Duration;
-
 use searoom::frame::{Pose, Vector};
-use searoom::obstacle::LandObstacle;
-use searoom::planner::{Objective, Problem, SearchKind, path_time};
+use searoom::planner::{Objective, Problem, path_time};
 use searoom::report::figure::{
     Figure, FigureError, ProfileLine, Stroke, path_panel, path_time_panel,
 };
@@ -34,18 +31,8 @@ fn main() -> Result<(), FigureError> {
     let desired = DesiredTrajectory::new(&path, &[1.5]).expect("a leg");
     let obstacles = [shared::figure_1()];
     let planned = path_time::plan(&Problem {
-        own: &own,
-        desired: &desired,
-        alternatives: &[],
         objective: Objective::Time,
-        obstacles: &obstacles,
-        land_obstacle: LandObstacle::none(),
-        first_turn: None,
-        encountered: &[],
-        horizon: 200.0,
-        time_weight: 1.0,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(5),
+        ..Problem::new(&own, &desired, &obstacles, 200.0)
     });
     let diagram = planned.path_time.expect("a diagram");
     let line = ProfileLine {

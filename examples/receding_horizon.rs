@@ -8,7 +8,7 @@
 
 use searoom::pipeline;
 use searoom::planner::optimal_control::{
-    Controls, KeepOut, Measured, RecedingHorizon, Settings, Task, Weights, family,
+    KeepOut, Measured, RecedingHorizon, Settings, Task, family,
 };
 use searoom::scenario::Scenario;
 use searoom::trajectory::TrajectoryError;
@@ -30,13 +30,7 @@ fn main() -> Result<(), TrajectoryError> {
     let place = own.pose.position;
     let mut task = Task {
         vessel: &CyberShip2::SMOOTH,
-        controls: Controls {
-            force_limits: control.force_limits,
-            weights: Weights {
-                state: control.state_weights,
-                force: control.force_weights,
-            },
-        },
+        controls: control.into(),
         desired: &scenario.desired,
         keep_outs: &keep_outs,
         first: StateVector::new(place.x, place.y, own.pose.heading, own.speed, 0.0, 0.0),

@@ -19,7 +19,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // bounded reading, values with their positions, faults: for every file format
     ("input", &["frame", "text"]),
     // vectors and their products are in `frame`, which does not depend on ships or time
-    ("geometry", &["tolerance", "frame"]),
+    ("geometry", &["tolerance", "frame", "numerics"]),
     ("trajectory", &["frame", "tolerance", "geometry"]),
     ("vessel", &["frame", "tolerance", "geometry", "trajectory"]),
     ("map", &["frame", "geometry", "tolerance", "input"]),

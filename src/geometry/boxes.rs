@@ -40,10 +40,17 @@ impl Window {
         }
     }
 
+    /// True where two boxes have a point in common. A NaN is near.
+    pub fn meets(&self, other: &Self) -> bool {
+        // negated so that a NaN is near
+        !(self.low.x > other.high.x
+            || self.low.y > other.high.y
+            || self.high.x < other.low.x
+            || self.high.y < other.low.y)
+    }
+
     /// Vertices of the part of a convex set inside the box, counter-clockwise; empty where there is
     /// none.
-    ///
-    /// Clips side by side (Sutherland & Hodgman, doi:10.1145/360767.360802).
     pub fn part_of(&self, set: &ConvexPolygon) -> Vec<Vector> {
         let sides = [
             (Vector::new(1.0, 0.0), self.high.x),
@@ -51,24 +58,29 @@ impl Window {
             (Vector::new(0.0, 1.0), self.high.y),
             (Vector::new(0.0, -1.0), -self.low.y),
         ];
-        let mut kept = set.vertices().to_vec();
-        for (normal, limit) in sides {
-            let beyond = |p: &Vector| normal.dot(p) - limit;
-            let mut next = Vec::with_capacity(kept.len() + 1);
-            for (i, a) in kept.iter().enumerate() {
-                let b = &kept[(i + 1) % kept.len()];
-                let (fa, fb) = (beyond(a), beyond(b));
-                if fa <= 0.0 {
-                    next.push(*a);
-                }
-                if (fa <= 0.0) != (fb <= 0.0) {
-                    next.push(a + (b - a) * (fa / (fa - fb)));
-                }
-            }
-            kept = next;
-        }
-        kept
+        sides
+            .iter()
+            .fold(set.vertices().to_vec(), |kept, (normal, limit)| {
+                clipped(&kept, |p| normal.dot(p) - limit)
+            })
     }
+}
+
+/// The part of a convex polygon where a linear function is not positive; empty where there is none
+/// (Sutherland & Hodgman, doi:10.1145/360767.360802).
+pub(crate) fn clipped(polygon: &[Vector], beyond: impl Fn(&Vector) -> f64) -> Vec<Vector> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, a) in polygon.iter().enumerate() {
+        let b = &polygon[(i + 1) % polygon.len()];
+        let (fa, fb) = (beyond(a), beyond(b));
+        if fa <= 0.0 {
+            kept.push(*a);
+        }
+        if (fa <= 0.0) != (fb <= 0.0) {
+            kept.push(a + (b - a) * (fa / (fa - fb)));
+        }
+    }
+    kept
 }
 
 #[cfg(test)]
@@ -93,13 +105,7 @@ mod tests {
         let index = BoxIndex::new(boxes.iter().copied());
         for _ in 0..200 {
             let w = draw();
-            let meets = |b: &Window| {
-                b.low.x <= w.high.x
-                    && b.low.y <= w.high.y
-                    && w.low.x <= b.high.x
-                    && w.low.y <= b.high.y
-            };
-            let expected: Vec<usize> = (0..boxes.len()).filter(|i| meets(&boxes[*i])).collect();
+            let expected: Vec<usize> = (0..boxes.len()).filter(|i| w.meets(&boxes[*i])).collect();
             let mut found: Vec<usize> = index.meeting(&w).collect();
             found.sort_unstable();
             assert_eq!(found, expected);

@@ -1,6 +1,6 @@
 //! Convex polygons, including points (one vertex) and segments (two).
 
-use super::rounded;
+use super::{Window, rounded};
 use crate::frame::{Vector, cross, to_starboard};
 use crate::tolerance;
 
@@ -34,17 +34,6 @@ const LARGEST: f64 = 1e75;
 ///
 /// The set is defined by its support function `h(n) = max n . p`; membership, half-spaces and sums
 /// follow.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// let square = ConvexPolygon::hull(&[
-///     Vector::new(0.0, 0.0), Vector::new(1.0, 0.0), Vector::new(1.0, 1.0), Vector::new(0.0, 1.0),
-/// ])?;
-/// assert_eq!(square.support(Vector::new(1.0, 0.0)), 1.0);
-/// assert_eq!(square.signed_distance(Vector::new(3.0, 0.5)), 2.0);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexPolygon {
     vertices: Vec<Vector>,
@@ -401,19 +390,7 @@ fn unsigned_zeros(points: &[Vector]) -> Vec<Vector> {
 }
 
 fn extent(points: &[Vector]) -> f64 {
-    let (mut low, mut high) = (
-        Vector::repeat(f64::INFINITY),
-        Vector::repeat(f64::NEG_INFINITY),
-    );
-    for p in points {
-        low = low.inf(p);
-        high = high.sup(p);
-    }
-    if points.is_empty() {
-        0.0
-    } else {
-        (high - low).norm()
-    }
+    Window::around(points).map_or(0.0, |window| (window.high - window.low).norm())
 }
 
 /// True where a polygon is certainly wider than a segment, by the factor [`WIDE`]. O(vertices).

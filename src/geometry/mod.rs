@@ -5,12 +5,14 @@ mod convex;
 mod convex_set;
 mod disc;
 mod ellipse;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod nearness;
 mod parry;
 mod polygon;
 mod simplify;
 
-pub(crate) use boxes::Window;
+pub(crate) use boxes::{Window, clipped};
 pub use convex::{ConvexPolygon, GeometryError};
 pub use convex_set::ConvexSet;
 pub use disc::{DISC_SIDES, outer_disc};

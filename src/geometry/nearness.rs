@@ -1,7 +1,8 @@
 //! The part of a straight path that is near a convex set.
 
 use super::ConvexPolygon;
-use crate::frame::{Vector, cross};
+use crate::frame::Vector;
+use crate::numerics::GoldenSection;
 
 /// A part of a path, as parameters from 0 at its start to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,81 +13,42 @@ pub struct Stretch {
     pub to: f64,
 }
 
-/// The part of the path from `a` to `b` within `distance >= 0` of the set, in closed form; `None`
-/// when there is none. O(vertices).
+/// Steps of the searches: to the last digit of a parameter.
+const STEPS: usize = 70;
+
+/// The part of the path from `a` to `b` within `distance >= 0` of the set; `None` when there is
+/// none. O(vertices).
 ///
-/// The distance from a convex set is convex along a line. So the part is the span of the parts
-/// within the set, within the strip beside each edge and around each vertex.
+/// The distance from a convex set is convex along a line: golden section finds a point within, and
+/// bisection the ends.
 pub fn stretch_near(set: &ConvexPolygon, [a, b]: [Vector; 2], distance: f64) -> Option<Stretch> {
-    let mut span: Option<Stretch> = None;
-    let mut keep = |found: Option<Stretch>| {
-        if let Some(f) = found {
-            span = Some(span.map_or(f, |s| Stretch {
-                from: s.from.min(f.from),
-                to: s.to.max(f.to),
-            }));
+    let gap = |share: f64| set.signed_distance(a + (b - a) * share) - distance;
+    let mut search = GoldenSection::new(0.0, 1.0, gap);
+    for _ in 0..STEPS {
+        if search.left.1 <= 0.0 || search.right.1 <= 0.0 {
+            break;
         }
-    };
-    let step = b - a;
-    for vertex in set.vertices() {
-        keep(within_disc(a - vertex, step, distance));
+        search.shorten(gap);
     }
-    let mut inside = Some(Stretch { from: 0.0, to: 1.0 });
-    for (from, to) in set.edges() {
-        let length = (to - from).norm();
-        let along = (to - from) / length;
-        let beside = |low: f64, high: f64| {
-            let across = clip(cross(along, a - from), cross(along, step), low, high)?;
-            let ahead = clip(along.dot(&(a - from)), along.dot(&step), 0.0, length)?;
-            both(across, ahead)
-        };
-        // the inside is to port
-        keep(beside(-distance, 0.0));
-        let port = clip(
-            cross(along, a - from),
-            cross(along, step),
-            0.0,
-            f64::INFINITY,
-        );
-        inside = inside.zip(port).and_then(|(i, p)| both(i, p));
-    }
-    // points and segments consist of vertices and strips
-    if set.vertices().len() > 2 {
-        keep(inside);
-    }
-    span
-}
-
-/// Where `start + parameter × rate` is between two limits.
-fn clip(start: f64, rate: f64, low: f64, high: f64) -> Option<Stretch> {
-    if rate == 0.0 {
-        return (start >= low && start <= high).then_some(Stretch { from: 0.0, to: 1.0 });
-    }
-    let (s, t) = ((low - start) / rate, (high - start) / rate);
-    let (from, to) = (s.min(t).max(0.0), s.max(t).min(1.0));
-    (from <= to).then_some(Stretch { from, to })
-}
-
-fn both(a: Stretch, b: Stretch) -> Option<Stretch> {
-    let (from, to) = (a.from.max(b.from), a.to.min(b.to));
-    (from <= to).then_some(Stretch { from, to })
-}
-
-/// Where `offset + parameter × step` is within a distance of zero.
-fn within_disc(offset: Vector, step: Vector, distance: f64) -> Option<Stretch> {
-    let square = step.norm_squared();
-    if square == 0.0 {
-        return (offset.norm() <= distance).then_some(Stretch { from: 0.0, to: 1.0 });
-    }
-    let middle = -offset.dot(&step) / square;
-    let beside = cross(step, offset).powi(2) / square;
-    let reach = distance * distance - beside;
-    if !(reach >= 0.0) {
-        return None;
-    }
-    let half = (reach / square).sqrt();
-    let (from, to) = ((middle - half).max(0.0), (middle + half).min(1.0));
-    (from <= to).then_some(Stretch { from, to })
+    let ends = [0.0, 1.0].map(|share| (share, gap(share)));
+    let places = [search.left, search.right].into_iter().chain(ends);
+    let (inside, _) = places.into_iter().find(|(_, gap)| *gap <= 0.0)?;
+    let [from, to] = ends.map(|(end, gap_there)| {
+        let (mut within, mut beyond) = (inside, end);
+        if gap_there <= 0.0 {
+            return end;
+        }
+        for _ in 0..STEPS {
+            let middle = 0.5 * (within + beyond);
+            if gap(middle) <= 0.0 {
+                within = middle;
+            } else {
+                beyond = middle;
+            }
+        }
+        within
+    });
+    Some(Stretch { from, to })
 }
 
 #[cfg(test)]

@@ -17,20 +17,6 @@ pub const LAND: &str = "land";
 /// A block is a space-time polytope whose only velocity is zero, so planners treat it like any
 /// other. Pieces of one land touch and their blocks overlap by twice the radius, so no path passes
 /// between two pieces.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::LandObstacle;
-///
-/// let quay = [(0.0, 0.0), (100.0, 0.0), (100.0, 20.0), (0.0, 20.0)];
-/// let quay = ConvexPolygon::hull(&quay.map(|(x, y)| Vector::new(x, y)))?;
-/// let land = LandObstacle::around([&quay], 15.0);
-/// assert!(land.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
-/// assert!(land.depth(Vector::new(50.0, 40.0)).is_none());
-/// assert!(LandObstacle::none().is_empty());
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct LandObstacle {
     blocks: Vec<PolytopeObstacle>,

@@ -20,13 +20,10 @@ mod velocity_obstacle;
 
 pub use closest_approach::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
-pub use ellipsoid::velocity_obstacle::EllipsoidVelocityObstacle;
 pub(crate) use land::window_of;
 pub use land::{LAND, LandObstacle};
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
-pub use projection::{
-    OUTER_EXCESS_M, PathTime, Track, along_path, along_track_from, ellipsoid_along_track_from,
-};
+pub use projection::{PathTime, Track, along_path};
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use representation::Obstacle;
 pub use risk::{PeakRisk, level_sets};

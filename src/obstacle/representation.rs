@@ -129,8 +129,8 @@ impl Obstacle {
 
     /// The velocity obstacle as a union of convex regions.
     ///
-    /// `None` for ellipsoids that are not flat: their velocity obstacle is one convex region without corners,
-    /// [`EllipsoidObstacle::velocity_obstacle`].
+    /// `None` for ellipsoids that are not flat: their velocity obstacle is one convex region without
+    /// corners, [`EllipsoidObstacle::outer_velocities_within`].
     pub fn velocity_obstacles(
         &self,
         position: Vector,

@@ -210,13 +210,6 @@ impl SlabObstacle {
         obstacle.faces().iter().map(of).collect()
     }
 
-    /// A polytope as a single slab.
-    pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
-        let (initial, velocity) = (polytope.initial().clone(), polytope.velocity().clone());
-        let sets = Uncertainty::constant(initial, velocity);
-        Self::from_sequence(polytope.name().to_owned(), sets)
-    }
-
     /// These velocity sets with another set at t = 0, metres.
     pub fn with_initial(&self, initial: impl Into<ConvexSet>) -> Self {
         let sets = Uncertainty {

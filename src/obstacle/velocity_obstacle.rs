@@ -3,7 +3,7 @@
 
 use super::{HalfSpace, PolytopeObstacle, Slab, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, clipped};
 
 /// Half-plane `normal . v <= offset` of velocities, with a unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,24 +20,6 @@ pub struct HalfPlane {
 /// Convex: `V ⊕ (O_0 - x) / T ⊕ cone(O_0 - x)`. Exact for a finite horizon `T`. An infinite horizon
 /// gives the closure, which adds velocities that come arbitrarily near and never touch. Unbounded
 /// away from the target where the horizon is infinite or own ship is near.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{PolytopeObstacle, VelocityObstacle};
-///
-/// let square = [(190.0, -10.0), (210.0, -10.0), (210.0, 10.0), (190.0, 10.0)];
-/// let initial = ConvexPolygon::hull(&square.map(|(x, y)| Vector::new(x, y)))?;
-/// let set = PolytopeObstacle::new("buoy", initial, ConvexPolygon::point(Vector::zeros()));
-/// let region = VelocityObstacle::new(&set, Vector::zeros(), 60.0);
-/// assert!(region.contains(Vector::new(5.0, 0.0)));
-/// // too slow to be there within 60 s, and past it
-/// assert!(!region.contains(Vector::new(3.0, 0.0)));
-/// assert!(!region.contains(Vector::new(5.0, 2.0)));
-/// let outside = |v: Vector| region.half_planes().iter().any(|h| h.normal.dot(&v) > h.offset);
-/// assert!(outside(Vector::new(5.0, 2.0)));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityObstacle {
     half_planes: Vec<HalfPlane>,
@@ -135,27 +117,12 @@ impl VelocityObstacle {
     /// The part of the region with both components within `limit` m/s, for figures; `None` if
     /// empty.
     pub fn clipped(&self, limit: f64) -> Option<ConvexPolygon> {
-        let mut polygon = vec![
-            Vector::new(-limit, -limit),
-            Vector::new(limit, -limit),
-            Vector::new(limit, limit),
-            Vector::new(-limit, limit),
-        ];
-        for h in &self.half_planes {
-            let beyond = |v: &Vector| h.normal.dot(v) - h.offset;
-            let mut kept = Vec::with_capacity(polygon.len() + 1);
-            for (i, a) in polygon.iter().enumerate() {
-                let b = &polygon[(i + 1) % polygon.len()];
-                let (fa, fb) = (beyond(a), beyond(b));
-                if fa <= 0.0 {
-                    kept.push(*a);
-                }
-                if (fa <= 0.0) != (fb <= 0.0) {
-                    kept.push(a + (b - a) * (fa / (fa - fb)));
-                }
-            }
-            polygon = kept;
-        }
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let square = corners.map(|(x, y)| Vector::new(x * limit, y * limit));
+        let planes = self.half_planes.iter();
+        let polygon = planes.fold(square.to_vec(), |polygon, h| {
+            clipped(&polygon, |v| h.normal.dot(v) - h.offset)
+        });
         ConvexPolygon::hull(&polygon).ok()
     }
 }

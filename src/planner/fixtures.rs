@@ -1,10 +1,8 @@
 //! Ship and problem of the unit tests.
 
-use std::time::Duration;
-
-use super::{Objective, Problem, SearchKind};
+use super::Problem;
 use crate::frame::{Pose, Vector};
-use crate::obstacle::{LandObstacle, Obstacle};
+use crate::obstacle::Obstacle;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
@@ -30,18 +28,5 @@ pub(crate) fn problem<'a>(
     obstacles: &'a [Obstacle],
     horizon: f64,
 ) -> Problem<'a> {
-    Problem {
-        own,
-        desired,
-        alternatives: &[],
-        objective: Objective::SpaceTimeError,
-        obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon,
-        time_weight: 25.0,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(5),
-        first_turn: None,
-        encountered: &[],
-    }
+    Problem::new(own, desired, obstacles, horizon)
 }

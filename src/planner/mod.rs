@@ -144,7 +144,31 @@ pub struct Problem<'a> {
     pub encountered: &'a [Encountered],
 }
 
-impl Problem<'_> {
+impl<'a> Problem<'a> {
+    /// Least space-time error without land, rules and alternative paths. The time weight is the
+    /// square of own speed; the budget is a minute.
+    pub fn new(
+        own: &'a OwnShip,
+        desired: &'a DesiredTrajectory,
+        obstacles: &'a [Obstacle],
+        horizon: f64,
+    ) -> Self {
+        Self {
+            own,
+            desired,
+            alternatives: &[],
+            objective: Objective::SpaceTimeError,
+            obstacles,
+            land_obstacle: LandObstacle::none(),
+            horizon,
+            time_weight: own.speed * own.speed,
+            search: SearchKind::AStar,
+            deadline: Duration::from_secs(60),
+            first_turn: None,
+            encountered: &[],
+        }
+    }
+
     /// Space-time error of a motion at the accuracy of the searches, m².
     pub(crate) fn error_of(&self, motion: &[Segment]) -> f64 {
         let error = |s| cost::space_time_error(self.desired, s, self.time_weight);

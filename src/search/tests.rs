@@ -7,6 +7,14 @@ struct Grid {
     closer: bool,
 }
 
+fn grid(informed: bool, closer: bool) -> Grid {
+    Grid {
+        size: 7,
+        informed,
+        closer,
+    }
+}
+
 impl Grid {
     fn weight(x: i32, y: i32) -> f64 {
         1.0 + f64::from((x * 7919 + y * 104_729).rem_euclid(13)) / 13.0
@@ -51,11 +59,7 @@ impl Space for Grid {
 }
 
 fn costs(informed: bool, closer: bool) -> (Vec<f64>, Counts) {
-    let mut grid = Grid {
-        size: 7,
-        informed,
-        closer,
-    };
+    let mut grid = grid(informed, closer);
     let mut search = Search::new((0, 0));
     let mut found = Vec::new();
     while let Stop::Goal(node) = search.next_goal(&mut grid, usize::MAX) {
@@ -87,16 +91,7 @@ fn all_costs(grid: &mut Grid, at: (i32, i32), cost: f64, out: &mut Vec<f64>) {
 #[test]
 fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
     let mut every = Vec::new();
-    all_costs(
-        &mut Grid {
-            size: 7,
-            informed: false,
-            closer: false,
-        },
-        (0, 0),
-        0.0,
-        &mut every,
-    );
+    all_costs(&mut grid(false, false), (0, 0), 0.0, &mut every);
     every.sort_by(f64::total_cmp);
     let mut expanded = Vec::new();
     for (informed, closer) in [(false, false), (true, false), (true, true)] {
@@ -111,16 +106,13 @@ fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
 }
 
 #[test]
-fn weighed_goals_cost_at_most_so_many_times_the_cheapest() {
+fn after_a_budget_weighed_goals_cost_at_most_so_many_times_the_cheapest() {
     let (exact, patient) = costs(true, true);
     for weight in [1.0, 1.5, 4.0] {
-        let mut grid = Grid {
-            size: 7,
-            informed: true,
-            closer: true,
-        };
+        let mut grid = grid(true, true);
         let mut search = Search::new((0, 0));
         assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
+        assert_eq!(search.counts().expanded, 3);
         search.weigh(weight);
         let Stop::Goal(goal) = search.next_goal(&mut grid, usize::MAX) else {
             panic!("there is a way");
@@ -129,22 +121,6 @@ fn weighed_goals_cost_at_most_so_many_times_the_cheapest() {
         assert!(cost <= weight * exact[0] + 1e-12, "{weight}: {cost}");
         assert!(search.counts().expanded <= patient.expanded, "{weight}");
     }
-}
-
-#[test]
-fn a_budget_stops_and_can_be_raised() {
-    let mut grid = Grid {
-        size: 7,
-        informed: false,
-        closer: false,
-    };
-    let mut search = Search::new((0, 0));
-    assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
-    assert_eq!(search.counts().expanded, 3);
-    assert!(matches!(
-        search.next_goal(&mut grid, usize::MAX),
-        Stop::Goal(_)
-    ));
 }
 
 struct Broken;

@@ -79,22 +79,6 @@ impl Nearest {
 
 /// The desired position as a function of time: a polyline that starts at the first waypoint at t =
 /// 0.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::DesiredTrajectory;
-///
-/// let corners = [(0.0, 0.0), (500.0, 0.0), (500.0, 300.0)].map(|(x, y)| Vector::new(x, y));
-/// let desired = DesiredTrajectory::new(&corners, &[5.0, 3.0])?;
-/// assert_eq!((desired.duration(), desired.length()), (200.0, 800.0));
-/// let [first, second] = desired.legs() else { unreachable!() };
-/// assert_eq!((first.end_time(), second.start_distance), (100.0, 500.0));
-/// // 20 m beside the first leg, on time
-/// let nearest = desired.nearest(Vector::new(250.0, 20.0), 50.0, 1.0);
-/// assert_eq!(nearest.leg, 0);
-/// assert!((nearest.error - 400.0).abs() < 1e-9 && (nearest.distance - 250.0).abs() < 1e-9);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesiredTrajectory {
     legs: Vec<DesiredLeg>,

@@ -50,28 +50,6 @@ pub enum TrajectoryError {
 /// continuous except at corners.
 ///
 /// A motion under forces has no segments: see [`Trajectory::steered`].
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{Segment, Trajectory, TrajectoryError};
-///
-/// let straight = Segment {
-///     start: Pose::new(Vector::zeros(), 0.0),
-///     start_time: 0.0,
-///     duration: 20.0,
-///     speed: 5.0,
-///     turn_rate: 0.0,
-/// };
-/// let turn = Segment { start: straight.end(), start_time: 20.0, turn_rate: 0.05, ..straight };
-/// let trajectory = Trajectory::new(vec![straight, turn])?;
-/// assert_eq!(trajectory.end_time(), 40.0);
-/// assert!((trajectory.length() - 200.0).abs() < 1e-9);
-/// assert!(turn.is_arc() && (turn.radius() - 100.0).abs() < 1e-9);
-/// assert_eq!(trajectory.pose_at(10.0).position, Vector::new(50.0, 0.0));
-/// // a gap is refused
-/// assert!(Trajectory::new(vec![straight, straight]).is_err());
-/// # Ok::<(), TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,

@@ -53,20 +53,6 @@ pub struct NetworkLeg {
 /// Own ship may change between two paths at a common point: a waypoint, a crossing or an end of a
 /// common part. It begins at the main path's first waypoint and arrives at its last. A path that
 /// returns to its own points is sailed in full: a path does not meet itself.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::{NetworkError, NetworkLeg, PathNetwork};
-///
-/// let points = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| Vector::new(x, y)).collect::<Vec<_>>();
-/// let main = points(&[(0.0, 0.0), (1000.0, 0.0)]);
-/// let around = points(&[(200.0, 0.0), (500.0, 200.0), (800.0, 0.0)]);
-/// let network = PathNetwork::new(&main, &[around])?;
-/// let longest = |legs: &[NetworkLeg]| legs.iter().map(|leg| leg.length).fold(0.0, f64::max);
-/// assert!((longest(network.legs()) - 600.0).abs() < 1e-9);
-/// assert!((network.to_go(network.start()) - 1000.0).abs() < 1e-9);
-/// # Ok::<(), NetworkError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathNetwork {
     legs: Vec<NetworkLeg>,

@@ -1,7 +1,7 @@
 //! Motion under forces: states at nodes, constant forces between them.
 
 use super::TrajectoryError;
-use crate::frame::{Pose, Vector, direction, to_port};
+use crate::frame::{Pose, Vector, to_port};
 
 /// The state of a ship at one time, and the forces from then on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -322,16 +322,6 @@ fn hermite_rate(part: f64) -> [f64; 4] {
         6.0 * s * r,
         s * (3.0 * s - 2.0),
     ]
-}
-
-/// Speed along the heading differs from speed over ground where the ship drifts.
-impl Cubic {
-    /// Forward and port components of the velocity at a time, m/s.
-    pub fn body_velocity_at(&self, time: f64) -> Vector {
-        let velocity = self.velocity(self.part(time));
-        let ahead = direction(self.pose_at(time).heading);
-        Vector::new(ahead.dot(&velocity), to_port(ahead).dot(&velocity))
-    }
 }
 
 #[cfg(test)]

@@ -27,24 +27,6 @@ pub struct Piece {
 }
 
 /// A path of three pieces, some possibly without length.
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::frame::Side;
-/// use searoom::vessel::dubins::{DubinsPath, Piece, shortest};
-///
-/// let from = Pose::new(Vector::zeros(), 0.0);
-/// let to = Pose::new(Vector::new(500.0, 0.0), 0.0);
-/// let path: DubinsPath = shortest(&from, &to, 100.0).expect("a radius");
-/// assert!((path.length() - 500.0).abs() < 1e-9);
-/// let straight = |piece: &Piece| piece.turn.is_none();
-/// assert!(path.pieces.iter().any(straight));
-/// // half a circle to port
-/// let back = Pose::new(Vector::new(0.0, 200.0), std::f64::consts::PI);
-/// let turn = shortest(&from, &back, 100.0).expect("a radius");
-/// let mut turned = turn.pieces.iter().filter(|piece| piece.length > 1e-6);
-/// assert!(turned.all(|piece| piece.turn == Some(Side::Port)));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DubinsPath {
     /// In order.

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::optimal_control::{
-    Controls, KeepOut, Settings, StartAttempt, Task, Weights, attempt, plan,
+    Controls, KeepOut, Settings, StartAttempt, Task, attempt, plan,
 };
 use searoom::planner::{ControlSettings, Outcome};
 use searoom::scenario::Scenario;
@@ -124,13 +124,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     let (place, heading) = (own.pose.position, own.pose.heading);
     let task = Task {
         vessel,
-        controls: Controls {
-            force_limits: control.force_limits,
-            weights: Weights {
-                state: control.state_weights,
-                force: control.force_weights,
-            },
-        },
+        controls: Controls::from(control),
         desired: &scenario.desired,
         keep_outs: &keep_outs,
         first: StateVector::new(place.x, place.y, heading, own.speed, 0.0, 0.0),

@@ -10,11 +10,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{EllipsoidObstacle, LandObstacle, Obstacle};
-use searoom::planner::optimal_control::{
-    Controls, KeepOut, Profile, Settings, Task, Weights, profile_along,
-};
-use searoom::planner::{ControlSettings, Objective, Problem, SearchKind};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle};
+use searoom::planner::optimal_control::{Controls, KeepOut, Profile, Task, profile_along};
+use searoom::planner::{ControlSettings, Problem};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{CyberShip2, Hull, Manoeuvring, OwnShip, StateVector, VesselKind};
 
@@ -91,13 +89,7 @@ pub fn task<'a>(
     let settings = ControlSettings::of(VesselKind::CyberShip2);
     Task {
         vessel: &CyberShip2::SMOOTH,
-        controls: Controls {
-            force_limits: settings.force_limits,
-            weights: Weights {
-                state: settings.state_weights,
-                force: settings.force_weights,
-            },
-        },
+        controls: Controls::from(&settings),
         desired,
         keep_outs,
         first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
@@ -129,18 +121,9 @@ pub fn problem<'a>(
     obstacles: &'a [Obstacle],
 ) -> Problem<'a> {
     Problem {
-        own,
-        desired,
-        alternatives: &[],
-        objective: Objective::SpaceTimeError,
-        obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon: DURATION,
         time_weight: 0.05,
-        search: SearchKind::AStar,
         deadline: Duration::from_secs(600),
-        first_turn: None,
-        encountered: &[],
+        ..Problem::new(own, desired, obstacles, DURATION)
     }
 }
 
@@ -171,9 +154,4 @@ pub fn wandering<V: Manoeuvring>(task: &Task<V>, rng: &mut ChaCha8Rng) -> Profil
         })
         .collect();
     profile_along(task, &places)
-}
-
-/// Of a first solve.
-pub fn settings() -> Settings {
-    Settings::default()
 }

@@ -15,14 +15,15 @@ use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::simulation::{
-    Behaviour, EncounterKind, Placement, RandomEncounter, Signal, random_encounter, random_traffic,
+    EncounterKind, Placement, RandomEncounter, random_encounter, random_traffic,
 };
 use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;
 use searoom::vessel::OwnShip;
 
+use super::behaviour::{Behaviour, Signal};
 use super::passing::crosses_ahead;
-use super::statistics::{failure_bound, quantile, spread};
+use super::statistics::{quantile, spread};
 use super::{Report, Seeds};
 
 /// Angle in radians (2°) below which a turn is not an alteration of course.
@@ -187,11 +188,6 @@ pub fn claims_of(record: &Record, least: f64) -> Vec<String> {
     broken
 }
 
-fn of_all(right: usize, all: usize) -> String {
-    let bound = 100.0 * (1.0 - failure_bound(all - right, all));
-    format!("{right}/{all} (≥ {bound:.1} %)")
-}
-
 /// Plans drawn scenes in turn, then samples the motion of their targets in parallel. Returns the
 /// records with the least hull distance of each.
 fn played(
@@ -219,99 +215,61 @@ pub fn run(seeds: Seeds) -> Report {
 fn one_kind(kind: EncounterKind, seeds: Seeds, report: &mut Report) {
     let draw = |seed| random_encounter(kind, seed, Placement::Random).expect("drawn");
     let (records, least) = played(seeds.clone(), report, draw);
-    let solved: Vec<&Record> = records.iter().filter(|r| r.plan.is_some()).collect();
-    let (all, plans) = (records.len(), solved.len());
-    let seeds_where = |holds: &dyn Fn(&Record, &Trajectory) -> bool| -> Vec<u64> {
-        let holds = |r: &&&Record| r.plan.as_ref().is_some_and(|p| holds(r, &p.0));
-        solved.iter().filter(holds).map(|r| r.seed).collect()
-    };
-    let turning = |side| seeds_where(&|_, plan| first_turn(plan) == side);
-    let [starboard, port, none] = [Some(Side::Starboard), Some(Side::Port), None].map(turning);
-    let ahead = seeds_where(&|r, plan| {
-        let ship = r.drawn.scenario.targets[0].ship().expect("a ship");
-        crosses_ahead(plan, ship)
-    });
-    let to_port = seeds_where(&|r, _| r.passing_sides == [Side::Port]).len();
-    let counted = |holds: &dyn Fn(&Record) -> bool| records.iter().filter(|r| holds(r)).count();
+    let (all, name) = (records.len(), kind.name());
     let replaced: usize = records.iter().map(|r| r.drawn.rejected).sum();
-    let agreed = counted(&|r| r.roles == [kind.role()]);
-    let reduced = counted(&|r| r.shape_reduced);
-    let times: Vec<f64> = records.iter().map(|r| r.milliseconds).collect();
-    let costs: Vec<f64> = solved
-        .iter()
-        .filter_map(|r| Some(r.plan.as_ref()?.1))
-        .collect();
-    let contacts = least.iter().filter(|d| !(**d > 0.0)).count();
     let nearest = least.iter().copied().fold(f64::INFINITY, f64::min);
-    let name = kind.name();
-    println!("{name}, seeds {seeds:?}");
-    println!("  draws replaced         {replaced} of {}", all + replaced);
-    println!("  class as intended      {agreed}/{all}");
-    println!("  solved                 {}", of_all(plans, all));
-    println!("  with a reduced shape   {reduced}");
     println!(
-        "  plans with violations  {}",
-        counted(&|r| !r.violations.is_empty())
+        "{name}, seeds {seeds:?}: {replaced} draws replaced, hulls {nearest:.2} m apart at least"
     );
-    let bound = failure_bound(contacts, plans);
-    println!("  hull contacts          {contacts} (< {bound:.2e}), nearest {nearest:.2} m");
-    println!(
-        "  first turn starboard   {}, port {}, speed alone {}",
-        of_all(starboard.len(), plans),
-        port.len(),
-        none.len()
-    );
-    match kind {
-        EncounterKind::HeadOn => println!("  passed port to port    {}", of_all(to_port, plans)),
-        EncounterKind::GiveWay => {
-            println!(
-                "  not across the bow     {}",
-                of_all(plans - ahead.len(), plans)
-            );
-        }
-        EncounterKind::StandOn | EncounterKind::Overtaking | EncounterKind::Overtaken => {}
-    }
-    println!("  J, m²                  {}", spread(&costs));
-    println!("  planning, ms           {}", spread(&times));
+    let seeds_where = |holds: &dyn Fn(&Record) -> bool| -> Vec<u64> {
+        let records = records.iter().filter(|r| holds(r));
+        records.map(|r| r.seed).collect()
+    };
+    let unsolved = seeds_where(&|r| r.plan.is_none());
+    let plans = all - unsolved.len();
     for r in records.iter().filter(|r| r.plan.is_none()).take(10) {
         println!("  unsolved seed {}: {}", r.seed, r.refusal);
     }
+    let planned_where = |holds: &dyn Fn(&Record, &Trajectory) -> bool| {
+        seeds_where(&|r| r.plan.as_ref().is_some_and(|p| holds(r, &p.0)))
+    };
+    let [port, starboard] = [Side::Port, Side::Starboard]
+        .map(|side| planned_where(&|_, plan| first_turn(plan) == Some(side)));
     let [to_port_at_most, to_starboard_at_most] = match kind {
         EncounterKind::HeadOn => [RARELY, 1.0],
         EncounterKind::GiveWay => [RARELY_GIVE_WAY, 1.0],
         _ => [EITHER_SIDE; 2],
     };
-    let mut at_most = |what: &str, count: usize, share: f64, all: usize| {
-        report.require(count as f64 <= share * all as f64, || {
-            format!("{name}: {what}: {count} of {all}")
-        });
+    let mut at_most = |what, share, failing: &[u64], all| {
+        report.at_most(name, what, share, failing, all);
     };
+    at_most("without a plan", UNSOLVED, &unsolved, all);
+    at_most("first turns to port", to_port_at_most, &port, plans);
     at_most(
-        &format!("turns to port, seeds {port:?}"),
-        port.len(),
-        to_port_at_most,
-        plans,
-    );
-    at_most(
-        "turns to starboard",
-        starboard.len(),
+        "first turns to starboard",
         to_starboard_at_most,
+        &starboard,
         plans,
     );
     if kind == EncounterKind::HeadOn {
-        at_most("does not pass port to port", plans - to_port, RARELY, plans);
+        let other_side = planned_where(&|r, _| r.passing_sides != [Side::Port]);
+        at_most("does not pass port to port", RARELY, &other_side, plans);
     }
     if kind == EncounterKind::GiveWay {
-        at_most(
-            &format!("crosses ahead, seeds {ahead:?}"),
-            ahead.len(),
-            RARELY,
-            plans,
-        );
+        let ahead = planned_where(&|r, plan| {
+            crosses_ahead(plan, r.drawn.scenario.targets[0].ship().expect("a ship"))
+        });
+        at_most("crosses ahead", RARELY, &ahead, plans);
     }
-    at_most("without a plan", all - plans, UNSOLVED, all);
-    at_most("with a reduced shape", reduced, REDUCED, all);
-    at_most("of another class", all - agreed, ANOTHER_ROLE, all);
+    let reduced = seeds_where(&|r| r.shape_reduced);
+    at_most("with a reduced shape", REDUCED, &reduced, all);
+    let another = seeds_where(&|r| r.roles != [kind.role()]);
+    at_most("of another class", ANOTHER_ROLE, &another, all);
+    let costs = records.iter().filter_map(|r| Some(r.plan.as_ref()?.1));
+    let costs: Vec<f64> = costs.collect();
+    let times: Vec<f64> = records.iter().map(|r| r.milliseconds).collect();
+    println!("  J, m²                  {}", spread(&costs));
+    println!("  planning, ms           {}", spread(&times));
     let median = quantile(&costs, 0.5);
     // fails closed: without a plan there is no median
     report.require(median <= MEDIAN_COST[kind as usize], || {

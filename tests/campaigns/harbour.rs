@@ -8,8 +8,9 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Geographic, Georeference, Pose, Vector, direction};
 use searoom::map::Map;
 use searoom::pipeline;
-use searoom::planner::{DEFAULT_PLANNER, Objective, Outcome, PlannerSettings, SearchKind};
-use searoom::scenario::{Compliance, Land, Scenario};
+use searoom::planner::Outcome;
+use searoom::scenario::{Land, Scenario};
+use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
@@ -134,7 +135,6 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     Scenario {
         title: format!("{} {seed}", waters.name),
         horizon: 2.0 * duration,
-        arrival_hold: 60.0,
         own_ship: OwnShip {
             pose: Pose::new(first.start, searoom::frame::heading_of(first.direction)),
             speed,
@@ -144,19 +144,12 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
             safety_margin: waters.safety_margin,
         },
         desired,
-        alternatives: Vec::new(),
         targets,
-        planner: DEFAULT_PLANNER,
-        objective: Objective::SpaceTimeError,
-        settings: PlannerSettings::at_length(30.0),
-        search: SearchKind::AStar,
-        compliance: Compliance::Shape,
         time_weight: speed * speed,
-        max_risk: 0.0,
-        deadline: 60.0,
-        thresholds: None,
-        earth: None,
         land: Some(land),
+        ..random_traffic(0, 0, Placement::Origin)
+            .expect("drawn")
+            .scenario
     }
 }
 

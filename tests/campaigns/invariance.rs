@@ -6,8 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
-use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use searoom::scenario::{Compliance, Scenario};
+use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
@@ -33,64 +33,43 @@ pub struct Placing {
     pub time: f64,
 }
 
-const AS_IT_IS: Placing = Placing {
-    name: "as it is",
-    moved: Vector::new(0.0, 0.0),
-    turned: 0.0,
-    mirrored: false,
-    length: 1.0,
-    time: 1.0,
-};
+const fn placing(name: &'static str, moved: [f64; 2], turned: f64) -> Placing {
+    Placing {
+        name,
+        moved: Vector::new(moved[0], moved[1]),
+        turned,
+        mirrored: false,
+        length: 1.0,
+        time: 1.0,
+    }
+}
+
+const fn sized(name: &'static str, length: f64, time: f64) -> Placing {
+    Placing {
+        length,
+        time,
+        ..placing(name, [0.0; 2], 0.0)
+    }
+}
 
 /// Placements that must not change a plan.
 pub const PLACINGS: [Placing; 9] = [
+    placing("moved by 1.6 km", [1234.5, -987.25], 0.0),
+    placing("moved to UTM coordinates", [569_000.0, 7_034_000.0], 0.0),
+    placing("turned by 90°", [0.0; 2], std::f64::consts::FRAC_PI_2),
+    placing("turned by 142°", [0.0; 2], 2.48),
     Placing {
-        name: "moved by 1.6 km",
-        moved: Vector::new(1234.5, -987.25),
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "moved to UTM coordinates",
-        moved: Vector::new(569_000.0, 7_034_000.0),
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "turned by 90°",
-        turned: std::f64::consts::FRAC_PI_2,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "turned by 142°",
-        turned: 2.48,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "mirrored",
         mirrored: true,
-        ..AS_IT_IS
+        ..placing("mirrored", [0.0; 2], 0.0)
     },
+    sized("three times as large", 3.0, 1.0),
+    sized("a seventh as large", 1.0 / 7.0, 1.0),
+    sized("2.3 times as slow", 1.0, 2.3),
     Placing {
-        name: "three times as large",
-        length: 3.0,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "a seventh as large",
-        length: 1.0 / 7.0,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "2.3 times as slow",
-        time: 2.3,
-        ..AS_IT_IS
-    },
-    Placing {
-        name: "all of it",
-        moved: Vector::new(-431_000.0, 6_210_000.0),
-        turned: -0.7,
         mirrored: true,
         length: 1.7,
         time: 0.6,
+        ..placing("all of it", [-431_000.0, 6_210_000.0], -0.7)
     },
 ];
 
@@ -240,20 +219,13 @@ pub fn scene(seed: u64) -> Scenario {
             safety_margin: rng.random_range(30.0..150.0),
         },
         desired,
-        alternatives: Vec::new(),
         targets,
-        planner: DEFAULT_PLANNER,
-        objective: Objective::SpaceTimeError,
-        settings: PlannerSettings::at_length(30.0),
-        search: SearchKind::AStar,
         compliance: Compliance::None,
-        arrival_hold: 60.0,
         time_weight: speed * speed,
-        max_risk: 0.0,
         deadline: 600.0,
-        thresholds: None,
-        earth: None,
-        land: None,
+        ..random_traffic(0, 0, Placement::Origin)
+            .expect("drawn")
+            .scenario
     }
 }
 
@@ -269,33 +241,8 @@ pub fn apart(a: Option<f64>, b: Option<f64>) -> f64 {
 /// Relative difference below which costs are equal.
 pub const EQUAL: f64 = 1e-6;
 
-/// Change that enlarges the sets.
-type Change = fn(&mut Scenario);
-const LARGER: [(&str, Change); 4] = [
-    ("margin + 20 m", |s| s.own_ship.safety_margin += 20.0),
-    ("speed spread + 0.1 m/s", |s| {
-        tracks(s).for_each(|ship| ship.speed_spread += 0.1);
-    }),
-    ("course spread + 0.02 rad", |s| {
-        tracks(s).for_each(|ship| ship.course_spread += 0.02);
-    }),
-    ("position deviation + 4 m", |s| {
-        tracks(s).for_each(|ship| ship.position_std += 4.0);
-    }),
-];
-
-fn tracks(scene: &mut Scenario) -> impl Iterator<Item = &mut ShipTrack> {
-    scene
-        .targets
-        .iter_mut()
-        .filter_map(|t| match &mut t.motion {
-            Motion::Ship(ship) => Some(ship),
-            _ => None,
-        })
-}
-
-/// Prints two tables: invariance of plans to translation, rotation, reflection and scaling, and how
-/// often larger sets reduce the cost. Requires every placed scene to have the plan's cost.
+/// Prints a table: invariance of plans to translation, rotation, reflection and scaling. Requires
+/// every placed scene to have the plan's cost.
 pub fn run(seeds: Seeds) -> Report {
     let mut report = Report::default();
     let scenes: Vec<(u64, Scenario, Option<f64>)> = seeds
@@ -332,28 +279,4 @@ pub fn run(seeds: Seeds) -> Report {
         format!("{conflicts} scenes have a conflict")
     });
     report
-}
-
-/// Prints how often larger sets reduce the cost; the planner makes no promise here.
-pub fn print_larger_sets(seeds: Seeds) {
-    println!("\n| larger sets | comparisons | cheaper | with one target | J over J, least |");
-    println!("| --- | --- | --- | --- | --- |");
-    for (name, change) in LARGER {
-        let compared: Vec<(bool, f64)> = seeds
-            .clone()
-            .into_par_iter()
-            .filter_map(|seed| {
-                let mut larger = scene(seed);
-                change(&mut larger);
-                let alone = larger.targets.len() == 1;
-                let (before, after) = (cost(scene(seed))?, cost(larger)?);
-                Some((alone, (after + LEAST_COST) / (before + LEAST_COST)))
-            })
-            .collect();
-        let cheaper: Vec<_> = compared.iter().filter(|c| c.1 < 1.0 - EQUAL).collect();
-        let least = compared.iter().map(|c| c.1).fold(f64::INFINITY, f64::min);
-        let alone = cheaper.iter().filter(|c| c.0).count();
-        let (all, cheaper) = (compared.len(), cheaper.len());
-        println!("| {name} | {all} | {cheaper} | {alone} | {least:.4} |");
-    }
 }

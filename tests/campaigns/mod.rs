@@ -3,6 +3,7 @@
 //! The tests run each with few scenes; `examples/campaign.rs` with as many as asked for.
 #![allow(dead_code, reason = "the tests and the program use a part each")]
 
+pub mod behaviour;
 pub mod compliance;
 pub mod control;
 pub mod control_scenes;
@@ -32,6 +33,20 @@ impl Report {
         if !holds {
             self.missed.push(otherwise());
         }
+    }
+
+    /// Prints in how many of `all` scenes something fails, with the 95 % upper bound and the first
+    /// seeds, and requires at most this share of them.
+    pub fn at_most(&mut self, name: &str, what: &str, share: f64, failing: &[u64], all: usize) {
+        let bound = 100.0 * statistics::failure_bound(failing.len(), all);
+        let few = &failing[..failing.len().min(8)];
+        println!(
+            "  {what:36} {}/{all} (< {bound:.2} %) {few:?}",
+            failing.len()
+        );
+        self.require(failing.len() as f64 <= share * all as f64, || {
+            format!("{name}: {what}: {failing:?} of {all}")
+        });
     }
 
     /// Panics if a bound was missed.

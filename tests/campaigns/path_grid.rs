@@ -92,6 +92,16 @@ fn depth(obstacle: &Obstacle) -> f64 {
     }
 }
 
+/// True where own ship may sail from one distance to another in a span of time.
+fn is_clear(path: &Path, sets: &[(&Obstacle, f64)], ends: [f64; 2], start: f64, step: f64) -> bool {
+    let motion = path.motion(ends[0], ends[1], start, step);
+    let clear = |s: &Segment| {
+        sets.iter()
+            .all(|(o, depth)| o.first_contact(s, *depth).is_none())
+    };
+    motion.iter().all(clear)
+}
+
 /// The earliest arrival on the grid, seconds; `None` when there is none before the horizon.
 /// `shrunk` asks for the lower bound.
 pub fn earliest(
@@ -106,7 +116,7 @@ pub fn earliest(
     let step = piece / speed;
     let steps = (horizon / step).floor() as usize + usize::from(shrunk);
     let margin = 2.0 * piece;
-    let depths: Vec<f64> = obstacles.iter().map(depth).collect();
+    let sets: Vec<(&Obstacle, f64)> = obstacles.iter().map(|o| (o, depth(o))).collect();
     let clear_point = |i: usize, k: usize| {
         let (_, place) = path.at(i as f64 * piece);
         obstacles
@@ -114,14 +124,8 @@ pub fn earliest(
             .all(|o| o.signed_distance(place, k as f64 * step).distance > -margin)
     };
     let clear_step = |i: usize, j: usize, k: usize| {
-        let (from, to) = (i as f64 * piece, j as f64 * piece);
-        let clear = |s: &Segment| {
-            let mut each = obstacles.iter().zip(&depths);
-            each.all(|(o, depth)| o.first_contact(s, *depth).is_none())
-        };
-        path.motion(from, to, k as f64 * step, step)
-            .iter()
-            .all(clear)
+        let ends = [i, j].map(|k| k as f64 * piece);
+        is_clear(path, &sets, ends, k as f64 * step, step)
     };
     let mut reached = vec![false; cells + 1];
     reached[0] = !shrunk || clear_point(0, 0);
@@ -165,7 +169,7 @@ pub fn least_error(
     let piece = path.length() / cells as f64;
     let step = piece / speed;
     let steps = (horizon / step).floor() as usize;
-    let depths: Vec<f64> = obstacles.iter().map(depth).collect();
+    let sets: Vec<(&Obstacle, f64)> = obstacles.iter().map(|o| (o, depth(o))).collect();
     let error = |s: f64, t: f64| desired.nearest(path.at(s).1, t, time_weight).error;
     let mut cost = vec![f64::INFINITY; cells + 1];
     cost[0] = 0.0;
@@ -179,16 +183,12 @@ pub fn least_error(
                 }
                 let (from, to) = (i as f64 * piece, j as f64 * piece);
                 let start = k as f64 * step;
-                let clear = |s: &Segment| {
-                    let mut each = obstacles.iter().zip(&depths);
-                    each.all(|(o, depth)| o.first_contact(s, *depth).is_none())
-                };
                 let (middle, end) = (start + 0.5 * step, start + step);
                 let mean =
                     (error(from, start) + 4.0 * error(0.5 * (from + to), middle) + error(to, end))
                         / 6.0;
                 let total = before + mean * step;
-                if total < next[j] && path.motion(from, to, start, step).iter().all(clear) {
+                if total < next[j] && is_clear(path, &sets, [from, to], start, step) {
                     next[j] = total;
                 }
             }

@@ -8,9 +8,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::{
-    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle,
-};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::planner::{Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::{DesiredTrajectory, PathNetwork, Segment};
@@ -20,16 +18,16 @@ use super::path_grid::{Path, earliest, least_error};
 use super::statistics::quantile;
 use super::{Report, Seeds};
 
-/// All four comparisons: least time on all seeds, space-time error on the first third, ellipsoids
-/// and alternatives on the first half.
+/// All four comparisons, one scene a seed: three sevenths for the least time, a seventh for the
+/// space-time error, three fourteenths each for ellipsoids and for alternatives.
 pub fn run(seeds: Seeds) -> Report {
     let mut report = Report::default();
     let count = seeds.end - seeds.start;
-    let first = |share: u64| seeds.start..seeds.start + count / share;
-    least_time(seeds.clone(), &mut report);
-    space_time_error(first(3), &mut report);
-    ellipsoids(first(2), &mut report);
-    alternatives(first(2), &mut report);
+    let first = |share: u64| seeds.start..seeds.start + (count * share).div_ceil(14);
+    least_time(first(6), &mut report);
+    space_time_error(first(2), &mut report);
+    ellipsoids(first(3), &mut report);
+    alternatives(first(3), &mut report);
     report
 }
 
@@ -157,18 +155,11 @@ pub fn plan_within(
     let legs = vec![drawn.speed * 0.8; drawn.path.points.len() - 1];
     let desired = DesiredTrajectory::new(&drawn.path.points, &legs).expect("valid");
     path_time::plan(&Problem {
-        own: &own,
-        desired: &desired,
-        alternatives: &[],
         objective,
-        obstacles: &drawn.obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon: drawn.horizon,
         time_weight: 25.0,
         search,
         deadline,
-        first_turn: None,
-        encountered: &[],
+        ..Problem::new(&own, &desired, &drawn.obstacles, drawn.horizon)
     })
 }
 
@@ -433,18 +424,9 @@ fn alternatives(seeds: Seeds, report: &mut Report) {
             let own = own(&drawn.path, drawn.speed);
             let desired = DesiredTrajectory::new(&main, &[drawn.speed; 3]).expect("valid");
             let planned = path_time::plan(&Problem {
-                first_turn: None,
-                encountered: &[],
-                land_obstacle: LandObstacle::none(),
-                own: &own,
-                desired: &desired,
                 alternatives: &alternatives,
                 objective,
-                obstacles: &drawn.obstacles,
-                horizon: drawn.horizon,
-                time_weight: 25.0,
-                search: SearchKind::AStar,
-                deadline: Duration::from_secs(60),
+                ..Problem::new(&own, &desired, &drawn.obstacles, drawn.horizon)
             });
             match (best, measure(&planned)) {
                 (Some(best), Some(found)) => {

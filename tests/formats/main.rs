@@ -220,9 +220,6 @@ const MISTAKES: &str = r#"
 /ownShip/waypoints/1/leg/sog | 0 | ownShip.waypoints[1].leg.sog
 /ownShip/waypoints/1/leg |  | ownShip.waypoints[1]
 /ownShip/initial/heading | 361 | ownShip.initial.heading
-/ownShip/initial/navStatus | "Adrift" | ownShip.initial.navStatus
-/ownShip/initial/navStatus | 16 | ownShip.initial.navStatus
-/ownShip/static/shipType | "Kayak" | ownShip.static.shipType
 /ownShip/static/pathType | "bezier" | ownShip.static.pathType
 /ownShip/static/initDelay | 10 | ownShip
 /ownShip/static/dimensions |  | ownShip.static.dimensions
@@ -276,9 +273,7 @@ fn one_mistake_in_a_dnv_file_is_one_fault_with_its_place() {
 #[test]
 fn every_fault_of_a_file_is_named_at_once() {
     let mut document = dnv_01();
-    *document
-        .pointer_mut("/ownShip/initial/navStatus")
-        .expect("there") = json!("Adrift");
+    document["ownShip"]["static"]["pathType"] = json!("bezier");
     *document
         .pointer_mut("/ownShip/waypoints/1/leg/sog")
         .expect("there") = json!(-1);
@@ -288,7 +283,7 @@ fn every_fault_of_a_file_is_named_at_once() {
     assert_eq!(
         paths(&document.to_string(), &Assumed::default()),
         [
-            "ownShip.initial.navStatus",
+            "ownShip.static.pathType",
             "ownShip.waypoints[1].leg.sog",
             "targetShips[0].initial.heading",
         ]

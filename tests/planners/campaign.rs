@@ -33,7 +33,7 @@ fn plans_keep_off_land_and_targets_in_the_harbour() {
 
 #[test]
 fn plans_on_paths_are_those_of_a_fine_grid() {
-    path_time::run(0..300).assert_met();
+    path_time::run(0..700).assert_met();
 }
 
 #[test]
@@ -54,6 +54,7 @@ fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
 #[test]
 fn wild_scenes_are_planned_and_verified_without_a_fault() {
     wild::run(1, 100, None, None).assert_met();
+    wild::run(1, 200, Some("path-time"), None).assert_met();
 }
 
 #[test]

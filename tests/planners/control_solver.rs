@@ -8,8 +8,8 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::planner::optimal_control::solver::{
-    Derivatives, Iterate, Multipliers, Point, StageProblem, Triple, Values, Vector as Column,
-    Workspace, solve,
+    Derivatives, Iterate, Multipliers, StageProblem, Triple, Values, Vector as Column, Workspace,
+    solve,
 };
 use searoom::planner::optimal_control::transcription::Transcription;
 use searoom::planner::optimal_control::{
@@ -54,7 +54,7 @@ impl StageProblem<6, 3> for Drawn<'_> {
         self.stages.rows(stage)
     }
 
-    fn values(&self, stage: usize, at: Point<6, 3>, rows: &mut [f64]) -> Values<6> {
+    fn values(&self, stage: usize, at: &Triple<6, 3>, rows: &mut [f64]) -> Values<6> {
         let mut values = self.stages.values(stage, at, rows);
         if stage + 1 == self.stages() {
             let off = Vector::new(at.y[0], at.y[1]) - self.goal;
@@ -66,7 +66,7 @@ impl StageProblem<6, 3> for Drawn<'_> {
     fn derivatives(
         &self,
         stage: usize,
-        at: Point<6, 3>,
+        at: &Triple<6, 3>,
         multipliers: Multipliers<6>,
         out: &mut Derivatives<6, 3>,
         rows: &mut [Triple<6, 3>],
@@ -127,7 +127,7 @@ fn a_controller_goes_on_warm_and_stays_clear() {
     let keep_outs = scenes::figure_9();
     let mut task = scenes::task(&desired, &keep_outs, 50);
     let guess = best(&task).expect("a plan").profile;
-    let mut horizon = RecedingHorizon::new(&task, &guess, scenes::settings(), &|| true);
+    let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let mut steps = 0;
     for k in 0..25 {

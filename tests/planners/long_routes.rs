@@ -38,10 +38,7 @@ fn scenario(legs: usize) -> Scenario {
             north + side * 4.0 * time
         );
     }
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("zigzag.toml");
-    std::fs::write(&file, text).expect("written");
-    Scenario::read(&file).expect("valid")
+    Scenario::parse(&text).expect("valid")
 }
 
 /// Tests conflicts far apart. One manoeuvre around all of them would cost hundreds of times as

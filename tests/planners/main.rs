@@ -6,7 +6,6 @@ mod campaigns;
 mod campaign;
 mod control_solver;
 mod encounters;
-mod harbour;
 mod land;
 mod long_routes;
 mod optimal_control;

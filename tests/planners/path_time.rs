@@ -6,7 +6,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::Vector;
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use searoom::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::trajectory::DesiredTrajectory;
 
@@ -94,75 +94,32 @@ fn a_start_that_is_swept_later_is_left_in_time() {
 
 #[test]
 fn who_bars_the_way_is_named_and_until_when() {
-    let reason = |obstacles: Vec<Obstacle>| match plan(
-        &one_leg(obstacles, 200.0),
-        SearchKind::AStar,
-        Objective::Time,
-    )
-    .outcome
-    {
-        Outcome::Infeasible(reason) => reason.to_string(),
-        other => panic!("{other:?}"),
+    let outcome = |obstacles: Vec<Obstacle>, horizon: f64| {
+        let drawn = one_leg(obstacles, horizon);
+        plan(&drawn, SearchKind::AStar, Objective::Time).outcome
     };
-    let still = Vector::zeros();
-    let at = |x: f64, y: f64| Vector::new(x, y);
-    let found = reason(vec![square("anchored", at(5.0, 0.0), 15.0, still)]);
-    assert!(
-        found.contains("starts inside the set of 'anchored', 10.0 m deep"),
-        "{found}"
-    );
-    assert!(found.contains("up to the horizon"), "{found}");
-    let found = reason(vec![square("leaving", at(5.0, 0.0), 15.0, at(0.0, 0.5))]);
-    assert!(
-        found.contains("'leaving'") && found.contains("until 30.0 s"),
-        "{found}"
-    );
-    let found = reason(vec![square("wreck", at(200.0, 0.0), 15.0, still)]);
-    assert!(
-        found.contains("115 m before its end") && found.contains("'wreck' after 37.0 s"),
-        "{found}"
-    );
-    assert!(
-        found.contains("is there or ahead up to the horizon"),
-        "{found}"
-    );
-    // the target approaches along the path and leaves no way past it
-    let found = reason(vec![square(
-        "oncoming",
-        at(290.0, 0.0),
-        15.0,
-        at(-5.0, 0.0),
-    )]);
-    assert!(
-        found.contains("'oncoming'") && found.contains("until"),
-        "{found}"
-    );
-    // the target moves ahead on the path, slower than required
-    let found = reason(vec![square("slower", at(60.0, 0.0), 15.0, at(1.0, 0.0))]);
-    assert!(
-        found.contains("'slower'") && found.contains("is there or ahead up to the horizon"),
-        "{found}"
-    );
-    let long = plan(
-        &one_leg(Vec::new(), 59.0),
-        SearchKind::AStar,
-        Objective::Time,
-    )
-    .outcome;
-    assert!(matches!(
-        long,
-        Outcome::Infeasible(NoPlan::PathTooLong { .. })
-    ));
-    assert!(
-        plan(
-            &one_leg(Vec::new(), 60.0),
-            SearchKind::AStar,
-            Objective::Time
-        )
-        .outcome
-        .plan()
-        .is_some()
-    );
+    let ahead = "is there or ahead up to the horizon";
+    let inside = "starts inside the set of 'anchored', 10.0 m deep";
+    // where on the path, the velocity, and what is said of it
+    for (name, along, velocity, said) in [
+        ("anchored", 5.0, [0.0, 0.0], [inside, "up to the horizon"]),
+        ("leaving", 5.0, [0.0, 0.5], ["'leaving'", "until 30.0 s"]),
+        ("wreck", 200.0, [0.0, 0.0], ["115 m before its end", ahead]),
+        ("wreck", 200.0, [0.0, 0.0], ["'wreck' after 37.0 s", ahead]),
+        // along the path, with no way past it
+        ("oncoming", 290.0, [-5.0, 0.0], ["'oncoming'", "until"]),
+        ("slower", 60.0, [1.0, 0.0], ["'slower'", ahead]),
+    ] {
+        let set = square(name, Vector::new(along, 0.0), 15.0, velocity.into());
+        let Outcome::Infeasible(reason) = outcome(vec![set], 200.0) else {
+            panic!("{name}");
+        };
+        let reason = reason.to_string();
+        assert!(said.iter().all(|part| reason.contains(part)), "{reason}");
+    }
+    let long = outcome(Vec::new(), 59.0);
+    let too_long = matches!(long, Outcome::Infeasible(NoPlan::PathTooLong { .. }));
+    assert!(too_long && outcome(Vec::new(), 60.0).plan().is_some());
 }
 
 /// A short path past a ship that may cross it, and a long path around.
@@ -191,18 +148,9 @@ fn risk_is_weighed_against_length() {
     let own = own(&path, 5.0);
     let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
     let problem = Problem {
-        first_turn: None,
-        encountered: &[],
-        land_obstacle: LandObstacle::none(),
-        own: &own,
-        desired: &desired,
         alternatives: &detour,
         objective: Objective::Length,
-        obstacles: &obstacles,
-        horizon: 90.0,
-        time_weight: 25.0,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(60),
+        ..Problem::new(&own, &desired, &obstacles, 90.0)
     };
     let at = |risk: f64| {
         let level = [obstacles[0].at_risk(risk)];

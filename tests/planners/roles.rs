@@ -1,18 +1,7 @@
 //! Tests of encounter classification on scenes of a known kind anywhere in the plane.
 
-use searoom::colregs::Role;
 use searoom::pipeline::{TargetSets, sets};
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
-
-fn role(kind: EncounterKind) -> Role {
-    match kind {
-        EncounterKind::HeadOn => Role::HeadOn,
-        EncounterKind::GiveWay => Role::GiveWay,
-        EncounterKind::StandOn => Role::StandOn,
-        EncounterKind::Overtaking => Role::Overtaking,
-        EncounterKind::Overtaken => Role::Overtaken,
-    }
-}
 
 fn judged(kind: EncounterKind, seed: u64, placement: Placement) -> TargetSets {
     let drawn = random_encounter(kind, seed, placement).expect("a scene");
@@ -24,7 +13,7 @@ fn a_drawn_encounter_has_the_role_it_was_drawn_for() {
     for kind in EncounterKind::ALL {
         for seed in 0..250 {
             let found = judged(kind, seed, Placement::Random).encounter;
-            assert_eq!(found.role, role(kind), "{} {seed}", kind.name());
+            assert_eq!(found.role, kind.role(), "{} {seed}", kind.name());
         }
     }
 }

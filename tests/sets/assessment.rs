@@ -126,6 +126,19 @@ fn holds(
     }
 }
 
+/// Checks the turns to both sides by `steps` samples of a half turn each.
+fn turns_hold(s: &OwnSituation, found: &Alteration, steps: usize, turned: &Counter) {
+    let step = PI / steps as f64;
+    for (side, sign, exact) in [
+        ("starboard", -1.0, found.starboard),
+        ("port", 1.0, found.port),
+    ] {
+        let free = |turn: f64| is_free(s, s.pose.heading + sign * turn, s.speed);
+        holds(exact, sampled(step, PI, free), step, free, side);
+        turned.add(exact.is_some_and(|t| t > 0.0));
+    }
+}
+
 #[test]
 fn the_least_alteration_is_that_of_a_dense_search() {
     let [turned, none, changed] = [(); 3].map(|()| Counter::default());
@@ -136,16 +149,8 @@ fn the_least_alteration_is_that_of_a_dense_search() {
         |(obstacles, motion)| {
             let s = situation(motion, &obstacles);
             let found = least_alteration(&s);
-            let step = PI / STEPS as f64;
-            for (side, sign, exact) in [
-                ("starboard", -1.0, found.starboard),
-                ("port", 1.0, found.port),
-            ] {
-                let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-                holds(exact, sampled(step, PI, free), step, free, side);
-                turned.add(exact.is_some_and(|t| t > 0.0));
-                none.add(exact.is_none());
-            }
+            turns_hold(&s, &found, STEPS, &turned);
+            none.add(found.starboard.is_none());
             let step = s.max_speed / STEPS as f64;
             let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
             let slower = |change: f64| free(-change);
@@ -171,58 +176,6 @@ fn the_least_alteration_is_that_of_a_dense_search() {
     turned.assert_above(100);
     none.assert_above(5);
     changed.assert_above(50);
-}
-
-fn mirrored(obstacle: &Obstacle) -> Obstacle {
-    let flip = |p: &Vector| Vector::new(p.x, -p.y);
-    let polygon = |set: &ConvexPolygon| {
-        let points: Vec<Vector> = set.vertices().iter().map(flip).collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    };
-    let ellipse = |set: &Ellipse| {
-        let q = set.shape();
-        let shape = nalgebra::Matrix2::new(q[(0, 0)], -q[(0, 1)], -q[(1, 0)], q[(1, 1)]);
-        Ellipse::new(flip(&set.center()), shape).expect("a shape")
-    };
-    let map = |set: &ConvexSet| match set {
-        ConvexSet::Polygon(set) => ConvexSet::from(polygon(set)),
-        ConvexSet::Ellipse(set) => ConvexSet::from(ellipse(set)),
-    };
-    let sets = obstacle.sets();
-    let timed = sets.velocities.iter();
-    let timed = timed.map(|set| TimedVelocitySet::new(set.until, map(&set.velocities)));
-    let sets = Uncertainty::new(map(&sets.initial), timed.collect());
-    Obstacle::new(obstacle.name(), sets).expect("increasing")
-}
-
-fn near(a: Option<f64>, b: Option<f64>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => (a - b).abs() < 1e-6,
-        (None, None) => true,
-        _ => false,
-    }
-}
-
-#[test]
-fn a_mirrored_scene_has_the_mirrored_answer() {
-    check(
-        2,
-        300,
-        (vec(approaching(), 1..4), motion()),
-        |(obstacles, motion)| {
-            let other: Vec<_> = obstacles.iter().map(mirrored).collect();
-            let s = situation(motion, &obstacles);
-            let m = OwnSituation {
-                pose: Pose::new(Vector::zeros(), -s.pose.heading),
-                obstacles: &other,
-                ..s
-            };
-            let (here, there) = (least_alteration(&s), least_alteration(&m));
-            assert!(near(here.starboard, there.port), "{here:?} {there:?}");
-            assert!(near(here.port, there.starboard), "{here:?} {there:?}");
-            assert!(near(here.speed, there.speed), "{here:?} {there:?}");
-        },
-    );
 }
 
 #[test]
@@ -321,18 +274,7 @@ fn degenerate_sets_are_left_too() {
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);
         }
         let found = least_alteration(&s);
-        let step = PI / 500.0;
-        for (sign, exact) in [(-1.0, found.starboard), (1.0, found.port)] {
-            let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-            holds(
-                exact,
-                sampled(step, PI, free),
-                step,
-                free,
-                &sign.to_string(),
-            );
-            turned.add(exact.is_some_and(|t| t > 0.0));
-        }
+        turns_hold(&s, &found, 500, &turned);
         if let Some(change) = found.speed {
             assert!(is_free(&s, s.pose.heading, s.speed + change), "{change}");
         }

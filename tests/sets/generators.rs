@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use searoom::frame::{Pose, Vector, direction};
-use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
@@ -99,17 +99,30 @@ pub fn ellipsoid() -> impl Strategy<Value = EllipsoidObstacle> {
 }
 
 pub fn slabs() -> impl Strategy<Value = SlabObstacle> {
-    (polygon(60.0), vec((1.0..40.0, polygon(2.0)), 1..5)).prop_map(|(initial, slabs)| {
-        let mut until = 0.0;
-        let timed = slabs.into_iter().map(|(duration, velocities)| {
-            until += duration;
-            TimedVelocitySet::new(until, velocities)
-        });
-        SlabObstacle::new("slabs", Uncertainty::new(initial, timed.collect())).expect("increasing")
-    })
+    (polygon(60.0), vec((1.0..40.0, polygon(2.0)), 1..5)).prop_map(in_sequence)
 }
 
-/// An obstacle of any kind.
+/// A sequence of velocity ellipses.
+pub fn round_slabs() -> impl Strategy<Value = SlabObstacle> {
+    (ellipse(60.0), vec((1.0..40.0, ellipse(2.0)), 2..5)).prop_map(in_sequence)
+}
+
+/// Sets with the duration of each velocity set.
+fn in_sequence<S: Into<ConvexSet>>((initial, slabs): (S, Vec<(f64, S)>)) -> SlabObstacle {
+    let mut until = 0.0;
+    let timed = slabs.into_iter().map(|(duration, velocities)| {
+        until += duration;
+        TimedVelocitySet::new(until, velocities)
+    });
+    SlabObstacle::new("slabs", Uncertainty::new(initial, timed.collect())).expect("increasing")
+}
+
+/// Support of the exact sum `O_0 ⊕ t V` of two ellipses.
+pub fn sum_support(o: &EllipsoidObstacle, n: Vector, t: f64) -> f64 {
+    n.dot(&o.center(t)) + o.initial().radius(n) + t * o.velocity().radius(n)
+}
+
+/// An obstacle of any kind but changing ellipses.
 pub fn obstacle() -> impl Strategy<Value = Obstacle> {
     prop_oneof![
         polytope().prop_map(Obstacle::from),
@@ -159,8 +172,12 @@ impl Counter {
         self.0.set(self.0.get() + usize::from(holds));
     }
 
+    pub fn count(&self) -> usize {
+        self.0.get()
+    }
+
     pub fn assert_above(&self, least: usize) {
-        let found = self.0.get();
+        let found = self.count();
         assert!(found > least, "{found} cases of more than {least}");
     }
 }

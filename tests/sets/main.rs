@@ -1,12 +1,12 @@
 //! Tests of sets in space and time, each question against a slow definition or a known relation.
 
 mod assessment;
+mod changing_ellipses;
 mod definitions;
 mod ellipsoid_velocity_obstacle;
 mod generators;
 mod metamorphic;
 mod obstacles;
 mod outer_excess;
-mod relations;
 mod representations;
 mod sums;

@@ -1,19 +1,8 @@
 use super::*;
+use crate::geometry::fixtures::random_polygon;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
-
-fn random_polygon(rng: &mut ChaCha8Rng) -> ConvexPolygon {
-    let n = rng.random_range(1..8);
-    let grid = rng.random_bool(0.5);
-    let points: Vec<Vector> = (0..n)
-        .map(|_| {
-            let p = Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
-            if grid { p.map(f64::round) } else { p }
-        })
-        .collect();
-    ConvexPolygon::hull(&points).expect("finite points")
-}
 
 #[test]
 fn hulls_of_degenerate_points_are_points_and_segments() {
@@ -56,7 +45,7 @@ fn a_vertex_inside_is_named() {
 fn minkowski_sums_match_the_hull_of_all_vertex_sums() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..2000 {
-        let (a, b) = (random_polygon(&mut rng), random_polygon(&mut rng));
+        let (a, b) = (random_polygon(&mut rng, 2.0), random_polygon(&mut rng, 2.0));
         let sum = a.minkowski_sum(&b);
         let all: Vec<Vector> = a
             .vertices()
@@ -103,7 +92,7 @@ fn a_translated_polygon_has_the_same_sums() {
 fn half_spaces_of_the_normals_are_the_set() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..2000 {
-        let set = random_polygon(&mut rng);
+        let set = random_polygon(&mut rng, 2.0);
         let p = Vector::new(rng.random_range(-6.0..6.0), rng.random_range(-6.0..6.0));
         let slack = set
             .normals()
@@ -117,21 +106,6 @@ fn half_spaces_of_the_normals_are_the_set() {
             assert!(slack > 0.0 && slack <= distance + 1e-9);
         }
     }
-}
-
-#[test]
-fn separation_is_symmetric_and_zero_at_touch() {
-    let square = outer_square(1.0);
-    let moved = square.translated(Vector::new(5.0, 0.0));
-    assert!((square.separation(&moved) - 3.0).abs() < 1e-12);
-    assert!((moved.separation(&square) - 3.0).abs() < 1e-12);
-    assert!(
-        square
-            .separation(&square.translated(Vector::new(2.0, 0.0)))
-            .abs()
-            < 1e-12
-    );
-    assert!((square.separation(&square.translated(Vector::new(1.5, 0.0))) + 0.5).abs() < 1e-12);
 }
 
 #[test]

@@ -67,17 +67,6 @@ pub struct SignedDistance {
 ///
 /// Stored as the centre and two orthogonal semi-axes, of which one or both may be zero, so that a
 /// thin ellipse loses no digits.
-///
-/// ```
-/// use nalgebra::Matrix2;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::Ellipse;
-/// let ellipse = Ellipse::new(Vector::zeros(), Matrix2::new(100.0, 0.0, 0.0, 25.0))?;
-/// assert_eq!(ellipse.support(Vector::new(0.0, 1.0)), 5.0);
-/// assert!((ellipse.signed_distance(Vector::new(13.0, 0.0)).distance - 3.0).abs() < 1e-12);
-/// assert!(Ellipse::new(Vector::zeros(), Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_err());
-/// # Ok::<(), searoom::geometry::ShapeError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipse {
     center: Vector,

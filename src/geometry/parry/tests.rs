@@ -3,6 +3,7 @@
 use super::*;
 use crate::frame::{Pose as Place, direction, heading_of};
 use crate::geometry::ConvexPolygon;
+use crate::geometry::fixtures::{random_points as points, random_polygon as set};
 use crate::obstacle::PolytopeObstacle;
 use crate::obstacle::contact::{arc_contacts, line_contact};
 use crate::trajectory::Segment;
@@ -15,22 +16,6 @@ use parry2d_f64::shape::ConvexPolygon as ParryPolygon;
 use parry2d_f64::transformation::convex_hull;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// One to eight points, often on a grid: repeated ones, ones on a line, and sides that are
-/// parallel.
-fn points(rng: &mut ChaCha8Rng, size: f64) -> Vec<Vector> {
-    let on_grid = rng.random_bool(0.5);
-    (0..rng.random_range(1..9))
-        .map(|_| {
-            let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
-            (if on_grid { p.map(f64::round) } else { p }) * size
-        })
-        .collect()
-}
-
-fn set(rng: &mut ChaCha8Rng, size: f64) -> ConvexPolygon {
-    ConvexPolygon::hull(&points(rng, size)).expect("finite")
-}
 
 fn farthest(set: &ConvexPolygon) -> impl Fn(Vector) -> Vector {
     let vertices = set.vertices().to_vec();

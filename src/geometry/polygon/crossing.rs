@@ -2,6 +2,7 @@
 
 use super::turn;
 use crate::frame::{Vector, cross};
+use crate::geometry::{BoxIndex, Window};
 
 /// Index of an edge: it starts at this vertex and ends at the next one of its ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,27 +22,16 @@ pub struct Crossing {
     pub at: Vector,
 }
 
-/// An edge in the sweep.
+/// An edge with its index.
 struct Edge {
     index: EdgeIndex,
     from: Vector,
     to: Vector,
 }
 
-impl Edge {
-    fn west(&self) -> f64 {
-        self.from.x.min(self.to.x)
-    }
-
-    fn east(&self) -> f64 {
-        self.from.x.max(self.to.x)
-    }
-}
-
 /// The first pair of edges, in index order, that share more than an end or a touching point.
 ///
-/// Exact predicates. A sweep from west to east: O(n log n) plus the pairs whose east ranges
-/// overlap.
+/// Exact predicates. Usually O(n log n): only edges whose boxes meet are compared.
 pub(super) fn first_crossing(rings: &[Vec<Vector>]) -> Option<Crossing> {
     let mut edges: Vec<Edge> = Vec::new();
     for (ring, points) in rings.iter().enumerate() {
@@ -53,33 +43,23 @@ pub(super) fn first_crossing(rings: &[Vec<Vector>]) -> Option<Crossing> {
             });
         }
     }
-    edges.sort_by(|a, b| a.west().total_cmp(&b.west()));
-    let mut open: Vec<&Edge> = Vec::new();
-    let mut first: Option<Crossing> = None;
-    for edge in &edges {
-        open.retain(|other| other.east() >= edge.west());
-        for other in &open {
-            let Some(at) = shared(edge, other) else {
-                continue;
-            };
-            let mut pair = [edge.index, other.index];
-            pair.sort();
-            if first.is_none_or(|f| pair < f.edges) {
-                first = Some(Crossing { edges: pair, at });
-            }
-        }
-        open.push(edge);
-    }
-    first
+    let window = |e: &Edge| Window {
+        low: e.from.inf(&e.to),
+        high: e.from.sup(&e.to),
+    };
+    let boxes = BoxIndex::new(edges.iter().map(window));
+    edges.iter().enumerate().find_map(|(i, edge)| {
+        let mut later: Vec<usize> = boxes.meeting(&window(edge)).filter(|k| *k > i).collect();
+        later.sort_unstable();
+        later.into_iter().find_map(|k| {
+            let pair = [edge.index, edges[k].index];
+            shared(edge, &edges[k]).map(|at| Crossing { edges: pair, at })
+        })
+    })
 }
 
 /// A point of the crossing or the overlap of two edges, if there is one.
 fn shared(e: &Edge, f: &Edge) -> Option<Vector> {
-    let apart =
-        e.from.y.min(e.to.y) > f.from.y.max(f.to.y) || f.from.y.min(f.to.y) > e.from.y.max(e.to.y);
-    if apart {
-        return None;
-    }
     let (a, b) = (turn(e.from, e.to, f.from), turn(e.from, e.to, f.to));
     if a == 0.0 && b == 0.0 {
         // collinear edges may share a point, but not a length
@@ -104,7 +84,7 @@ mod tests {
 
     /// Compares with a test of every pair of edges.
     #[test]
-    fn the_sweep_finds_what_every_pair_finds() {
+    fn the_index_finds_what_every_pair_finds() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(71);
         let mut crossed = 0;
         for case in 0..2000 {

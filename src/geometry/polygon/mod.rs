@@ -52,22 +52,6 @@ pub enum PolygonError {
 ///
 /// Rings may touch themselves and one another in points only. The outer ring is counter-clockwise
 /// and holes are clockwise, so the inside is to port of every edge.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{Polygon, PolygonError, convex_pieces};
-///
-/// let quay = [(0.0, 0.0), (40.0, 0.0), (40.0, 10.0), (10.0, 10.0), (10.0, 30.0), (0.0, 30.0)];
-/// let ring: Vec<Vector> = quay.map(|(x, y)| Vector::new(x, y)).to_vec();
-/// let polygon = Polygon::new(&[ring.clone()])?;
-/// assert_eq!(polygon.area(), 600.0);
-/// assert!(polygon.contains(Vector::new(5.0, 25.0)) && !polygon.contains(Vector::new(20.0, 20.0)));
-/// let pieces = convex_pieces(&polygon).expect("a polygon");
-/// let area: f64 = pieces.iter().map(|piece| piece.area()).sum();
-/// assert!((area - 600.0).abs() < 1e-6);
-/// assert!(Polygon::new(&[ring[..2].to_vec()]).is_err());
-/// # Ok::<(), PolygonError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
     rings: Vec<Vec<Vector>>,

@@ -4,8 +4,7 @@
 //! contains their sum.
 
 mod contact;
-mod exact_sum;
-pub(in crate::obstacle) mod velocity_obstacle;
+mod velocity_obstacle;
 
 use crate::frame::{Vector, cross};
 use crate::geometry::{
@@ -30,8 +29,7 @@ pub(in crate::obstacle) const MAX_STEPS: usize = 100;
 ///
 /// This is paper eq. (18) in a form without division by zero: a term without trace is dropped, and
 /// `Q_o`, `Q_v` may be singular. Convex in space-time (docs/theory.md section 3). It contains the
-/// Minkowski sum `O_0 ⊕ t V` and touches it. [`EllipsoidObstacle::sum_contains`] tests the exact
-/// sum, [`EllipsoidObstacle::outer_excess`] measures the difference.
+/// Minkowski sum `O_0 ⊕ t V`, which is not an ellipse, and touches it.
 ///
 /// Where both sets lie on parallel segments or are points, the sum does too and is stored as an
 /// exact polytope.
@@ -150,6 +148,38 @@ impl EllipsoidObstacle {
             self.initial.outer_polygon(DISC_SIDES),
             self.velocity.outer_polygon(DISC_SIDES),
         )
+    }
+
+    /// The largest ratio of [`SpaceTimeObstacle::support`] to the support of the exact sum `O_0 ⊕ t
+    /// V`, both about the centre, over all directions and times up to `horizon`. O(1).
+    ///
+    /// The exact sum scaled about its centre by this factor contains the outer set. It is at least
+    /// 1, and infinite where `O_0` is flat and `V` is not along it.
+    ///
+    /// With `rho = sqrt(n' Q_o n / n' Q_v n) / d` and `tau = t / d` the squared ratio is `1 + tau
+    /// (rho - 1)² / (rho + tau)²`. It is largest at `tau = rho` for the extreme `rho`, the roots of
+    /// the generalised eigenvalues.
+    pub fn largest_ratio_to_sum(&self, horizon: f64) -> f64 {
+        let [still, growing] = self.roots;
+        if self.is_flat() || still == 0.0 || growing == 0.0 {
+            return 1.0;
+        }
+        let delay = still / growing;
+        let [d0, d1, d2] = self.determinant;
+        let root = d1 + (d1 * d1 - 4.0 * d0 * d2).max(0.0).sqrt();
+        let ratio = |square: f64| {
+            let rho = (square / delay).sqrt();
+            let tau = rho.min(horizon / delay);
+            if rho.is_infinite() {
+                (1.0 + tau).sqrt()
+            } else if rho > 0.0 {
+                (1.0 + tau * ((rho - 1.0) / (rho + tau)).powi(2)).sqrt()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let least = if d0 > 0.0 { 2.0 * d0 / root } else { 0.0 };
+        ratio(least).max(ratio(root / (2.0 * d2)))
     }
 
     /// The section `E(p_t, Q_t)` at `time >= 0`, paper eq. (18).

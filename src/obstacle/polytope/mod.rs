@@ -63,25 +63,6 @@ pub struct MovingVertex {
 ///
 /// `V` is convex, so `O_t` also contains every position reached with a velocity that varies in time
 /// and stays in `V`.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::PolytopeObstacle;
-///
-/// let square = |half: f64, center: Vector| {
-///     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
-///     ConvexPolygon::hull(&corners.map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, eastbound at 4 to 6 m/s and at most 1 m/s north or south
-/// let (initial, velocity) = (square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let target = PolytopeObstacle::new("ferry", initial, velocity);
-/// assert!(target.contains(Vector::new(65.0, 15.0), 10.0));
-/// assert!(!target.contains(Vector::new(75.0, 0.0), 10.0));
-/// let after_10_s = target.section(10.0);
-/// assert!((after_10_s.area() - 40.0 * 40.0).abs() < 1e-6);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct PolytopeObstacle {
     shared: Arc<Shared>,

@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::fixtures::random_polygon;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -8,7 +9,11 @@ fn the_slack_found_from_face_to_face_is_that_of_all_faces() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let (mut outside, mut inside) = (0, 0);
     for _ in 0..4000 {
-        let o = PolytopeObstacle::new("", random_set(&mut rng, 20.0), random_set(&mut rng, 1.0));
+        let o = PolytopeObstacle::new(
+            "",
+            random_polygon(&mut rng, 20.0),
+            random_polygon(&mut rng, 1.0),
+        );
         let place = Vector::new(rng.random_range(-90.0..90.0), rng.random_range(-90.0..90.0));
         let time = [0.0, rng.random_range(0.0..30.0), -3.0][rng.random_range(0..3)];
         let all = o.slack(place, time).value;
@@ -27,84 +32,16 @@ fn the_slack_found_from_face_to_face_is_that_of_all_faces() {
         }
     }
     assert!(outside > 500 && inside > 200, "{outside} {inside}");
-    let o = PolytopeObstacle::new("", random_set(&mut rng, 20.0), random_set(&mut rng, 1.0));
+    let o = PolytopeObstacle::new(
+        "",
+        random_polygon(&mut rng, 20.0),
+        random_polygon(&mut rng, 1.0),
+    );
     assert!(
         o.slack_near(Vector::new(f64::NAN, 0.0), 1.0, 0)
             .value
             .is_nan()
     );
-}
-
-fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
-    let n = rng.random_range(1..7);
-    let grid = rng.random_bool(0.5);
-    let points: Vec<Vector> = (0..n)
-        .map(|_| {
-            let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
-            (if grid { p.map(f64::round) } else { p }) * scale
-        })
-        .collect();
-    ConvexPolygon::hull(&points).expect("finite")
-}
-
-/// Reference: the hull of all vertex sums, docs/theory.md section 1.
-fn hull_of_sums(o: &PolytopeObstacle, t: f64) -> ConvexPolygon {
-    let points: Vec<Vector> = o
-        .initial()
-        .vertices()
-        .iter()
-        .flat_map(|p| o.velocity().vertices().iter().map(move |v| p + v * t))
-        .collect();
-    ConvexPolygon::hull(&points).expect("finite")
-}
-
-#[test]
-fn membership_matches_the_hull_of_vertex_sums() {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    for _ in 0..3000 {
-        let (initial, velocity) = (random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
-        let o = PolytopeObstacle::new("x", initial, velocity);
-        let t = if rng.random_bool(0.2) {
-            0.0
-        } else {
-            rng.random_range(0.0..50.0)
-        };
-        let p = Vector::new(
-            rng.random_range(-200.0..200.0),
-            rng.random_range(-200.0..200.0),
-        );
-        let distance = hull_of_sums(&o, t).signed_distance(p);
-        let slack = o.slack(p, t).value;
-        if distance.abs() > 1e-6 {
-            assert_eq!(o.contains(p, t), distance < 0.0, "{o:?} {p:?} {t}");
-        }
-        if distance < -1e-6 {
-            assert!((slack - distance).abs() < 1e-6);
-        } else {
-            assert!(slack <= distance + 1e-6);
-        }
-        assert!((o.section(t).area() - hull_of_sums(&o, t).area()).abs() < 1e-6);
-    }
-}
-
-#[test]
-fn moving_vertices_are_the_vertices_of_every_section() {
-    let mut rng = ChaCha8Rng::seed_from_u64(8);
-    for _ in 0..500 {
-        let o = PolytopeObstacle::new("x", random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
-        for t in [0.5, 7.0, 100.0] {
-            let points: Vec<Vector> = o
-                .moving_vertices()
-                .iter()
-                .map(|v| v.origin + v.velocity * t)
-                .collect();
-            let hull = ConvexPolygon::hull(&points).expect("finite");
-            assert!((hull.area() - o.section(t).area()).abs() < 1e-6 * (1.0 + hull.area()));
-            for v in o.section(t).vertices() {
-                assert!(points.iter().any(|p| (p - v).norm() < 1e-9));
-            }
-        }
-    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::ConvexPolygon;
+use crate::geometry::fixtures::random_polygon;
 use rand::{Rng, SeedableRng};
 
 #[test]
@@ -7,15 +8,11 @@ fn the_projection_is_membership_along_the_path() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(51);
     let mut met = 0;
     for _ in 0..300 {
-        let mut set = |n: usize, scale: f64| {
-            let points: Vec<Vector> = (0..n)
-                .map(|_| {
-                    Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale
-                })
-                .collect();
-            ConvexPolygon::hull(&points).expect("finite")
-        };
-        let o = PolytopeObstacle::new("x", set(5, 80.0), set(4, 3.0));
+        let o = PolytopeObstacle::new(
+            "x",
+            random_polygon(&mut rng, 27.0),
+            random_polygon(&mut rng, 1.0),
+        );
         let start = Vector::new(
             rng.random_range(-200.0..0.0),
             rng.random_range(-100.0..100.0),
@@ -46,19 +43,15 @@ fn the_projection_is_membership_along_the_path() {
     assert!(met > 100);
 }
 
-fn random_set(rng: &mut rand_chacha::ChaCha8Rng, n: usize, scale: f64) -> ConvexPolygon {
-    let points: Vec<Vector> = (0..n)
-        .map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale)
-        .collect();
-    ConvexPolygon::hull(&points).expect("finite")
-}
-
 #[test]
 fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(52);
     let (mut met, mut most) = (0, 0);
     for _ in 0..300 {
-        let (initial, velocity) = (random_set(&mut rng, 5, 80.0), random_set(&mut rng, 4, 3.0));
+        let (initial, velocity) = (
+            random_polygon(&mut rng, 27.0),
+            random_polygon(&mut rng, 1.0),
+        );
         let o = EllipsoidObstacle::outer_of(&PolytopeObstacle::new("x", initial, velocity));
         let bend = Vector::new(
             rng.random_range(-150.0..50.0),
@@ -108,8 +101,8 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
     for case in 0..2000 {
         let o = PolytopeObstacle::new(
             "x",
-            random_set(&mut rng, 5, 60.0),
-            random_set(&mut rng, 4, 2.0),
+            random_polygon(&mut rng, 20.0),
+            random_polygon(&mut rng, 0.7),
         );
         let start = Vector::new(rng.random_range(-200.0..0.0), rng.random_range(-60.0..60.0));
         let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
@@ -147,55 +140,6 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
         }
     }
     assert!(met > 200, "{met}");
-}
-
-/// Paper eq. (29): the diagram's time starts when own ship enters the path.
-#[test]
-fn a_later_start_sees_what_is_there_later() {
-    let square = |half: f64, x: f64| {
-        let points = [(-half, -half), (half, -half), (half, half), (-half, half)];
-        ConvexPolygon::hull(&points.map(|(a, b)| Vector::new(a + x, b))).expect("finite")
-    };
-    let polytope = PolytopeObstacle::new("x", square(20.0, 0.0), square(0.4, 2.0));
-    let ellipsoid = EllipsoidObstacle::outer_of(&polytope);
-    let track = Track {
-        start: Vector::new(90.0, -200.0),
-        direction: crate::frame::direction(1.4),
-        length: 400.0,
-    };
-    let (start_time, duration) = (25.0, 80.0);
-    let seen = [
-        along_track_from(&polytope, &track, start_time, duration),
-        ellipsoid_along_track_from(&ellipsoid, &track, start_time, duration),
-    ];
-    let polygons = seen.map(|corners| {
-        let points: Vec<Vector> = (corners.iter())
-            .map(|c| Vector::new(c.distance, c.time))
-            .collect();
-        ConvexPolygon::hull(&points).expect("they meet")
-    });
-    let (mut met, mut clear) = (0, 0);
-    for k in 0..4000 {
-        let distance = track.length * f64::from(k % 80) / 79.0;
-        let time = duration * f64::from(k / 80) / 49.0;
-        let (place, clock) = (track.at(distance), start_time + time);
-        let point = Vector::new(distance, time);
-        let depths = [
-            polytope.signed_distance(place, clock).distance,
-            ellipsoid.signed_distance(place, clock).distance,
-        ];
-        for (kind, (polygon, depth)) in polygons.iter().zip(depths).enumerate() {
-            let outer = if kind == 0 { 1e-6 } else { OUTER_EXCESS_M };
-            if depth < -1e-6 {
-                met += 1;
-                assert!(polygon.contains(point), "{kind} {point} {depth}");
-            } else if depth > outer {
-                clear += 1;
-                assert!(!polygon.contains(point), "{kind} {point} {depth}");
-            }
-        }
-    }
-    assert!(met > 500 && clear > 500, "{met} {clear}");
 }
 
 /// Each plane is found by the distances of the two corners that the one before it made.

@@ -49,8 +49,6 @@ pub struct StartAttempt {
     pub report: SolverReport,
     /// Iterations of all solves.
     pub iterations: usize,
-    /// Number of solves after the first, for rows between the nodes.
-    pub rounds: usize,
     /// Integral of the stage cost, in the units of the weights.
     pub objective: f64,
     /// Deepest point inside a set; `None` where the motion is clear of every set at all times.
@@ -125,7 +123,6 @@ pub(super) fn resume<V: Manoeuvring>(
         let found = Progress {
             report,
             iterations,
-            rounds,
             inside: deepest,
         };
         if let Some(short) = cheaper.take()
@@ -133,7 +130,6 @@ pub(super) fn resume<V: Manoeuvring>(
         {
             return StartAttempt {
                 iterations,
-                rounds,
                 priced_out: true,
                 ..short
             };
@@ -172,7 +168,6 @@ pub(super) fn resume<V: Manoeuvring>(
 struct Progress {
     report: SolverReport,
     iterations: usize,
-    rounds: usize,
     inside: Option<Inside>,
 }
 
@@ -189,7 +184,6 @@ impl Progress {
             },
             report: self.report,
             iterations: self.iterations,
-            rounds: self.rounds,
             objective: self.report.objective * problem.cost_unit(),
             inside: self.inside,
             priced_out: false,

@@ -10,11 +10,10 @@ use crate::obstacle::{EllipsoidObstacle, Obstacle, SpaceTimeObstacle};
 /// ellipse is widened: an outer set.
 const LEAST_SEMI_AXIS: f64 = 1e-3;
 
-/// Ellipsoid with interior at every time, and the set it contains.
+/// Ellipsoid with interior at every time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeepOut {
     set: EllipsoidObstacle,
-    enclosing: bool,
 }
 
 /// Section in the form of the constraint: `(x - center)' inverse (x - center) >= 1`.
@@ -38,9 +37,9 @@ impl KeepOut {
     /// Outer ellipsoid of an obstacle: an ellipsoid itself; for polytopes and slabs the smallest
     /// ellipses around their sets of positions and of velocities.
     pub fn outer_of(obstacle: &Obstacle) -> Self {
-        let (set, enclosing) = match obstacle {
-            Obstacle::Ellipsoid(o) => (o.as_ref().clone(), false),
-            Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
+        let set = match obstacle {
+            Obstacle::Ellipsoid(o) => o.as_ref().clone(),
+            Obstacle::Polytope(o) => EllipsoidObstacle::outer_of(o),
             Obstacle::Slabs(o) => {
                 let initial = match &o.sets().initial {
                     ConvexSet::Polygon(initial) => outer_enclosing_ellipse(initial),
@@ -48,24 +47,18 @@ impl KeepOut {
                 };
                 let all = o.sets().outer_velocities_after(f64::NEG_INFINITY);
                 let all = outer_enclosing_ellipse(&all);
-                (EllipsoidObstacle::new(o.name(), initial, all), true)
+                EllipsoidObstacle::new(o.name(), initial, all)
             }
         };
         let initial = outer_widened(set.initial());
         Self {
             set: EllipsoidObstacle::new(set.name(), initial, *set.velocity()),
-            enclosing,
         }
     }
 
     /// The ellipsoid.
     pub fn set(&self) -> &EllipsoidObstacle {
         &self.set
-    }
-
-    /// True where it encloses a set of another kind.
-    pub fn encloses(&self) -> bool {
-        self.enclosing
     }
 
     /// The section at `time >= 0`, seconds. O(1).
@@ -145,7 +138,7 @@ mod tests {
         for initial in [point.clone(), wall] {
             let polytope = PolytopeObstacle::new("thin", initial.clone(), point.clone());
             let keep = KeepOut::outer_of(&polytope.into());
-            assert!(keep.encloses() && keep.narrowest() >= LEAST_SEMI_AXIS);
+            assert!(keep.narrowest() >= LEAST_SEMI_AXIS);
             for vertex in initial.vertices() {
                 assert!(keep.at(0.0).level(*vertex) <= 1.0 + 1e-9);
             }

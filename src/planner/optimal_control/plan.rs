@@ -14,7 +14,6 @@ use super::passing::passing_sides;
 use super::report::{ControlReport, HomotopyClass, StartReport};
 use super::solver::{Settings, SolverStatus};
 use super::task::{Controls, Profile, Task};
-use super::transcription::Weights;
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
@@ -67,13 +66,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
     fn new(problem: &'a Problem, settings: &ControlSettings, smooth: V, exact: V) -> Self {
         Self {
             problem,
-            controls: Controls {
-                force_limits: settings.force_limits,
-                weights: Weights {
-                    state: settings.state_weights,
-                    force: settings.force_weights,
-                },
-            },
+            controls: Controls::from(settings),
             intervals: settings.intervals,
             smooth,
             exact,

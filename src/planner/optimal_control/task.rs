@@ -5,6 +5,7 @@ use super::reference::{LegSide, reference};
 use super::solver::Vector;
 use super::transcription::{Row, Span, Transcription, Weights};
 use crate::frame::{Pose, Vector as Place};
+use crate::planner::ControlSettings;
 use crate::trajectory::{DesiredTrajectory, ForceNode};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
@@ -18,6 +19,18 @@ pub struct Controls {
     pub force_limits: ForceVector,
     /// Weights of the stage cost.
     pub weights: Weights,
+}
+
+impl From<&ControlSettings> for Controls {
+    fn from(settings: &ControlSettings) -> Self {
+        Self {
+            force_limits: settings.force_limits,
+            weights: Weights {
+                state: settings.state_weights,
+                force: settings.force_weights,
+            },
+        }
+    }
 }
 
 /// Task from a state at a time on: stay near the desired trajectory and out of every set, at least

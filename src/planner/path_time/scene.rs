@@ -3,7 +3,7 @@
 use super::TOUCH_M;
 use super::due::Due;
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{
     HalfSpace, PathTime, PathTimeObstacle, SpaceTimeObstacle, Track, outer_faces_along,
 };
@@ -59,9 +59,9 @@ impl<'a> Scene<'a> {
                 length: leg.length,
             })
             .collect();
-        let boxes: Vec<Extent> = tracks
+        let boxes: Vec<Window> = tracks
             .iter()
-            .map(|t| Extent::of(&[t.start, t.at(t.length)]))
+            .filter_map(|t| Window::around(&[t.start, t.at(t.length)]))
             .collect();
         let mut seen: Vec<Vec<Seen>> = vec![Vec::new(); tracks.len()];
         for part in pieces(problem.obstacles, problem.horizon) {
@@ -218,36 +218,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Axis-aligned bounding box.
-#[derive(Debug, Clone, Copy)]
-struct Extent {
-    low: Vector,
-    high: Vector,
-}
-
-impl Extent {
-    fn of(points: &[Vector]) -> Self {
-        let first = Self {
-            low: points[0],
-            high: points[0],
-        };
-        points.iter().fold(first, |e, p| Self {
-            low: e.low.inf(p),
-            high: e.high.sup(p),
-        })
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        // negated on purpose: a NaN counts as near
-        !(self.low.x > other.high.x
-            || self.low.y > other.high.y
-            || self.high.x < other.low.x
-            || self.high.y < other.low.y)
-    }
-}
-
 /// Bounding box of all positions of a piece during `duration` seconds from its start.
-fn covered(part: &Piece, duration: f64) -> Extent {
+fn covered(part: &Piece, duration: f64) -> Window {
     let reach = |normal: Vector| match &part.body {
         // linear in time
         Body::Polytope(o) => {
@@ -272,7 +244,7 @@ fn covered(part: &Piece, duration: f64) -> Extent {
         }
     };
     let (east, north) = (Vector::new(1.0, 0.0), Vector::new(0.0, 1.0));
-    Extent {
+    Window {
         low: -Vector::new(reach(-east), reach(-north)),
         high: Vector::new(reach(east), reach(north)),
     }

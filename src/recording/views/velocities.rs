@@ -17,9 +17,6 @@ const LOOK_AHEAD_S: f64 = 300.0;
 /// Radians between two points of a circle: 72 of them.
 const CIRCLE_STEP: f64 = std::f64::consts::PI / 36.0;
 
-/// Largest error of the outline of an ellipsoid's velocity obstacle, as a fraction of the view.
-const TOLERANCE: f64 = 3e-3;
-
 /// Half width of the view, m/s: 1.5 times own ship's greatest speed.
 pub fn limit(model: &ViewModel) -> f64 {
     1.5 * model.scenario.own_ship.max_speed()
@@ -81,8 +78,8 @@ fn log_axes(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> 
 /// The closed edge of the velocity obstacle at a time and at own ship's position then, clipped to
 /// the view.
 ///
-/// It is exact for a polytope and an outer bound within [`TOLERANCE`] for an ellipsoid. For slabs
-/// it is that of the hull of all later velocities.
+/// It is exact for a polytope and an outer bound by tangents for an ellipsoid. For slabs it is
+/// that of the hull of all later velocities.
 fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
     let own = model.motion.pose_at(time).position;
     let ahead = LOOK_AHEAD_S.min((model.end - time).max(1.0));
@@ -93,8 +90,7 @@ fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
         }
         // it grows from any of its sections as from its first
         Obstacle::Ellipsoid(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
-            .velocity_obstacle(own, ahead)
-            .outer_half_planes(limit, TOLERANCE * limit),
+            .outer_velocities_within(own, ahead, 0.0),
         Obstacle::Slabs(o) => {
             let velocities = o.sets().outer_velocities_after(time);
             from(set, time, velocities).velocity_obstacle(own, ahead)

@@ -11,9 +11,6 @@ use crate::study::compare::Stroke;
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// Accuracy of a drawn velocity obstacle of ellipses, as a fraction of the limit.
-const FINENESS: f64 = 5e-4;
-
 /// Boundary of a section, counter-clockwise; ellipses are sampled.
 pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
     match section {
@@ -94,7 +91,7 @@ pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot>
 /// Velocities that come within `distance` metres of a target, as convex polygons up to `limit` m/s
 /// east and north. At distance 0, this is the velocity obstacle. Polygons are exact at distance 0.
 /// At other distances they are widened by a disc of 64 sides, 0.1 % too large. Ellipses are outer
-/// approximations to [`FINENESS`] of `limit`.
+/// approximations.
 pub fn outer_velocities_within(
     target: &Obstacle,
     approach: &Approaching,
@@ -126,8 +123,7 @@ pub fn outer_velocities_within(
             wide.outer_velocity_obstacles(position, horizon)
         }
         Obstacle::Ellipsoid(obstacle) => {
-            let region = obstacle.velocities_within(position, horizon, distance);
-            vec![region.outer_half_planes(limit, FINENESS * limit)]
+            vec![obstacle.outer_velocities_within(position, horizon, distance)]
         }
     };
     regions.iter().filter_map(|r| r.clipped(limit)).collect()

@@ -1,9 +1,9 @@
 //! A search over (east, north, heading, time) that is small, slow and obviously right: what the
 //! space-time planner's cost is measured against.
 //!
-//! Own ship steps `step` seconds at a time at one of its speeds, straight on or on its smallest
+//! Own ship steps `STEP` seconds at a time at one of its speeds, straight on or on its smallest
 //! circle to either side. States stay continuous; of those that fall into one cell at one time only
-//! the most promising few go on. From every state that goes on the ship also tries to close: back
+//! the most promising goes on. From every state that goes on the ship also tries to close: back
 //! to the desired path, recover the lag, steer to the end. What comes out is a trajectory of the
 //! same ship, clear of the same sets (sampled in time), so its cost is an upper bound of the
 //! optimum. It is not the optimum: turns come in multiples of a step and cells merge, which costs a
@@ -35,19 +35,20 @@ const HOMING: f64 = 500.0;
 /// Metres from the path beyond which no return is tried: the lattice comes nearer by itself.
 const RETURN_FROM: f64 = 100.0;
 
+/// Seconds of a step.
+const STEP: f64 = 4.0;
+
+/// Cells of a full turn.
+const HEADINGS: f64 = 72.0;
+
+/// Seconds between the instants at which membership is tested.
+const CHECK: f64 = 0.02;
+
 /// How fine the search is.
 #[derive(Debug, Clone, Copy)]
 pub struct DenseSearch {
-    /// Seconds.
-    pub step: f64,
     /// Metres.
     pub cell: f64,
-    /// Cells of a full turn.
-    pub headings: usize,
-    /// Most promising states that go on per cell and time.
-    pub per_cell: usize,
-    /// Seconds between the instants at which membership is tested.
-    pub check: f64,
     /// States to step from at most: the bound on time and memory.
     pub max_states: usize,
 }
@@ -55,11 +56,7 @@ pub struct DenseSearch {
 impl Default for DenseSearch {
     fn default() -> Self {
         Self {
-            step: 4.0,
             cell: 10.0,
-            headings: 72,
-            per_cell: 1,
-            check: 0.02,
             max_states: 3_000_000,
         }
     }
@@ -70,11 +67,9 @@ impl DenseSearch {
     /// that costs `incumbent` m² is as large as its cubic root. Where the cells have grown it
     /// overlooks a few per cent that the default still finds.
     pub fn coarse(incumbent: f64) -> Self {
-        let fine = Self::default();
         Self {
-            cell: fine.cell * (incumbent / 2000.0).cbrt().max(1.0),
+            cell: Self::default().cell * (incumbent / 2000.0).cbrt().max(1.0),
             max_states: 500_000,
-            ..fine
         }
     }
 }
@@ -113,7 +108,6 @@ struct State {
 struct Scene<'a> {
     problem: &'a Problem<'a>,
     leg: DesiredLeg,
-    check: f64,
     /// `q / (q + speed²)`: the weight of a squared lag.
     kappa: f64,
     /// m/s: the slack of a set changes at most this fast along any motion of the ship.
@@ -133,11 +127,10 @@ impl DenseSearch {
         let scene = Scene {
             problem,
             leg: *leg,
-            check: self.check,
             kappa: problem.time_weight / (problem.time_weight + leg.speed.powi(2)),
             closing_speed: problem.own.max_speed() + fastest_set.fold(0.0, f64::max),
         };
-        let bound = Bound::new(problem, leg, self.step);
+        let bound = Bound::new(problem, leg, STEP);
         let duration = problem.desired.duration();
         let mut limit = incumbent * duration;
         let mut best: Option<(usize, Vec<Segment>)> = None;
@@ -150,12 +143,12 @@ impl DenseSearch {
         let mut layer = 0..1;
         let (mut expanded, mut complete) = (0, true);
         for index in 0.. {
-            let time = index as f64 * self.step;
-            if !complete || layer.is_empty() || time + self.step > problem.horizon {
+            let time = index as f64 * STEP;
+            if !complete || layer.is_empty() || time + STEP > problem.horizon {
                 break;
             }
             let mut next: Vec<State> = Vec::new();
-            let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+            let mut cells: HashMap<[i64; 3], usize> = HashMap::new();
             for at in layer.clone() {
                 let (pose, cost) = (states[at].pose, states[at].cost);
                 if states[at].total >= limit {
@@ -173,7 +166,7 @@ impl DenseSearch {
                         best = Some((at, closing));
                     }
                 }
-                for segment in scene.steps(&pose, time, self.step) {
+                for segment in scene.steps(&pose, time, STEP) {
                     let end = segment.end();
                     let to_go = bound.to_go(&end, index + 1);
                     if cost + to_go >= limit {
@@ -186,12 +179,20 @@ impl DenseSearch {
                         total: cost + to_go,
                         before: Some((at, segment)),
                     };
-                    let kept = cells.entry(self.cell_of(&end, leg)).or_default();
+                    // of the states of a cell the most promising goes on
+                    let cell = self.cell_of(&end, leg);
+                    let best = cells.get(&cell).copied();
                     if state.total < limit
-                        && self.wants(kept, &next, state.total)
+                        && best.is_none_or(|k| state.total < next[k].total)
                         && scene.is_clear(&[segment])
                     {
-                        self.keep(kept, &mut next, state);
+                        match best {
+                            Some(k) => next[k] = state,
+                            None => {
+                                cells.insert(cell, next.len());
+                                next.push(state);
+                            }
+                        }
                     }
                 }
             }
@@ -214,26 +215,8 @@ impl DenseSearch {
         [
             (leg.direction.dot(&offset) / self.cell).round() as i64,
             (cross(leg.direction, offset) / self.cell).round() as i64,
-            ((turn * self.headings as f64).round() as i64).rem_euclid(self.headings as i64),
+            ((turn * HEADINGS).round() as i64).rem_euclid(HEADINGS as i64),
         ]
-    }
-
-    /// True while the cell has room, or a costlier state to give up.
-    fn wants(&self, kept: &[usize], next: &[State], total: f64) -> bool {
-        kept.len() < self.per_cell || kept.iter().any(|&k| total < next[k].total)
-    }
-
-    /// Adds the state to the next layer, in place of its cell's costliest when the cell is full.
-    fn keep(&self, kept: &mut Vec<usize>, next: &mut Vec<State>, state: State) {
-        if kept.len() < self.per_cell {
-            kept.push(next.len());
-            next.push(state);
-            return;
-        }
-        let costs = |&a: &usize, &b: &usize| next[a].total.total_cmp(&next[b].total);
-        if let Some(costliest) = kept.iter().copied().max_by(costs) {
-            next[costliest] = state;
-        }
     }
 }
 
@@ -329,7 +312,7 @@ impl Scene<'_> {
         total
     }
 
-    /// Membership at instants at most `check` apart, both ends included. A stretch is halved until
+    /// Membership at instants at most `CHECK` apart, both ends included. A stretch is halved until
     /// it is that short, or until the slack at its middle is more than can be lost within it.
     fn is_clear(&self, chain: &[Segment]) -> bool {
         chain
@@ -351,7 +334,7 @@ impl Scene<'_> {
         if clear > self.closing_speed * (to - from) / 2.0 {
             return true;
         }
-        if to - from <= 2.0 * self.check {
+        if to - from <= 2.0 * CHECK {
             return clear > touch && slack(from) > touch && slack(to) > touch;
         }
         clear > touch

@@ -1,11 +1,8 @@
 //! The search on its own: hand cases, and the bound against what was in fact still to come.
 
-use std::time::Duration;
-
 use super::*;
-use searoom::geometry::outer_disc;
 use searoom::obstacle::{LandObstacle, Obstacle};
-use searoom::planner::{Objective, SearchKind};
+use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
@@ -15,35 +12,8 @@ fn scene(kind: EncounterKind, seed: u64, placement: Placement) -> Scenario {
         .scenario
 }
 
-/// The sets that safety is claimed on, from their definition.
-fn hard_sets(scenario: &Scenario) -> Vec<Obstacle> {
-    let own = &scenario.own_ship;
-    let ships = scenario.targets.iter().filter_map(|t| t.ship());
-    ships
-        .map(|ship| {
-            let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
-            let hull = ship.outer_hull(scenario.horizon);
-            let initial = hull.minkowski_sum(&outer_disc(reach, ship.pose.heading));
-            PolytopeObstacle::new("hard", initial, ship.outer_velocity_set()).into()
-        })
-        .collect()
-}
-
 fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
-    Problem {
-        own: &scenario.own_ship,
-        desired: &scenario.desired,
-        alternatives: &[],
-        objective: Objective::SpaceTimeError,
-        obstacles,
-        land_obstacle: LandObstacle::none(),
-        horizon: scenario.horizon,
-        time_weight: scenario.time_weight,
-        search: SearchKind::AStar,
-        deadline: Duration::from_secs(60),
-        first_turn: None,
-        encountered: &[],
-    }
+    pipeline::problem(scenario, obstacles, LandObstacle::none())
 }
 
 #[test]
@@ -62,7 +32,8 @@ fn nothing_in_the_way_costs_nothing() {
 fn what_it_finds_is_clear_and_costs_what_it_says() {
     for kind in EncounterKind::ALL {
         let scenario = scene(kind, 1, Placement::Random);
-        let sets = hard_sets(&scenario);
+        let sets = pipeline::sets(&scenario).into_iter().map(|s| s.hard);
+        let sets: Vec<Obstacle> = sets.collect();
         let problem = problem(&scenario, &sets);
         let answer = DenseSearch::coarse(40_000.0).cheaper_than(&problem, 40_000.0);
         let found = answer.cheaper.expect("a way round");

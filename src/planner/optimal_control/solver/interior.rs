@@ -3,7 +3,7 @@
 use super::iterate::{Iterate, RowPoint};
 use super::line_search::{Accepted, Search};
 use super::newton::Curvature;
-use super::stage::{StageProblem, Triple, Vector};
+use super::stage::{Multipliers, StageProblem, Triple, Vector};
 use super::workspace::Workspace;
 use super::{Settings, SolverReport, SolverStatus};
 
@@ -269,9 +269,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
     fn evaluate(&mut self) {
         for k in 0..self.problem.stages() {
             let range = self.work.rows_of(k);
-            self.work.values[k] =
-                self.problem
-                    .values(k, self.at.point(k), &mut self.work.rows[range]);
+            let rows = &mut self.work.rows[range];
+            self.work.values[k] = self.problem.values(k, &self.at.point(k), rows);
         }
     }
 
@@ -282,11 +281,14 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
         for k in 0..self.problem.stages() {
             let range = self.work.rows_of(k);
+            let multipliers = Multipliers {
+                defect: &self.at.multipliers[k],
+                rows: &self.work.row_multipliers[range.clone()],
+            };
             self.problem.derivatives(
                 k,
-                self.at.point(k),
-                self.at
-                    .multipliers(k, &self.work.row_multipliers[range.clone()]),
+                &self.at.point(k),
+                multipliers,
                 &mut self.work.derivatives[k],
                 &mut self.work.row_gradients[range],
             );

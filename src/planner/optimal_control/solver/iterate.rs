@@ -1,6 +1,6 @@
 //! Primal-dual iterate of the interior-point method, which later solves can reuse.
 
-use super::stage::{Multipliers, Point, StageProblem, Vector};
+use super::stage::{StageProblem, Triple, Vector};
 
 /// Row `row + elastic - slack = 0` with a priced elastic; slack and elastic are not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,24 +68,11 @@ impl<const N: usize, const M: usize> Iterate<N, M> {
     }
 
     /// Variables of one stage.
-    pub fn point(&self, stage: usize) -> Point<'_, N, M> {
-        Point {
-            x: &self.states[stage],
-            u: &self.controls[stage],
-            y: &self.states[stage + 1],
-        }
-    }
-
-    /// Multipliers of the defect and of the rows of a stage; `row_values` are the rows' multipliers
-    /// of all stages.
-    pub(super) fn multipliers<'a>(
-        &'a self,
-        stage: usize,
-        row_values: &'a [f64],
-    ) -> Multipliers<'a, N> {
-        Multipliers {
-            defect: &self.multipliers[stage],
-            rows: row_values,
+    pub fn point(&self, stage: usize) -> Triple<N, M> {
+        Triple {
+            x: self.states[stage],
+            u: self.controls[stage],
+            y: self.states[stage + 1],
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::filter::{Filter, Merit};
 use super::interior::Method;
-use super::stage::{Point, StageProblem};
+use super::stage::{StageProblem, Triple};
 
 /// Constants of Wächter and Biegler 2006, section 3.3.
 const SUFFICIENT: f64 = 1e-8;
@@ -257,12 +257,12 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         let (mut cost, mut infeasibility) = (0.0, 0.0);
         for k in 0..n {
             let range = self.work.offsets[k]..self.work.offsets[k + 1];
-            let at = Point {
-                x: &trial.states[k],
-                u: &trial.controls[k],
-                y: &trial.states[k + 1],
+            let at = Triple {
+                x: trial.states[k],
+                u: trial.controls[k],
+                y: trial.states[k + 1],
             };
-            let values = self.problem.values(k, at, &mut trial.rows[range]);
+            let values = self.problem.values(k, &at, &mut trial.rows[range]);
             trial.values[k] = values;
             cost += values.cost;
             infeasibility += values.defect.lp_norm(1);

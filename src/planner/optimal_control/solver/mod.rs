@@ -20,9 +20,7 @@ mod workspace;
 
 pub use interior::solve;
 pub use iterate::{Iterate, RowPoint};
-pub use stage::{
-    Blocks, Derivatives, Matrix, Multipliers, Point, StageProblem, Triple, Values, Vector,
-};
+pub use stage::{Blocks, Derivatives, Matrix, Multipliers, StageProblem, Triple, Values, Vector};
 pub use workspace::Workspace;
 
 /// Solver settings.

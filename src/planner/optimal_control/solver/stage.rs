@@ -6,7 +6,7 @@ pub type Matrix<const R: usize, const C: usize> = nalgebra::SMatrix<f64, R, C>;
 /// Vector with `R` rows.
 pub type Vector<const R: usize> = nalgebra::SVector<f64, R>;
 
-/// Variables of one stage, or a gradient or step in them: state, control, next state.
+/// Point in the variables of one stage, or a gradient or step in them: state, control, next state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triple<const N: usize, const M: usize> {
     /// State component.
@@ -143,17 +143,6 @@ impl<const N: usize, const M: usize> Derivatives<N, M> {
     }
 }
 
-/// Point in one stage's variables.
-#[derive(Debug, Clone, Copy)]
-pub struct Point<'a, const N: usize, const M: usize> {
-    /// State.
-    pub x: &'a Vector<N>,
-    /// Control.
-    pub u: &'a Vector<M>,
-    /// Next state.
-    pub y: &'a Vector<N>,
-}
-
 /// Multipliers of one stage.
 #[derive(Debug, Clone, Copy)]
 pub struct Multipliers<'a, const N: usize> {
@@ -187,13 +176,13 @@ pub trait StageProblem<const N: usize, const M: usize> {
     fn rows(&self, stage: usize) -> usize;
 
     /// Cost and defect; writes the rows.
-    fn values(&self, stage: usize, at: Point<N, M>, rows: &mut [f64]) -> Values<N>;
+    fn values(&self, stage: usize, at: &Triple<N, M>, rows: &mut [f64]) -> Values<N>;
 
     /// All derivatives; writes the gradients of the rows.
     fn derivatives(
         &self,
         stage: usize,
-        at: Point<N, M>,
+        at: &Triple<N, M>,
         multipliers: Multipliers<N>,
         derivatives: &mut Derivatives<N, M>,
         rows: &mut [Triple<N, M>],

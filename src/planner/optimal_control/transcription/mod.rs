@@ -16,9 +16,7 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x3, Vector2};
 
 use super::keep_out::Keep;
-use super::solver::{
-    Blocks, Derivatives, Matrix, Multipliers, Point, StageProblem, Triple, Values,
-};
+use super::solver::{Blocks, Derivatives, Matrix, Multipliers, StageProblem, Triple, Values};
 use super::task::Controls;
 use crate::frame::wrap;
 use crate::trajectory::hermite;
@@ -216,8 +214,8 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
         self.rows[stage].len()
     }
 
-    fn values(&self, stage: usize, at: Point<6, 3>, rows: &mut [f64]) -> Values<6> {
-        let (x, u, y) = (self.state(at.x), self.force(at.u), self.state(at.y));
+    fn values(&self, stage: usize, at: &Triple<6, 3>, rows: &mut [f64]) -> Values<6> {
+        let (x, u, y) = (self.state(&at.x), self.force(&at.u), self.state(&at.y));
         let middle = self.middle(&x, &y, &u);
         let rate = self.vessel.rates(&middle.state, &u);
         let sum = middle.before + 4.0 * rate + middle.after;
@@ -242,13 +240,13 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
     fn derivatives(
         &self,
         stage: usize,
-        at: Point<6, 3>,
+        at: &Triple<6, 3>,
         multipliers: Multipliers<6>,
         out: &mut Derivatives<6, 3>,
         rows: &mut [Triple<6, 3>],
     ) {
         let h = self.step;
-        let (x, u, y) = (self.state(at.x), self.force(at.u), self.state(at.y));
+        let (x, u, y) = (self.state(&at.x), self.force(&at.u), self.state(&at.y));
         let l = multipliers.defect.component_div(&self.scales.state);
         let middle = self.middle(&x, &y, &u);
         let (jx, jy) = (self.vessel.jacobian(&x), self.vessel.jacobian(&y));

@@ -60,11 +60,6 @@ pub(super) fn initial(
         let course = field.optional_number(key, limits::COURSE.in_unit("degrees"))?;
         Some(course.map(heading_from_course_deg))
     });
-    let status = match field.get("navStatus") {
-        Some(status) => word(&status, &NAV_STATUS, &STATUS_CODES),
-        None => Some(()),
-    };
-    status?;
     let (cog, heading) = (cog?, heading?);
     Some(Initial {
         position: position?,
@@ -101,12 +96,11 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
         Some(dimensions) => hull(&dimensions, notes),
         None => Some(missing()),
     };
-    if let Some(kind) = field.get("shipType") {
-        word(&kind, &SHIP_TYPES, &SHIP_TYPE_CODES)?;
-    }
-    if let Some(path) = field.get("pathType") {
+    if let Some(path) = field.get("pathType")
+        && !matches!(path.any_text(), Some("rtz" | "linear"))
+    {
         // the points of a Bézier curve are not on the track
-        word(&path, &["rtz", "linear"], &[])?;
+        path.refuse::<()>("one of \"rtz\", \"linear\"")?;
     }
     let delay = field.optional_number("initDelay", DELAY.in_unit("s"))?;
     Some(Static {
@@ -150,104 +144,3 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
         (_, None) => GivenHull::Missing(format!("{}.width", field.path())),
     })
 }
-
-/// One of these words, or one of these codes.
-fn word(field: &Field, words: &[&str], codes: &[u64]) -> Option<()> {
-    let known = match field.any_text() {
-        Some(word) => words.contains(&word),
-        None => field
-            .any_number()
-            .is_some_and(|number| codes.iter().any(|code| *code as f64 == number)),
-    };
-    if known {
-        Some(())
-    } else {
-        field.refuse(format_args!("one of \"{}\"", words.join("\", \"")))
-    }
-}
-
-/// Navigational status of AIS (ITU-R M.1371-5), in the words of DNV's schema.
-const NAV_STATUS: [&str; 16] = [
-    "Under way using engine",
-    "At anchor",
-    "Not under command",
-    "Restricted maneuverability",
-    "Constrained by her draught",
-    "Moored",
-    "Aground",
-    "Engaged in fishing",
-    "Under way sailing",
-    "Reserved for future amendment DG, HS, MP, C, HSC",
-    "Reserved for future amendment DG, HS, MP, A, WIG",
-    "Power-driven vessel towing astern",
-    "Power-driven vessel pushing ahead or towing alongside",
-    "Reserved for future use",
-    "AIS-SART (active)",
-    "Undefined (default)",
-];
-
-/// Codes of [`NAV_STATUS`].
-const STATUS_CODES: [u64; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
-
-/// Ship types of AIS, with or without the kind of cargo.
-const SHIP_TYPES: [&str; 52] = [
-    "Not available",
-    "Wing in ground",
-    "Wing in ground hazardous category A",
-    "Wing in ground hazardous category B",
-    "Wing in ground hazardous category C",
-    "Wing in ground hazardous category D",
-    "Fishing",
-    "Towing",
-    "Towing large",
-    "Dredging or underwater operations",
-    "Diving operations",
-    "Military operations",
-    "Sailing",
-    "Pleasure craft",
-    "High speed craft",
-    "High speed craft hazardous category A",
-    "High speed craft hazardous category B",
-    "High speed craft hazardous category C",
-    "High speed craft hazardous category D",
-    "High speed craft no information",
-    "Pilot vessel",
-    "Search and rescue vessel",
-    "Tug",
-    "Port tender",
-    "Anti-pollution equipment",
-    "Law enforcement",
-    "Medical transport",
-    "Noncombatant",
-    "Passenger",
-    "Passenger hazardous category A",
-    "Passenger hazardous category B",
-    "Passenger hazardous category C",
-    "Passenger hazardous category D",
-    "Passenger no information",
-    "Cargo",
-    "Cargo hazardous category A",
-    "Cargo hazardous category B",
-    "Cargo hazardous category C",
-    "Cargo hazardous category D",
-    "Cargo no information",
-    "Tanker",
-    "Tanker hazardous category A",
-    "Tanker hazardous category B",
-    "Tanker hazardous category C",
-    "Tanker hazardous category D",
-    "Tanker no information",
-    "Other",
-    "Other hazardous category A",
-    "Other hazardous category B",
-    "Other hazardous category C",
-    "Other hazardous category D",
-    "Other no information",
-];
-
-/// Codes of [`SHIP_TYPES`].
-const SHIP_TYPE_CODES: [u64; 52] = [
-    0, 20, 21, 22, 23, 24, 30, 31, 32, 33, 34, 35, 36, 37, 40, 41, 42, 43, 44, 49, 50, 51, 52, 53,
-    54, 55, 58, 59, 60, 61, 62, 63, 64, 69, 70, 71, 72, 73, 74, 79, 80, 81, 82, 83, 84, 89, 90, 91,
-    92, 93, 94, 99,
-];

@@ -2,8 +2,8 @@
 
 use rand::Rng;
 
-use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
+use searoom::frame::Vector;
+use searoom::geometry::ConvexPolygon;
 
 /// Seconds: range of the random time for which a signal holds a velocity.
 const HOLD: std::ops::Range<f64> = 5.0..60.0;
@@ -122,24 +122,17 @@ fn vertex_or_point(set: &ConvexPolygon, rng: &mut impl Rng) -> Vector {
 
 #[cfg(test)]
 mod tests {
+    use super::super::path_time::set;
     use super::*;
-    use crate::obstacle::PolytopeObstacle;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
-
-    fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
-        let count = rng.random_range(1..7);
-        let points: Vec<Vector> = (0..count)
-            .map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale)
-            .collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    }
+    use searoom::obstacle::PolytopeObstacle;
 
     #[test]
     fn no_behaviour_leaves_the_reachable_set() {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         for _ in 0..500 {
-            let (initial, velocity) = (random_set(&mut rng, 50.0), random_set(&mut rng, 5.0));
+            let [initial, velocity] = [50.0, 5.0].map(|size| set(&mut rng, Vector::zeros(), size));
             let reachable = PolytopeObstacle::new("x", initial.clone(), velocity.clone());
             for signal in Signal::ALL {
                 let b = Behaviour::random(signal, &initial, &velocity, 300.0, &mut rng);
@@ -149,30 +142,6 @@ mod tests {
                     assert!(velocity.signed_distance(b.velocity_at(t)) < 1e-9);
                 }
             }
-        }
-    }
-
-    #[test]
-    fn positions_are_the_integral_of_the_velocity() {
-        let mut rng = ChaCha8Rng::seed_from_u64(6);
-        let (initial, velocity) = (random_set(&mut rng, 50.0), random_set(&mut rng, 5.0));
-        for signal in Signal::ALL {
-            let b = Behaviour::random(signal, &initial, &velocity, 300.0, &mut rng);
-            for i in 0..3000 {
-                let (t, dt) = (f64::from(i) * 0.1, 1e-3);
-                let step = b.position_at(t + dt) - b.position_at(t);
-                assert!(
-                    (step - b.velocity_at(t + dt) * dt).norm() < 2e-2,
-                    "a jump at {t}"
-                );
-            }
-            let jumps = (0..299)
-                .filter(|&t| b.velocity_at(f64::from(t)) != b.velocity_at(f64::from(t + 1)))
-                .count();
-            assert_eq!(
-                jumps > 0,
-                signal != Signal::Constant && velocity.vertices().len() > 1
-            );
         }
     }
 }

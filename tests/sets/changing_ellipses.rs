@@ -1,0 +1,132 @@
+//! A target whose velocity ellipse changes with time: its set contains every position that it may
+//! reach, and plans, checker and verification of a document agree on it.
+
+use std::path::Path;
+
+use proptest::collection::vec;
+use searoom::document::PlanDocument;
+use searoom::frame::direction;
+use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
+use searoom::pipeline;
+use searoom::scenario::Scenario;
+use searoom::target::Motion;
+use searoom::verification::verify;
+use serde_json::{Value, json};
+
+use super::generators::{Counter, angle, check, round_slabs, vector};
+
+fn scenario() -> Scenario {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = path.join("scenarios/uncertainty/changing-ellipses.toml");
+    Scenario::read(&path).expect("a scenario")
+}
+
+/// A target changes its velocity at random times, to random velocities of the set that holds.
+#[test]
+fn every_position_that_is_reached_is_contained() {
+    let changes = vec((0.1..30.0, 0.0..=1.0, angle()), 20);
+    check(
+        31,
+        1500,
+        (round_slabs(), angle(), changes),
+        |(o, first, changes)| {
+            let sets = o.sets();
+            let initial = sets.initial.as_ellipse().expect("an ellipse");
+            let (mut x, mut t) = (initial.boundary_point(direction(first)), 0.0);
+            for (duration, share, toward) in changes {
+                let now = sets
+                    .velocities
+                    .iter()
+                    .find(|set| t < set.until)
+                    .expect("the last");
+                let set = now.velocities.as_ellipse().expect("an ellipse");
+                let v = set
+                    .scaled_about_center(share)
+                    .boundary_point(direction(toward));
+                let step = f64::min(now.until - t, duration);
+                (x, t) = (x + v * step, t + step);
+                assert!(o.signed_distance(x, t).distance <= 1e-9, "{t}");
+            }
+        },
+    );
+}
+
+/// Regions of velocities to avoid contain every velocity that meets the set.
+#[test]
+fn velocity_obstacles_contain_the_velocities_that_meet_the_set() {
+    let met = Counter::default();
+    check(
+        34,
+        1500,
+        (round_slabs(), vector(200.0), vector(6.0)),
+        |(o, x, v)| {
+            if o.in_velocity_obstacle(x, v, 80.0) {
+                met.add(true);
+                let regions = o.outer_velocity_obstacles(x, 80.0);
+                assert!(regions.iter().any(|region| region.contains(v)));
+            }
+        },
+    );
+    met.assert_above(100);
+}
+
+fn document(scenario: Scenario) -> Value {
+    let run = pipeline::run(scenario);
+    let evaluation = run.evaluation.as_ref().expect("a plan");
+    assert!(evaluation.verified(), "{:?}", evaluation.violations);
+    serde_json::to_value(PlanDocument::of(&run)).expect("a document")
+}
+
+fn is_accepted(document: &Value) -> bool {
+    verify(&document.to_string())
+        .expect("a plan document")
+        .verified()
+}
+
+#[test]
+fn plans_are_verified_and_a_later_set_that_is_too_small_is_rejected() {
+    let mut at_risk = scenario();
+    at_risk.max_risk = 0.3;
+    for scenario in [scenario(), at_risk] {
+        let whole = document(scenario);
+        assert!(is_accepted(&whole));
+        assert_eq!(whole["obstacles"].as_array().expect("slabs").len(), 2);
+        for (place, factor) in [
+            ("/obstacles/0/initial_set/shape_m2/0/0", 0.99),
+            ("/obstacles/0/velocity_set/shape_m2_per_s2/1/1", 0.99),
+            ("/obstacles/1/initial_set/shape_m2/0/0", 0.99),
+            ("/obstacles/1/velocity_set/shape_m2_per_s2/0/0", 0.99),
+            ("/obstacles/1/velocity_set/center_mps/1", 1.01),
+            // less than a micrometre per second too slow, but a tenth of a millimetre later
+            ("/obstacles/1/velocity_set/center_mps/1", 1.0 - 1e-7),
+            ("/obstacles/0/valid_s/1", 1.1),
+            ("/targets/0/velocity_sets/1/shape_m2_per_s2/0/0", 1.02),
+            ("/targets/0/velocity_sets/0/until_s", 0.9),
+        ] {
+            let mut altered = whole.clone();
+            let value = altered.pointer_mut(place).expect(place);
+            *value = json!(value.as_f64().expect("a number") * factor);
+            assert!(!is_accepted(&altered), "{place}");
+        }
+        let mut altered = whole.clone();
+        altered["obstacles"].as_array_mut().expect("slabs").pop();
+        assert!(!is_accepted(&altered));
+    }
+}
+
+/// The checker finds a plan for smaller later velocities inside the set.
+#[test]
+fn a_plan_for_smaller_later_velocities_is_rejected() {
+    let whole = scenario();
+    let mut smaller = whole.clone();
+    let Motion::Sets(sets) = &mut smaller.targets[0].motion else {
+        panic!("sets");
+    };
+    sets.velocities[1].velocities = sets.velocities[1].velocities.scaled_about_center(0.5);
+    let run = pipeline::run(smaller);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert!(run.evaluation.as_ref().expect("judged").verified());
+    let hard: Vec<Obstacle> = pipeline::sets(&whole).into_iter().map(|s| s.hard).collect();
+    let found = pipeline::judge(&whole, &hard, &plan.trajectory);
+    assert!(!found.verified() && !found.violations.is_empty());
+}
