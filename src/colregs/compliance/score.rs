@@ -347,6 +347,25 @@ impl Act<'_> {
         })
     }
 
+    /// First time at which a ship that stands on may act: from stage 3 on, Rule 17(a)(ii), in
+    /// extremis, and where another target excuses it.
+    fn may_act_from(&self) -> f64 {
+        let s = &self.t.score;
+        let first = self.first();
+        let stage_3 = |sample: &EncounterSample| match self.role {
+            Role::Overtaken => {
+                self.undisturbed_tcpa(first) - (sample.time - first.time)
+                    <= s.overtaken_lengths * self.length / self.ordered_speed
+            }
+            _ => sample.range() <= s.stage_3_lengths * self.length,
+        };
+        let extremis = self.t.monitor.manoeuvre * self.t.time_factor(self.own_length);
+        let mut may =
+            (self.samples.iter()).filter(|sample| stage_3(sample) || sample.meets_in <= extremis);
+        let may = may.next().map_or(f64::INFINITY, |sample| sample.time);
+        may.min(self.excused_from)
+    }
+
     /// Rule violations in order of time.
     fn violations(&self) -> Vec<RuleViolation> {
         let (s, closest) = (&self.t.score, self.closest());
@@ -390,14 +409,8 @@ impl Act<'_> {
                 }
             }
             Role::StandOn | Role::Overtaken => {
-                let must_hold = |sample: &&EncounterSample| match self.role {
-                    _ if sample.time >= self.excused_from => false,
-                    Role::Overtaken => {
-                        self.undisturbed_tcpa(self.first()) - (sample.time - self.first().time)
-                            > s.overtaken_lengths * self.length / self.ordered_speed
-                    }
-                    _ => sample.range() > s.stage_3_lengths * self.length,
-                };
+                let freed = self.may_act_from();
+                let must_hold = |sample: &&EncounterSample| sample.time < freed;
                 if let Some(sample) = self.turned(s.hold, false).filter(must_hold) {
                     let hold = deg_from_radians(s.hold);
                     let what = format!("does not hold its course within {hold:.0} deg");
