@@ -129,6 +129,13 @@ impl MovingEllipse {
     /// the entries changes `n' Q n` by some epsilons of `a²`. The section's support then changes by
     /// [`shape_rounding`] of its own lesser semi-axis.
     pub fn rounding(&self, time: f64) -> f64 {
+        let [long, short] = self.semi_axes(time);
+        shape_rounding(long, short)
+    }
+
+    /// Upper bound of the greater semi-axis of the section at a time, and its lesser semi-axis,
+    /// metres.
+    pub fn semi_axes(&self, time: f64) -> [f64; 2] {
         let terms = self.earlier.iter().copied();
         let terms = terms.chain([(self.velocity, time)]);
         let reach = self.reach + self.velocity.root * time;
@@ -143,7 +150,7 @@ impl MovingEllipse {
             long += weight * term.axes[0].norm_squared();
         }
         let least = 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy);
-        shape_rounding(long.sqrt(), least.max(0.0).sqrt())
+        [long.sqrt(), least.max(0.0).sqrt()]
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {

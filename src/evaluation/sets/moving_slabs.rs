@@ -12,6 +12,9 @@ use crate::tolerance;
 /// Sides of the polygon around an ellipse beside polygons.
 const SIDES: usize = 64;
 
+/// Bisection steps for the time at which sections become wide: to a nanosecond of the longest slab.
+const NARROW_HALVINGS: usize = 60;
+
 /// Moving set over one time interval. Its time counts from `start`.
 #[derive(Debug, Clone)]
 struct Slab {
@@ -93,18 +96,16 @@ impl MovingSlabs {
     }
 
     /// Returns false when the sections are points or segments over some time interval.
-    pub fn has_interior(&self) -> bool {
+    fn has_interior(&self) -> bool {
         self.slabs.iter().all(|slab| match &slab.set {
             Moving::Polygon(set) => set.has_interior(),
             Moving::Ellipse(set) => set.has_interior(),
         })
     }
 
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
-    /// interior.
-    pub fn edge(&self, time: f64) -> Option<f64> {
-        self.has_interior()
-            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    /// Depth at a time within which a motion is on the edge of the set, metres.
+    pub fn edge(&self, time: f64) -> f64 {
+        tolerance::DEPTH_M + self.rounding(time)
     }
 
     /// Largest effect of the rounding of the shape matrices of ellipses on a distance at a time,
@@ -114,6 +115,59 @@ impl MovingSlabs {
         match &slab.set {
             Moving::Polygon(_) => 0.0,
             Moving::Ellipse(set) => set.rounding(time - slab.start),
+        }
+    }
+
+    /// Least distance of a point while the sections are too narrow for the allowed depth: a motion
+    /// across them would not be found by its depth. Infinite where they never are.
+    pub fn least_distance_while_narrow<P: Piece>(&self, pieces: &[P]) -> Least {
+        let end = self.narrow_until();
+        let narrow: Vec<P> = (pieces.iter())
+            // Negated on purpose: a NaN is included.
+            .filter(|piece| !(piece.start_time() > end))
+            .map(|piece| piece.part(piece.start_time(), end, 0.0))
+            .collect();
+        self.least_distance(&narrow, Body::POINT)
+    }
+
+    /// Time until which the sections are too narrow for the allowed depth: sections only widen.
+    /// Negative where they never are.
+    fn narrow_until(&self) -> f64 {
+        if !self.has_interior() {
+            return f64::INFINITY;
+        }
+        // Negated on purpose: a NaN is narrow.
+        let narrow = |time: f64| !(self.half_width(time) > 2.0 * self.edge(time));
+        if !narrow(0.0) {
+            return -1.0;
+        }
+        let ends = self.slabs.iter().map(|slab| (slab.start, slab.end));
+        let ends = ends.map(|(start, end)| (start, end.min(start + tolerance::FOREVER_S)));
+        let Some((mut low, mut high)) = ends.into_iter().find(|(_, end)| !narrow(*end)) else {
+            return f64::INFINITY;
+        };
+        for _ in 0..NARROW_HALVINGS {
+            let middle = 0.5 * (low + high);
+            if narrow(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
+
+    /// Lower bound of half of the least width of the section at a time, metres; at least a quarter
+    /// of it.
+    pub fn half_width(&self, time: f64) -> f64 {
+        let slab = self.slab_at(time);
+        match &slab.set {
+            Moving::Polygon(set) => {
+                let section = set.section_at(time - slab.start);
+                // A convex set is inside a rectangle of its least width and its diameter.
+                0.5 * section.area() / section.across()
+            }
+            Moving::Ellipse(set) => set.semi_axes(time - slab.start)[1],
         }
     }
 

@@ -1,8 +1,10 @@
 //! Moving set of the checker: sections from matched vertices, faces from supports.
 
+use crate::evaluation::Violation;
 use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::safety::entered;
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, ConvexSet};
@@ -34,27 +36,29 @@ impl SpaceTimeSet {
         }
     }
 
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
-    /// sections are points or segments over some time interval, and so have no depth.
-    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
-        MovingSlabs::new(&self.sets).edge(time)
-    }
-
-    /// Returns false when the sections are points or segments over some time interval.
-    pub(crate) fn has_interior(&self) -> bool {
-        MovingSlabs::new(&self.sets).has_interior()
-    }
-
     /// Least signed distance of own ship's position from the set while the set is valid. Infinite
     /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+        self.judged("", pieces).0
+    }
+
+    /// [`Self::least_distance`], and the violation if the set is entered.
+    pub(crate) fn judged<P: Piece>(&self, label: &str, pieces: &[P]) -> (Least, Option<Violation>) {
         let slabs = MovingSlabs::new(&self.sets);
-        if self.from == 0.0 {
-            return slabs.least_distance(pieces, Body::POINT);
-        }
-        let mut least = slabs.least_distance(&since(pieces, self.from, self.from), Body::POINT);
+        let later;
+        let pieces = if self.from == 0.0 {
+            pieces
+        } else {
+            later = since(pieces, self.from, self.from);
+            &later
+        };
+        let mut least = slabs.least_distance(pieces, Body::POINT);
+        let mut entered = entered(label, &slabs, pieces, &least);
         least.time += self.from;
-        least
+        if let Some(violation) = &mut entered {
+            violation.time += self.from;
+        }
+        (least, entered)
     }
 }
 
@@ -151,10 +155,17 @@ impl MovingSet {
         }
     }
 
+    /// The section at a time.
+    pub fn section_at(&self, time: f64) -> ConvexPolygon {
+        self.initial.minkowski_sum(&self.velocity.scaled(time))
+    }
+
     /// The section at a time, as a fixed set.
     pub fn still_at(&self, time: f64) -> Self {
-        let section = self.initial.minkowski_sum(&self.velocity.scaled(time));
-        Self::new(&section, &ConvexPolygon::point(Vector::zeros()))
+        Self::new(
+            &self.section_at(time),
+            &ConvexPolygon::point(Vector::zeros()),
+        )
     }
 
     /// Returns the supporting line in any unit direction.

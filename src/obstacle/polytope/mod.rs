@@ -174,6 +174,15 @@ impl PolytopeObstacle {
         self.moving().to_vec()
     }
 
+    /// Replaces the supports of the faces. Contact depends on the faces alone; nothing else of this
+    /// polytope is valid afterwards.
+    pub(in crate::obstacle) fn move_faces(&mut self, supports: impl Iterator<Item = Support>) {
+        let faces = &mut Arc::make_mut(&mut self.shared).faces;
+        for (face, support) in faces.iter_mut().zip(supports) {
+            (face.initial_support, face.velocity_support) = (support.value, support.rate);
+        }
+    }
+
     pub(in crate::obstacle) fn moving(&self) -> &[MovingVertex] {
         self.shared.moving.get_or_init(|| {
             moving_vertices(
@@ -331,12 +340,12 @@ impl SpaceTimeObstacle for PolytopeObstacle {
             let mut level = self.clone();
             peak_by_bisection(segment.start_time, |risk| {
                 let alpha = level_of(risk);
-                let faces = &mut Arc::make_mut(&mut level.shared).faces;
-                for (i, face) in faces.iter_mut().enumerate() {
-                    let nominal = self.shared.spreads[i].nominal_rate;
-                    let rate = self.shared.faces[i].velocity_support - nominal;
-                    face.velocity_support = nominal + alpha * rate;
-                }
+                let faces = self.shared.faces.iter().zip(&self.shared.spreads);
+                level.move_faces(faces.map(|(face, spread)| Support {
+                    value: face.initial_support,
+                    rate: spread.nominal_rate
+                        + alpha * (face.velocity_support - spread.nominal_rate),
+                }));
                 contact::first_contact(&level, segment, 0.0)
             })
         }
