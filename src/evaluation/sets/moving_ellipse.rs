@@ -2,6 +2,7 @@
 
 use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::space_time_set::{MovingDisc, MovingVertex};
 use crate::frame::{Vector, cross, direction};
 use crate::geometry::Ellipse;
 use crate::tolerance;
@@ -191,18 +192,31 @@ impl MovingEllipse {
         let mut least = known;
         for s in pieces {
             for time in [s.start_time(), s.end_time()] {
-                least.see(self.probe(s, time, 0.0).value, time);
+                let found = self.probe(s, [time, 0.0], least.value);
+                least.see(found.value, time);
             }
         }
         for s in pieces {
-            least.search(s.start_time(), s.end_time(), |time, half| {
-                self.probe(s, time, half)
+            least.search(s.start_time(), s.end_time(), |time, half, known| {
+                self.probe(s, [time, half], known)
             });
         }
         least
     }
 
-    fn probe(&self, piece: &impl Piece, time: f64, half: f64) -> Probe {
+    /// Disc that contains the section at every time.
+    pub fn disc(&self) -> MovingDisc {
+        MovingDisc {
+            center: MovingVertex {
+                initial: self.center,
+                velocity: self.drift,
+            },
+            radius: self.reach,
+            growth: self.velocity.root,
+        }
+    }
+
+    fn probe(&self, piece: &impl Piece, [time, half]: [f64; 2], known: f64) -> Probe {
         let position = piece.pose_at(time).position;
         // A comparison below loses a NaN, so it is caught here.
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
@@ -210,6 +224,11 @@ impl MovingEllipse {
                 value: f64::NAN,
                 lower: f64::NAN,
             };
+        }
+        let disc = self.disc();
+        let apart = disc.least_distance(position, piece.bounds().speed, [time, half]);
+        if let Some(beyond) = Probe::beyond(known, apart) {
+            return beyond;
         }
         let beyond = |normal: Vector| normal.dot(&position) - self.line(normal, time).support;
         let sampled = self.directions.map(beyond);

@@ -4,7 +4,7 @@ use crate::evaluation::distance::clearance::{Body, least_distance_below};
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
-use crate::evaluation::sets::space_time_set::MovingSet;
+use crate::evaluation::sets::space_time_set::{MovingDisc, MovingSet};
 use crate::geometry::ConvexPolygon;
 use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
@@ -187,43 +187,71 @@ impl MovingSlabs {
 
     /// Least distance over all slabs, each within its time. Beside ellipses own ship is a point.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
+        let parts: Vec<Vec<P>> = (self.slabs.iter()).map(|slab| slab.parts(pieces)).collect();
+        // The centres are in the sets, so no distance above the least of theirs matters.
+        let mut nearest = f64::INFINITY;
+        for (slab, parts) in self.slabs.iter().zip(&parts) {
+            let disc = slab.disc();
+            for part in parts {
+                let here = part.pose_at(part.start_time()).position;
+                // A NaN is ignored here and found below.
+                nearest = nearest.min((here - disc.center.at(part.start_time())).norm());
+            }
+        }
+        let nearest = nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M;
         let mut least = Least::new();
-        for slab in &self.slabs {
-            // A piece that ends at the start of a slab, up to rounding, belongs to the previous
-            // slab: a growing set is still smaller there.
-            let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
-            let fastest = match &slab.set {
-                Moving::Polygon(set) => set.fastest(),
-                Moving::Ellipse(_) => f64::INFINITY,
-            };
-            let before = |s: &P| {
-                let rounding = s.end_time() - slab.start;
-                let both = fastest + s.bounds().speed;
-                s.end_time() < slab.start
-                    || slab.start > 0.0 && s.start_time() <= slab.start && s.end_time() <= begun
-                    // Neither own ship nor the set moves by more than the margin meanwhile.
-                    && rounding * both <= tolerance::MARGIN_M
-            };
-            let parts: Vec<P> = pieces
-                .iter()
-                // Negated on purpose: a NaN is included.
-                .filter(|s| !(before(s) || s.start_time() > slab.end))
-                .map(|s| s.part(slab.start, slab.end, slab.start))
-                .collect();
+        for (slab, parts) in self.slabs.iter().zip(&parts) {
             // Parts that are not nearer than in earlier slabs are not refined.
             let known = Least {
-                value: least.value,
+                value: least.value.min(nearest),
                 ..Least::new()
             };
             let here = match &slab.set {
-                Moving::Polygon(set) => least_distance_below(known, &parts, own, set),
-                Moving::Ellipse(set) => set.least_distance_below(known, &parts),
+                Moving::Polygon(set) => least_distance_below(known, parts, own, set),
+                Moving::Ellipse(set) => set.least_distance_below(known, parts),
             };
-            least.see(here.value, here.time + slab.start);
+            // Negated on purpose: a NaN is seen.
+            if !(here.value >= known.value) {
+                least.see(here.value, here.time + slab.start);
+            }
             least.certified &= here.certified;
             least.probes += here.probes;
         }
         least
+    }
+}
+
+impl Slab {
+    fn disc(&self) -> MovingDisc {
+        match &self.set {
+            Moving::Polygon(set) => set.disc,
+            Moving::Ellipse(set) => set.disc(),
+        }
+    }
+
+    /// Parts of a chain of pieces within the slab, with time measured from its start.
+    fn parts<P: Piece>(&self, pieces: &[P]) -> Vec<P> {
+        // A piece that ends at the start of a slab, up to rounding, belongs to the previous
+        // slab: a growing set is still smaller there.
+        let begun = self.start * (1.0 + 8.0 * f64::EPSILON);
+        let fastest = match &self.set {
+            Moving::Polygon(set) => set.fastest(),
+            Moving::Ellipse(_) => f64::INFINITY,
+        };
+        let before = |s: &P| {
+            let rounding = s.end_time() - self.start;
+            let both = fastest + s.bounds().speed;
+            s.end_time() < self.start
+                || self.start > 0.0 && s.start_time() <= self.start && s.end_time() <= begun
+                // Neither own ship nor the set moves by more than the margin meanwhile.
+                && rounding * both <= tolerance::MARGIN_M
+        };
+        pieces
+            .iter()
+            // Negated on purpose: a NaN is included.
+            .filter(|s| !(before(s) || s.start_time() > self.end))
+            .map(|s| s.part(self.start, self.end, self.start))
+            .collect()
     }
 }
 

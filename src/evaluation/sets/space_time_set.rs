@@ -72,6 +72,44 @@ pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
         .collect()
 }
 
+/// Disc that contains the section at every time. Its centre is in the section.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MovingDisc {
+    /// Centre at t = 0, metres, and its velocity, m/s.
+    pub center: MovingVertex,
+    /// Radius at t = 0, metres.
+    pub radius: f64,
+    /// Rate of the radius, m/s.
+    pub growth: f64,
+}
+
+impl MovingDisc {
+    fn around(vertices: &[MovingVertex]) -> Self {
+        let share = 1.0 / vertices.len() as f64;
+        let center = MovingVertex {
+            initial: vertices.iter().map(|v| v.initial * share).sum(),
+            velocity: vertices.iter().map(|v| v.velocity * share).sum(),
+        };
+        let most = |of: fn(&MovingVertex) -> Vector| {
+            let off = vertices.iter().map(|v| (of(v) - of(&center)).norm());
+            off.fold(0.0, f64::max)
+        };
+        Self {
+            center,
+            radius: most(|v| v.initial),
+            growth: most(|v| v.velocity),
+        }
+    }
+
+    /// Lower bound of the distance of a point within `half` seconds, from its position at `time`
+    /// and its greatest speed.
+    pub fn least_distance(&self, position: Vector, speed: f64, [time, half]: [f64; 2]) -> f64 {
+        let closing = speed + self.center.velocity.norm();
+        let apart = (position - self.center.at(time)).norm();
+        apart - closing * half - self.radius - self.growth * (time + half)
+    }
+}
+
 /// Vertex of the section: `initial + t velocity`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovingVertex {
@@ -116,6 +154,7 @@ pub(crate) struct MovingSet {
     pub vertices: Vec<MovingVertex>,
     /// Faces, sorted by the angle of their normals.
     pub faces: Vec<Face>,
+    pub disc: MovingDisc,
 }
 
 impl MovingSet {
@@ -150,6 +189,7 @@ impl MovingSet {
         Self {
             initial: initial.clone(),
             velocity: velocity.clone(),
+            disc: MovingDisc::around(&vertices),
             vertices,
             faces,
         }
