@@ -97,7 +97,7 @@ impl Body {
     }
 
     /// Returns the distance at `time` and its lower bound within `half` seconds. The discs around
-    /// both decide where they prove a distance above the `known` one.
+    /// both, or one face of the set, decide where they prove a distance above the `known` one.
     fn probe(
         &self,
         piece: &impl Piece,
@@ -118,8 +118,8 @@ impl Body {
         let apart = set
             .disc
             .least_distance(pose.position, bounds.speed, [time, half]);
-        if let Some(beyond) = Probe::beyond(known, apart - reach) {
-            return beyond;
+        if let Some(far) = Probe::beyond(known, apart - reach) {
+            return far;
         }
         let moving = Moving {
             velocity: piece.velocity_at(time),
@@ -164,7 +164,13 @@ impl Body {
             }
             best.lower = best.lower.max(gap.lower);
         };
-        (set.faces.iter()).for_each(|face| keep(beyond(face), face.normal));
+        for face in &set.faces {
+            let gap = beyond(face);
+            if let Some(far) = Probe::beyond(known, gap.lower) {
+                return far;
+            }
+            keep(gap, face.normal);
+        }
         if !self.is_point() {
             let ahead = pose.ahead();
             let port = to_port(ahead);

@@ -227,8 +227,8 @@ impl MovingEllipse {
         }
         let disc = self.disc();
         let apart = disc.least_distance(position, piece.bounds().speed, [time, half]);
-        if let Some(beyond) = Probe::beyond(known, apart) {
-            return beyond;
+        if let Some(far) = Probe::beyond(known, apart) {
+            return far;
         }
         let beyond = |normal: Vector| normal.dot(&position) - self.line(normal, time).support;
         let sampled = self.directions.map(beyond);

@@ -13,9 +13,6 @@ use crate::obstacle::risk::{
 use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::trajectory::Segment;
 
-/// Vertex count above which a local search replaces the search of all vertices.
-const MANY: usize = 64;
-
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a
 /// unit normal in the plane.
 ///
@@ -128,12 +125,12 @@ impl PolytopeObstacle {
             normals.pop();
         }
         let normals: Vec<Vector> = normals.into_iter().map(|(_, normal)| normal).collect();
-        let supports = supports(&initial, &normals).zip(supports(&velocity, &normals));
+        let supports = (initial.extremes(&normals)).zip(velocity.extremes(&normals));
         let faces: Vec<HalfSpace> = (normals.iter().zip(supports))
-            .map(|(normal, (initial_support, velocity_support))| HalfSpace {
+            .map(|(normal, (initial, velocity))| HalfSpace {
                 normal: *normal,
-                velocity_support,
-                initial_support,
+                velocity_support: normal.dot(&velocity),
+                initial_support: normal.dot(&initial),
             })
             .collect();
         let centroid = velocity.centroid();
@@ -388,7 +385,7 @@ fn moving_vertices(
     let between: Vec<Vector> = (faces.iter().zip(next))
         .map(|(a, b)| a.normal + b.normal)
         .collect();
-    let both = farthest(initial, &between).zip(farthest(velocity, &between));
+    let both = (initial.farthest(&between)).zip(velocity.farthest(&between));
     let mut vertices: Vec<MovingVertex> = both
         .map(|(j, k)| MovingVertex {
             indices: (j, k),
@@ -401,44 +398,6 @@ fn moving_vertices(
         vertices.pop();
     }
     vertices
-}
-
-/// Supports of a set in directions sorted counter-clockwise.
-fn supports<'a>(
-    set: &'a ConvexPolygon,
-    directions: &'a [Vector],
-) -> impl Iterator<Item = f64> + 'a {
-    let both = farthest(set, directions).zip(directions);
-    both.map(|(vertex, along)| along.dot(&set.vertices()[vertex]))
-}
-
-/// Indices of the farthest vertices in directions sorted counter-clockwise.
-///
-/// For a set with many vertices each search starts at the last result, because the vertices are
-/// sorted likewise.
-fn farthest<'a>(
-    set: &'a ConvexPolygon,
-    directions: &'a [Vector],
-) -> impl Iterator<Item = usize> + 'a {
-    let points = set.vertices();
-    let mut at = None;
-    directions.iter().map(move |along| {
-        let further = |from: usize, to: usize| along.dot(&points[to]) > along.dot(&points[from]);
-        let mut best = match at {
-            Some(last) if points.len() > MANY => last,
-            _ => (1..points.len()).fold(0, |best, k| if further(best, k) { k } else { best }),
-        };
-        for _ in 0..points.len() {
-            // one step may be a tie by rounding
-            let ahead = [1, 2].map(|step| (best + step) % points.len());
-            match ahead.into_iter().find(|next| further(best, *next)) {
-                Some(next) => best = next,
-                None => break,
-            }
-        }
-        at = Some(best);
-        best
-    })
 }
 
 #[cfg(test)]
