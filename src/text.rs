@@ -56,6 +56,27 @@ fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
     out
 }
 
+/// Longest number that [`short_numbers`] leaves unchanged, in characters.
+const LONGEST_NUMBER: usize = 24;
+
+/// A text in which long numbers have an exponent: `1e308` instead of 309 digits.
+pub(crate) fn short_numbers(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, number) = rest.split_at(start);
+        let end = number.find(|c: char| !(c.is_ascii_digit() || c == '.'));
+        let (number, after) = number.split_at(end.unwrap_or(number.len()));
+        out.push_str(before);
+        match number.parse::<f64>() {
+            Ok(value) if number.len() > LONGEST_NUMBER => out.push_str(&format!("{value:e}")),
+            _ => out.push_str(number),
+        }
+        rest = after;
+    }
+    out + rest
+}
+
 /// Formats a space-time error; small values have one decimal.
 pub(crate) fn square_metres(value: f64) -> String {
     if value.is_nan() {
@@ -69,7 +90,7 @@ pub(crate) fn square_metres(value: f64) -> String {
 
 /// Formats one decimal; values that round to zero have no sign.
 pub(crate) fn tenths(value: f64) -> String {
-    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
+    short_numbers(&format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0))
 }
 
 /// Formats one decimal with a sign; values that round to zero give `+0.0`.
@@ -91,6 +112,15 @@ mod tests {
             (tenths(-0.06), signed(0.06)),
             ("-0.1".into(), "+0.1".into())
         );
+    }
+
+    #[test]
+    fn long_numbers_have_an_exponent() {
+        let (large, small) = (format!("{:.3}", -1.5e300), 2.5e-300);
+        let text = format!("{large} s, {small}, 0.0001139473170042038 and 12.");
+        let short = "-1.5e300 s, 2.5e-300, 0.0001139473170042038 and 12.";
+        assert_eq!(short_numbers(&text), short);
+        assert_eq!(short_numbers(""), "");
     }
 
     #[test]

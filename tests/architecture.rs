@@ -89,6 +89,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "target",
             "trajectory",
             "evaluation",
+            "text",
         ],
     ),
     (

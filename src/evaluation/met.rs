@@ -1,6 +1,6 @@
 //! Clearances and safety of own ship with respect to one target.
 
-use super::safety::Claim;
+use super::safety::{Claim, entered};
 use super::{Passage, Request, Safety, TurnedHull};
 use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
@@ -88,7 +88,9 @@ pub(super) fn passage<P: Piece>(
             let slabs = MovingSlabs::new(sets);
             let least = slabs.least_distance(pieces, Body::POINT);
             let hold = slabs.least_distance(&lying, Body::POINT);
-            let safety = claim.of_set(request, &least, slabs.edge(least.time));
+            // An explicit set is its hard set.
+            let clear = || entered("", &slabs, pieces, &least).is_none();
+            let safety = claim.of_hard_set(request, clear);
             (least, least, least, hold, safety)
         }
     };

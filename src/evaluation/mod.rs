@@ -35,11 +35,12 @@ use distance::piece::Piece;
 use distance::turn::{Turn, turns};
 use land::LandBodies;
 use met::passage;
-use safety::{Claim, EDGE, collision, grounding};
+use safety::{Claim, collision, grounding};
 
 use std::collections::HashMap;
 
 use crate::frame::Side;
+use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// One violated requirement.
@@ -237,10 +238,8 @@ fn meetings<P: Piece>(
         .sets
         .iter()
         .map(|set| {
-            let least = set.least_distance(pieces);
             let label = format!("set of '{}'", set.name);
-            let edge = set.edge(least.time - set.from);
-            let entered = collision(&label, &least, edge);
+            let (least, entered) = set.judged(&label, pieces);
             let kept = entered.is_none();
             violations.extend(entered.filter(|_| judged));
             (least, kept)
@@ -261,7 +260,7 @@ fn meetings<P: Piece>(
         // Explicit sets are already judged above, as sets.
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
-            violations.extend(collision(&label, &clearance, EDGE));
+            violations.extend(collision(&label, &clearance, tolerance::DEPTH_M));
         }
         passages.push(passage);
     }

@@ -1,6 +1,6 @@
 //! Classifies what a motion enters: sets, hulls or land. This is independent of verification.
 
-use super::{Least, Request, Violation};
+use super::{Least, MovingSlabs, Piece, Request, Violation};
 use crate::tolerance;
 
 /// Worst region that a motion enters from start to arrival, in ascending order of severity.
@@ -56,13 +56,23 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     })
 }
 
-/// Allowed depth inside a hull or a polygon, metres.
-pub(super) const EDGE: Option<f64> = Some(tolerance::DEPTH_M);
+/// Violation of a set by a motion with this least distance, if any. While the sections are too
+/// narrow for the allowed depth, a distance below the tolerance is a violation.
+pub(super) fn entered<P: Piece>(
+    label: &str,
+    slabs: &MovingSlabs,
+    pieces: &[P],
+    least: &Least,
+) -> Option<Violation> {
+    collision(label, least, slabs.edge(least.time)).or_else(|| {
+        let narrow = slabs.least_distance_while_narrow(pieces);
+        collision(label, &narrow, -tolerance::DEPTH_M)
+    })
+}
 
-/// Violation of a set by a least distance, if any. `edge` is the allowed depth. A set without
-/// interior has no depth, so there a distance below the tolerance is a violation.
-pub(super) fn collision(label: &str, least: &Least, edge: Option<f64>) -> Option<Violation> {
-    let allowed = edge.map_or(tolerance::DEPTH_M, |depth| -depth);
+/// Violation of a set or a hull by a least distance, if any. `depth` is the allowed depth.
+pub(super) fn collision(label: &str, least: &Least, depth: f64) -> Option<Violation> {
+    let allowed = -depth;
     let what = if !(least.value >= allowed) {
         format!(
             "{label}: distance {:.6e} m, allowed {allowed:.0e}",
@@ -124,22 +134,18 @@ impl Claim {
         if !(closest.value >= -tolerance::DEPTH_M) {
             return Safety::Collides;
         }
-        if collision("", worst, EDGE).is_some() {
+        if collision("", worst, tolerance::DEPTH_M).is_some() {
             return Safety::Unsafe;
         }
         self.of_hard_set(request, || {
             let mut least = centre();
             least.value -= request.own.hull.half_diagonal() + request.own.safety_margin;
-            collision("", &least, EDGE).is_none()
+            collision("", &least, tolerance::DEPTH_M).is_none()
         })
     }
 
-    /// Safety with respect to a target with an explicit set, which is its hard set.
-    pub fn of_set(&self, request: &Request, least: &Least, edge: Option<f64>) -> Safety {
-        self.of_hard_set(request, || collision("", least, edge).is_none())
-    }
-
-    fn of_hard_set(&self, request: &Request, clear: impl FnOnce() -> bool) -> Safety {
+    /// Safety with respect to the hard set of a target, by whether the motion is `clear` of it.
+    pub fn of_hard_set(&self, request: &Request, clear: impl FnOnce() -> bool) -> Safety {
         if self.from > 0.0 {
             return Safety::Unsafe;
         }

@@ -176,13 +176,21 @@ impl ConvexPolygon {
 
     /// The farthest vertices in directions sorted counter-clockwise with gaps of at most half a
     /// turn. O(vertices + directions).
-    ///
-    /// The farthest vertices are sorted likewise, so each search starts at the last result. It
-    /// passes edges so short that rounding hides them.
     pub(crate) fn extremes<'a>(
         &'a self,
         directions: &'a [Vector],
     ) -> impl Iterator<Item = Vector> + 'a {
+        self.farthest(directions).map(|index| self.vertices[index])
+    }
+
+    /// Indices of [`Self::extremes`].
+    ///
+    /// The farthest vertices are sorted likewise, so each search starts at the last result. It
+    /// passes edges so short that rounding hides them.
+    pub(crate) fn farthest<'a>(
+        &'a self,
+        directions: &'a [Vector],
+    ) -> impl Iterator<Item = usize> + 'a {
         let vertices = &self.vertices;
         let count = vertices.len();
         let rounding = 8.0 * f64::EPSILON * extent(vertices);
@@ -204,7 +212,7 @@ impl ConvexPolygon {
                     break;
                 }
             }
-            vertices[at]
+            at
         })
     }
 

@@ -42,14 +42,6 @@ impl Obstacle {
         }
     }
 
-    /// [`Obstacle::outer_where_flat`], also of a set too thin for its shape matrices.
-    pub(crate) fn outer_where_thin(&self) -> Cow<'_, Self> {
-        match self {
-            Self::Ellipsoid(o) if o.is_thin() => Cow::Owned(self.outer_with_interior()),
-            _ => self.outer_where_flat(),
-        }
-    }
-
     fn is_flat_for_a_while(&self) -> bool {
         let flat = |initial: &ConvexPolygon, velocity: &ConvexPolygon| {
             initial.minkowski_sum(velocity).vertices().len() < 3

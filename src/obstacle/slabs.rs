@@ -235,6 +235,66 @@ impl SlabObstacle {
         slab.obstacle.section(time - slab.start)
     }
 
+    /// The largest risk over a chain of segments. Level sets are within the set, so they are
+    /// compared only with the parts that meet it.
+    fn peak_over(&self, segments: &[Segment]) -> PeakRisk {
+        let start_time = segments.first().map_or(0.0, |s| s.start_time);
+        if let Some(invalid) = segments.iter().find(|s| !s.is_valid()) {
+            return PeakRisk {
+                risk: 1.0,
+                time: invalid.start_time,
+            };
+        }
+        let mut levels: Vec<(usize, PolytopeObstacle)> = Vec::new();
+        let mut met: Vec<(usize, Segment)> = Vec::new();
+        for (index, slab) in self.slabs().iter().enumerate() {
+            let before = met.len();
+            let later = segments.iter().filter(|s| s.end_time() >= slab.start);
+            let during = later.take_while(|s| s.start_time <= slab.end);
+            let parts = during.map(|s| s.between(slab.start, slab.end));
+            met.extend(
+                parts
+                    .filter(|part| contact_within(&slab.obstacle, slab.start, part, 0.0).is_some())
+                    .map(|part| (index, part)),
+            );
+            if let (true, Obstacle::Polytope(o)) = (met.len() > before, &slab.obstacle) {
+                levels.push((index, o.clone()));
+            }
+        }
+        peak_by_bisection(start_time, |risk| {
+            let alpha = level_of(risk);
+            for (index, level) in &mut levels {
+                let slab = &self.slabs()[*index];
+                let Obstacle::Polytope(whole) = &slab.obstacle else {
+                    continue;
+                };
+                let faces = slab.faces.get_or_init(|| self.faces_of(*index, whole));
+                // from the faces of the whole set, so that a risk of 0 gives the set itself
+                let less = 1.0 - alpha;
+                let both = whole.faces().iter().zip(faces);
+                level.move_faces(both.map(|(face, spread)| Support {
+                    value: face.initial_support - less * spread.spread_before,
+                    rate: face.velocity_support - less * spread.spread_rate,
+                }));
+            }
+            let round = levels.is_empty().then(|| self.at_risk(risk));
+            let contacts = met.iter().filter_map(|(index, part)| {
+                let start = self.slabs()[*index].start;
+                match (
+                    &round,
+                    levels.binary_search_by_key(index, |(slab, _)| *slab),
+                ) {
+                    (Some(round), _) => {
+                        contact_within(&round.slabs()[*index].obstacle, start, part, 0.0)
+                    }
+                    (None, Ok(k)) => contact_within(&levels[k].1, start, part, 0.0),
+                    (None, Err(_)) => None,
+                }
+            });
+            contacts.min_by(f64::total_cmp)
+        })
+    }
+
     fn slab_at(&self, time: f64) -> &Slab {
         &self.slabs()[self.index_at(time)]
     }
@@ -253,6 +313,22 @@ impl SlabObstacle {
             .map(move |s| (s, s.start.max(from), s.end.min(to)))
             .filter(|(_, start, end)| start <= end)
     }
+}
+
+/// First contact of a part of a segment with the body of a slab that begins at `start`.
+fn contact_within(
+    body: &impl SpaceTimeObstacle,
+    start: f64,
+    part: &Segment,
+    depth: f64,
+) -> Option<f64> {
+    let local = Segment {
+        start_time: part.start_time - start,
+        ..*part
+    };
+    let contact = body.first_contact(&local, depth);
+    // conversion to and from the slab's own time costs a digit
+    contact.map(|t| (t + start).max(part.start_time).min(part.end_time()))
 }
 
 impl SpaceTimeObstacle for SlabObstacle {
@@ -281,15 +357,12 @@ impl SpaceTimeObstacle for SlabObstacle {
         }
         self.slabs_within(segment.start_time, segment.end_time())
             .find_map(|(slab, from, to)| {
-                let part = segment.between(from, to);
-                let local = Segment {
-                    start_time: part.start_time - slab.start,
-                    ..part
-                };
-                // conversion to and from the slab's own time costs a digit
-                slab.obstacle
-                    .first_contact(&local, depth)
-                    .map(|t| (t + slab.start).max(part.start_time).min(part.end_time()))
+                contact_within(
+                    &slab.obstacle,
+                    slab.start,
+                    &segment.between(from, to),
+                    depth,
+                )
             })
     }
 
@@ -332,9 +405,7 @@ impl SpaceTimeObstacle for SlabObstacle {
 
     /// By bisection over exact contacts, to [`tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
-        peak_by_bisection(segment.start_time, |risk| {
-            self.at_risk(risk).first_contact(segment, 0.0)
-        })
+        self.peak_over(std::slice::from_ref(segment))
     }
 
     /// [`Self::peak_risk`] with each level set built once for all segments.
@@ -342,12 +413,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         if trajectory.steered().is_some() {
             return largest_risk_of_parts(self, trajectory);
         }
-        peak_by_bisection(trajectory.start_time(), |risk| {
-            let level = self.at_risk(risk);
-            let segments = trajectory.segments().iter();
-            let contacts = segments.filter_map(|s| level.first_contact(s, 0.0));
-            contacts.min_by(f64::total_cmp)
-        })
+        self.peak_over(trajectory.segments())
     }
 
     fn at_risk(&self, risk: f64) -> Self {

@@ -49,8 +49,8 @@ pub(super) fn left_for_good(
     is_up: impl Fn() -> bool,
 ) -> Option<f64> {
     let end = trajectory.end_time();
-    // a set without an interior must not be touched, not even crossed
-    let set = set.outer_where_thin();
+    // the set that the planners avoid: a narrow one must not be touched, not even crossed
+    let set = set.outer_with_interior();
     let contact = |from: f64| {
         let later = trajectory.segments().iter().filter(|s| s.end_time() > from);
         let mut later = later.map(|s: &Segment| s.between(from, s.end_time()));

@@ -170,9 +170,13 @@ pub fn run(scenario: Scenario) -> Run {
     let answer = relaxer.answer();
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
-        let whole = answer.whole.iter();
+        let whole = answer.whole.iter().zip(&answer.released);
         whole
-            .map(|set| peak_risk(&set.outer_where_flat(), trajectory, answer.risk))
+            .map(|(set, released)| match released {
+                // the set that the plan has left then
+                Some(_) => peak_risk(&set.outer_with_interior(), trajectory, answer.risk),
+                None => peak_risk(&set.outer_where_flat(), trajectory, answer.risk),
+            })
             .collect()
     });
     let mut relaxations = outcome::relaxations(

@@ -2,7 +2,7 @@
 
 use super::table::{Grid, Tone, or_dash, plain};
 use crate::evaluation::{facts, outcome_word};
-use crate::text::{printable, tenths};
+use crate::text::{printable, short_numbers, tenths};
 use crate::verification::Verification;
 
 /// Maximum number of violations listed; the rest is counted.
@@ -33,7 +33,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
     let mut faults = checked.violations.iter();
     for fault in faults.by_ref().take(LISTED) {
         let what = printable(&fault.what);
-        lines.push(format!("  at {:.3} s: {what}", fault.time));
+        lines.push(format!("  at {} s: {what}", thousandths(fault.time)));
     }
     let more = faults.count();
     if more > 0 {
@@ -43,11 +43,11 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         return lines.join("\n");
     };
     lines.push(format!(
-        "{} plan, {} piece{} until {:.1} s; {} set{}, {} piece{} of land",
+        "{} plan, {} piece{} until {} s; {} set{}, {} piece{} of land",
         checked.planner,
         checked.pieces,
         plural(checked.pieces),
-        evaluation.duration,
+        tenths(evaluation.duration),
         checked.sets,
         plural(checked.sets),
         checked.land,
@@ -60,7 +60,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
     entered.sort_by(|a, b| a.1.total_cmp(&b.1));
     lines.extend(entered.into_iter().map(|(target, from)| {
         let until = if from < evaluation.duration {
-            format!("before {from:.1} s")
+            format!("before {} s", tenths(from))
         } else {
             "at all".to_owned()
         };
@@ -69,9 +69,9 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
     }));
     if evaluation.min_land_distance.is_finite() {
         lines.push(format!(
-            "Least distance from land {} m, at {:.1} s",
+            "Least distance from land {} m, at {} s",
             tenths(evaluation.min_land_distance),
-            evaluation.min_land_distance_time
+            tenths(evaluation.min_land_distance_time)
         ));
     }
     if !checked.targets.is_empty() {
@@ -94,7 +94,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
         .map(|(target, passage)| {
             // a NaN is shown
             let claimed = passage.min_margin != f64::INFINITY;
-            let margin = or_dash(claimed.then(|| millimetres(passage.min_margin)));
+            let margin = or_dash(claimed.then(|| thousandths(passage.min_margin)));
             vec![
                 plain(printable(target)),
                 if passage.min_margin >= -crate::tolerance::DEPTH_M {
@@ -124,6 +124,6 @@ fn margins(checked: &Verification, colour: bool) -> String {
 }
 
 /// Formats three decimals; values that round to zero have no sign.
-fn millimetres(value: f64) -> String {
-    format!("{:.3}", (value * 1000.0).round() / 1000.0 + 0.0)
+fn thousandths(value: f64) -> String {
+    short_numbers(&format!("{:.3}", (value * 1000.0).round() / 1000.0 + 0.0))
 }

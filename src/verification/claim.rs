@@ -11,6 +11,7 @@ use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
 use crate::target::{
     DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
 };
+use crate::text::short_numbers;
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
@@ -245,7 +246,7 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
 pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) -> ClaimError {
     ClaimError::Value(ClaimFault {
         path: path.to_owned(),
-        found: found.to_string(),
+        found: short_numbers(&found.to_string()),
         allowed: allowed.to_owned(),
     })
 }

@@ -38,6 +38,7 @@ use claim::{Claim, ClaimedMotion};
 use crate::evaluation::{
     Evaluation, Freedom, Request, Steering, Violation, evaluate, evaluate_steered,
 };
+use crate::text::short_numbers;
 use crate::trajectory::Segment;
 
 /// Name of the supported document format.
@@ -155,6 +156,9 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         let own = claim.sets.iter().filter(|set| set.name == name);
         own.map(|set| set.from).fold(0.0, f64::max)
     };
+    for violation in &mut violations {
+        violation.what = short_numbers(&violation.what);
+    }
     // A NaN time sorts last.
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(Verification {

@@ -11,7 +11,7 @@ use super::figures::near;
 use super::file::EncounterFile;
 use super::mismatch;
 use super::motion::around;
-use crate::evaluation::{Request, SpaceTimeSet, Violation, least_margins};
+use crate::evaluation::{MovingSlabs, Request, SpaceTimeSet, Violation, least_margins};
 use crate::frame::direction;
 use crate::geometry::ConvexPolygon;
 use crate::target::Motion;
@@ -126,11 +126,13 @@ fn taken(
     let then: Vec<Segment> = around(segments, time)
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
         .collect();
-    // A set without interior was enlarged for the planner, by a polygon around a disc.
-    let near = if is_flat(&whole, time) {
-        tolerance::DEPTH_M + 1.1 * tolerance::HALF_WIDTH_M
-    } else {
+    // A narrow set was enlarged for the planner, by a polygon around a disc.
+    let narrow_at = if set.from > 0.0 { 0.0 } else { time };
+    let wide = MovingSlabs::new(&whole.sets).half_width(narrow_at) >= tolerance::HALF_WIDTH_M;
+    let near = if wide {
         tolerance::DEPTH_M
+    } else {
+        tolerance::DEPTH_M + 1.1 * tolerance::HALF_WIDTH_M
     };
     // Negated on purpose: a NaN is not in the set.
     if below > 0.0 && !(margin(below, &then) <= near) {
@@ -141,16 +143,6 @@ fn taken(
         });
     }
     None
-}
-
-/// Returns true for a set whose section at a time is a point or a segment, to rounding.
-fn is_flat(set: &SpaceTimeSet, time: f64) -> bool {
-    if set.sets.initial.as_polygon().is_none() || set.sets.velocities.len() > 1 {
-        return !set.has_interior();
-    }
-    let section = set.sets.outer_section(time);
-    let mut normals = section.normals().into_iter();
-    normals.any(|n| section.support(n) + section.support(-n) < tolerance::DEPTH_M)
 }
 
 /// Returns true for a target with several velocity sets in sequence: the last one does not

@@ -161,6 +161,46 @@ fn a_set_thinner_than_its_shape_matrix_tells_is_left_for_good() {
     );
 }
 
+/// Own ship starts on a set that has no inside then. The plan leaves it, and is not called safe.
+#[test]
+fn a_start_on_a_point_or_a_segment_is_a_start_inside() {
+    let still = "velocity_set = { vertices_mps = [[0, 0]] }";
+    let growing = "velocity_set = { vertices_mps = [[0, 0], [0.3, 0], [0, 0.3]] }";
+    let round = "center_mps = [0.1, 0.2], shape_m2_per_s2 = [[0.1, 0], [0, 0.1]]";
+    let rounds = format!("velocity_sets = [{{ until_s = 50, {round} }}, {{ {round} }}]");
+    let round = format!("velocity_set = {{ {round} }}");
+    for (planner, [initial, velocity]) in [
+        ("space-time", ["vertices_m = [[0, 0]]", growing]),
+        ("path-time", ["vertices_m = [[0, -30], [0, 30]]", growing]),
+        ("space-time", ["vertices_m = [[-30, 0], [30, 1e-6]]", still]),
+        (
+            "space-time",
+            ["center_m = [0, 0], shape_m2 = [[0, 0], [0, 0]]", &rounds],
+        ),
+        (
+            "path-time",
+            ["center_m = [0, 0], shape_m2 = [[0, 0], [0, 900]]", &round],
+        ),
+    ] {
+        let plan = verified(&format!(
+            r#"title = "on a point"
+            horizon_s = 300
+            own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 4,
+                length_m = 30, beam_m = 8, turning_radius_m = 100 }}
+            planner = {{ kind = "{planner}" }}
+            mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 800, north_m = 0 }}] }}
+            targets = [{{ name = "t", initial_set = {{ {initial} }}, {velocity} }}]"#
+        ));
+        let reason = plan["reason"].as_str().expect("a reason");
+        assert!(reason.starts_with("own ship starts inside the set of 't'"));
+        let words = [&plan["outcome"], &plan["verdict"], &plan["safe"]];
+        assert_eq!(
+            words,
+            [&json!("relaxed"), &json!("NOT SAFE"), &json!(false)]
+        );
+    }
+}
+
 /// The ellipse around a needle and a disc is wider than both. A plan beside the needle takes no risk.
 #[test]
 fn a_needle_that_is_passed_is_no_risk() {

@@ -36,13 +36,14 @@ pub(crate) fn least_distance_below<P: Piece>(
     };
     for s in pieces {
         for time in [s.start_time(), s.end_time()] {
-            least.see(own.probe(s, &s.bounds(), set, time, 0.0).value, time);
+            let found = own.probe(s, &s.bounds(), set, [time, 0.0], least.value);
+            least.see(found.value, time);
         }
     }
     for s in pieces {
         let bounds = s.bounds();
-        least.search(s.start_time(), s.end_time(), |time, half| {
-            own.probe(s, &bounds, set, time, half)
+        least.search(s.start_time(), s.end_time(), |time, half, known| {
+            own.probe(s, &bounds, set, [time, half], known)
         });
     }
     least
@@ -95,14 +96,15 @@ impl Body {
         self.half_length == 0.0 && self.half_beam == 0.0
     }
 
-    /// Returns the distance at `time` and its lower bound within `half` seconds.
+    /// Returns the distance at `time` and its lower bound within `half` seconds. The discs around
+    /// both, or one face of the set, decide where they prove a distance above the `known` one.
     fn probe(
         &self,
         piece: &impl Piece,
         bounds: &Bounds,
         set: &MovingSet,
-        time: f64,
-        half: f64,
+        [time, half]: [f64; 2],
+        known: f64,
     ) -> Probe {
         let pose = piece.pose_at(time);
         // Minima and maxima below lose a NaN, so it is caught here.
@@ -111,6 +113,13 @@ impl Body {
                 value: f64::NAN,
                 lower: f64::NAN,
             };
+        }
+        let reach = self.half_length.hypot(self.half_beam);
+        let apart = set
+            .disc
+            .least_distance(pose.position, bounds.speed, [time, half]);
+        if let Some(far) = Probe::beyond(known, apart - reach) {
+            return far;
         }
         let moving = Moving {
             velocity: piece.velocity_at(time),
@@ -128,8 +137,7 @@ impl Body {
             * half
             * half
             * (bounds.acceleration
-                + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration)
-                    * self.half_length.hypot(self.half_beam));
+                + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration) * reach);
         // Distance of the body from a face now, and its lower bound within `half` seconds.
         let beyond = |face: &Face| {
             let mut gap = Probe {
@@ -156,7 +164,13 @@ impl Body {
             }
             best.lower = best.lower.max(gap.lower);
         };
-        (set.faces.iter()).for_each(|face| keep(beyond(face), face.normal));
+        for face in &set.faces {
+            let gap = beyond(face);
+            if let Some(far) = Probe::beyond(known, gap.lower) {
+                return far;
+            }
+            keep(gap, face.normal);
+        }
         if !self.is_point() {
             let ahead = pose.ahead();
             let port = to_port(ahead);

@@ -27,6 +27,16 @@ pub(crate) struct Least {
     pub probes: usize,
 }
 
+impl Probe {
+    /// Probe of a value that is nowhere below `lower`, if that exceeds the `known` least value by
+    /// more than rounding.
+    pub fn beyond(known: f64, lower: f64) -> Option<Self> {
+        let value = f64::INFINITY;
+        (lower > known + tolerance::DEPTH_M + tolerance::LIMIT * lower.abs())
+            .then_some(Self { value, lower })
+    }
+}
+
 impl Least {
     /// Initial state without any value.
     pub fn new() -> Self {
@@ -51,9 +61,10 @@ impl Least {
     ///
     /// A part is proven if its bound is at most [`tolerance::MARGIN_M`] below the best value. For a
     /// part shorter than [`tolerance::INSTANT_S`] the limit is half of [`tolerance::DEPTH_M`].
-    /// `probe(time, half)` returns the value at `time` and a lower bound on
-    /// `[time - half, time + half]`.
-    pub fn search(&mut self, from: f64, until: f64, probe: impl Fn(f64, f64) -> Probe) {
+    /// `probe(time, half, known)` returns the value at `time` and a lower bound on
+    /// `[time - half, time + half]`. Where the bound exceeds `known`, the least value so far, the
+    /// value may be infinite.
+    pub fn search(&mut self, from: f64, until: f64, probe: impl Fn(f64, f64, f64) -> Probe) {
         let mut open = vec![(from, until)];
         while let Some((from, until)) = open.pop() {
             if self.probes >= MAX_PROBES {
@@ -62,7 +73,7 @@ impl Least {
             }
             self.probes += 1;
             let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
-            let found = probe(middle, half);
+            let found = probe(middle, half, self.value);
             self.see(found.value, middle);
             if self.value.is_nan() {
                 return;

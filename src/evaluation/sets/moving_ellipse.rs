@@ -2,6 +2,7 @@
 
 use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::space_time_set::{MovingDisc, MovingVertex};
 use crate::frame::{Vector, cross, direction};
 use crate::geometry::Ellipse;
 use crate::tolerance;
@@ -129,6 +130,13 @@ impl MovingEllipse {
     /// the entries changes `n' Q n` by some epsilons of `a²`. The section's support then changes by
     /// [`shape_rounding`] of its own lesser semi-axis.
     pub fn rounding(&self, time: f64) -> f64 {
+        let [long, short] = self.semi_axes(time);
+        shape_rounding(long, short)
+    }
+
+    /// Upper bound of the greater semi-axis of the section at a time, and its lesser semi-axis,
+    /// metres.
+    pub fn semi_axes(&self, time: f64) -> [f64; 2] {
         let terms = self.earlier.iter().copied();
         let terms = terms.chain([(self.velocity, time)]);
         let reach = self.reach + self.velocity.root * time;
@@ -143,7 +151,7 @@ impl MovingEllipse {
             long += weight * term.axes[0].norm_squared();
         }
         let least = 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy);
-        shape_rounding(long.sqrt(), least.max(0.0).sqrt())
+        [long.sqrt(), least.max(0.0).sqrt()]
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {
@@ -184,18 +192,31 @@ impl MovingEllipse {
         let mut least = known;
         for s in pieces {
             for time in [s.start_time(), s.end_time()] {
-                least.see(self.probe(s, time, 0.0).value, time);
+                let found = self.probe(s, [time, 0.0], least.value);
+                least.see(found.value, time);
             }
         }
         for s in pieces {
-            least.search(s.start_time(), s.end_time(), |time, half| {
-                self.probe(s, time, half)
+            least.search(s.start_time(), s.end_time(), |time, half, known| {
+                self.probe(s, [time, half], known)
             });
         }
         least
     }
 
-    fn probe(&self, piece: &impl Piece, time: f64, half: f64) -> Probe {
+    /// Disc that contains the section at every time.
+    pub fn disc(&self) -> MovingDisc {
+        MovingDisc {
+            center: MovingVertex {
+                initial: self.center,
+                velocity: self.drift,
+            },
+            radius: self.reach,
+            growth: self.velocity.root,
+        }
+    }
+
+    fn probe(&self, piece: &impl Piece, [time, half]: [f64; 2], known: f64) -> Probe {
         let position = piece.pose_at(time).position;
         // A comparison below loses a NaN, so it is caught here.
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
@@ -203,6 +224,11 @@ impl MovingEllipse {
                 value: f64::NAN,
                 lower: f64::NAN,
             };
+        }
+        let disc = self.disc();
+        let apart = disc.least_distance(position, piece.bounds().speed, [time, half]);
+        if let Some(far) = Probe::beyond(known, apart) {
+            return far;
         }
         let beyond = |normal: Vector| normal.dot(&position) - self.line(normal, time).support;
         let sampled = self.directions.map(beyond);

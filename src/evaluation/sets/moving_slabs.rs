@@ -4,13 +4,16 @@ use crate::evaluation::distance::clearance::{Body, least_distance_below};
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
-use crate::evaluation::sets::space_time_set::MovingSet;
+use crate::evaluation::sets::space_time_set::{MovingDisc, MovingSet};
 use crate::geometry::ConvexPolygon;
 use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 
 /// Sides of the polygon around an ellipse beside polygons.
 const SIDES: usize = 64;
+
+/// Bisection steps for the time at which sections become wide: to a nanosecond of the longest slab.
+const NARROW_HALVINGS: usize = 60;
 
 /// Moving set over one time interval. Its time counts from `start`.
 #[derive(Debug, Clone)]
@@ -93,18 +96,16 @@ impl MovingSlabs {
     }
 
     /// Returns false when the sections are points or segments over some time interval.
-    pub fn has_interior(&self) -> bool {
+    fn has_interior(&self) -> bool {
         self.slabs.iter().all(|slab| match &slab.set {
             Moving::Polygon(set) => set.has_interior(),
             Moving::Ellipse(set) => set.has_interior(),
         })
     }
 
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
-    /// interior.
-    pub fn edge(&self, time: f64) -> Option<f64> {
-        self.has_interior()
-            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    /// Depth at a time within which a motion is on the edge of the set, metres.
+    pub fn edge(&self, time: f64) -> f64 {
+        tolerance::DEPTH_M + self.rounding(time)
     }
 
     /// Largest effect of the rounding of the shape matrices of ellipses on a distance at a time,
@@ -114,6 +115,59 @@ impl MovingSlabs {
         match &slab.set {
             Moving::Polygon(_) => 0.0,
             Moving::Ellipse(set) => set.rounding(time - slab.start),
+        }
+    }
+
+    /// Least distance of a point while the sections are too narrow for the allowed depth: a motion
+    /// across them would not be found by its depth. Infinite where they never are.
+    pub fn least_distance_while_narrow<P: Piece>(&self, pieces: &[P]) -> Least {
+        let end = self.narrow_until();
+        let narrow: Vec<P> = (pieces.iter())
+            // Negated on purpose: a NaN is included.
+            .filter(|piece| !(piece.start_time() > end))
+            .map(|piece| piece.part(piece.start_time(), end, 0.0))
+            .collect();
+        self.least_distance(&narrow, Body::POINT)
+    }
+
+    /// Time until which the sections are too narrow for the allowed depth: sections only widen.
+    /// Negative where they never are.
+    fn narrow_until(&self) -> f64 {
+        if !self.has_interior() {
+            return f64::INFINITY;
+        }
+        // Negated on purpose: a NaN is narrow.
+        let narrow = |time: f64| !(self.half_width(time) > 2.0 * self.edge(time));
+        if !narrow(0.0) {
+            return -1.0;
+        }
+        let ends = self.slabs.iter().map(|slab| (slab.start, slab.end));
+        let ends = ends.map(|(start, end)| (start, end.min(start + tolerance::FOREVER_S)));
+        let Some((mut low, mut high)) = ends.into_iter().find(|(_, end)| !narrow(*end)) else {
+            return f64::INFINITY;
+        };
+        for _ in 0..NARROW_HALVINGS {
+            let middle = 0.5 * (low + high);
+            if narrow(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
+
+    /// Lower bound of half of the least width of the section at a time, metres; at least a quarter
+    /// of it.
+    pub fn half_width(&self, time: f64) -> f64 {
+        let slab = self.slab_at(time);
+        match &slab.set {
+            Moving::Polygon(set) => {
+                let section = set.section_at(time - slab.start);
+                // A convex set is inside a rectangle of its least width and its diameter.
+                0.5 * section.area() / section.across()
+            }
+            Moving::Ellipse(set) => set.semi_axes(time - slab.start)[1],
         }
     }
 
@@ -133,43 +187,71 @@ impl MovingSlabs {
 
     /// Least distance over all slabs, each within its time. Beside ellipses own ship is a point.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
+        let parts: Vec<Vec<P>> = (self.slabs.iter()).map(|slab| slab.parts(pieces)).collect();
+        // The centres are in the sets, so no distance above the least of theirs matters.
+        let mut nearest = f64::INFINITY;
+        for (slab, parts) in self.slabs.iter().zip(&parts) {
+            let disc = slab.disc();
+            for part in parts {
+                let here = part.pose_at(part.start_time()).position;
+                // A NaN is ignored here and found below.
+                nearest = nearest.min((here - disc.center.at(part.start_time())).norm());
+            }
+        }
+        let nearest = nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M;
         let mut least = Least::new();
-        for slab in &self.slabs {
-            // A piece that ends at the start of a slab, up to rounding, belongs to the previous
-            // slab: a growing set is still smaller there.
-            let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
-            let fastest = match &slab.set {
-                Moving::Polygon(set) => set.fastest(),
-                Moving::Ellipse(_) => f64::INFINITY,
-            };
-            let before = |s: &P| {
-                let rounding = s.end_time() - slab.start;
-                let both = fastest + s.bounds().speed;
-                s.end_time() < slab.start
-                    || slab.start > 0.0 && s.start_time() <= slab.start && s.end_time() <= begun
-                    // Neither own ship nor the set moves by more than the margin meanwhile.
-                    && rounding * both <= tolerance::MARGIN_M
-            };
-            let parts: Vec<P> = pieces
-                .iter()
-                // Negated on purpose: a NaN is included.
-                .filter(|s| !(before(s) || s.start_time() > slab.end))
-                .map(|s| s.part(slab.start, slab.end, slab.start))
-                .collect();
+        for (slab, parts) in self.slabs.iter().zip(&parts) {
             // Parts that are not nearer than in earlier slabs are not refined.
             let known = Least {
-                value: least.value,
+                value: least.value.min(nearest),
                 ..Least::new()
             };
             let here = match &slab.set {
-                Moving::Polygon(set) => least_distance_below(known, &parts, own, set),
-                Moving::Ellipse(set) => set.least_distance_below(known, &parts),
+                Moving::Polygon(set) => least_distance_below(known, parts, own, set),
+                Moving::Ellipse(set) => set.least_distance_below(known, parts),
             };
-            least.see(here.value, here.time + slab.start);
+            // Negated on purpose: a NaN is seen.
+            if !(here.value >= known.value) {
+                least.see(here.value, here.time + slab.start);
+            }
             least.certified &= here.certified;
             least.probes += here.probes;
         }
         least
+    }
+}
+
+impl Slab {
+    fn disc(&self) -> MovingDisc {
+        match &self.set {
+            Moving::Polygon(set) => set.disc,
+            Moving::Ellipse(set) => set.disc(),
+        }
+    }
+
+    /// Parts of a chain of pieces within the slab, with time measured from its start.
+    fn parts<P: Piece>(&self, pieces: &[P]) -> Vec<P> {
+        // A piece that ends at the start of a slab, up to rounding, belongs to the previous
+        // slab: a growing set is still smaller there.
+        let begun = self.start * (1.0 + 8.0 * f64::EPSILON);
+        let fastest = match &self.set {
+            Moving::Polygon(set) => set.fastest(),
+            Moving::Ellipse(_) => f64::INFINITY,
+        };
+        let before = |s: &P| {
+            let rounding = s.end_time() - self.start;
+            let both = fastest + s.bounds().speed;
+            s.end_time() < self.start
+                || self.start > 0.0 && s.start_time() <= self.start && s.end_time() <= begun
+                // Neither own ship nor the set moves by more than the margin meanwhile.
+                && rounding * both <= tolerance::MARGIN_M
+        };
+        pieces
+            .iter()
+            // Negated on purpose: a NaN is included.
+            .filter(|s| !(before(s) || s.start_time() > self.end))
+            .map(|s| s.part(self.start, self.end, self.start))
+            .collect()
     }
 }
 

@@ -1,8 +1,10 @@
 //! Moving set of the checker: sections from matched vertices, faces from supports.
 
+use crate::evaluation::Violation;
 use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::safety::entered;
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, ConvexSet};
@@ -34,27 +36,29 @@ impl SpaceTimeSet {
         }
     }
 
-    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
-    /// sections are points or segments over some time interval, and so have no depth.
-    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
-        MovingSlabs::new(&self.sets).edge(time)
-    }
-
-    /// Returns false when the sections are points or segments over some time interval.
-    pub(crate) fn has_interior(&self) -> bool {
-        MovingSlabs::new(&self.sets).has_interior()
-    }
-
     /// Least signed distance of own ship's position from the set while the set is valid. Infinite
     /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+        self.judged("", pieces).0
+    }
+
+    /// [`Self::least_distance`], and the violation if the set is entered.
+    pub(crate) fn judged<P: Piece>(&self, label: &str, pieces: &[P]) -> (Least, Option<Violation>) {
         let slabs = MovingSlabs::new(&self.sets);
-        if self.from == 0.0 {
-            return slabs.least_distance(pieces, Body::POINT);
-        }
-        let mut least = slabs.least_distance(&since(pieces, self.from, self.from), Body::POINT);
+        let later;
+        let pieces = if self.from == 0.0 {
+            pieces
+        } else {
+            later = since(pieces, self.from, self.from);
+            &later
+        };
+        let mut least = slabs.least_distance(pieces, Body::POINT);
+        let mut entered = entered(label, &slabs, pieces, &least);
         least.time += self.from;
-        least
+        if let Some(violation) = &mut entered {
+            violation.time += self.from;
+        }
+        (least, entered)
     }
 }
 
@@ -66,6 +70,44 @@ pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
     later
         .map(|piece| piece.part(piece.start_time().max(from), piece.end_time(), zero))
         .collect()
+}
+
+/// Disc that contains the section at every time. Its centre is in the section.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MovingDisc {
+    /// Centre at t = 0, metres, and its velocity, m/s.
+    pub center: MovingVertex,
+    /// Radius at t = 0, metres.
+    pub radius: f64,
+    /// Rate of the radius, m/s.
+    pub growth: f64,
+}
+
+impl MovingDisc {
+    fn around(vertices: &[MovingVertex]) -> Self {
+        let share = 1.0 / vertices.len() as f64;
+        let center = MovingVertex {
+            initial: vertices.iter().map(|v| v.initial * share).sum(),
+            velocity: vertices.iter().map(|v| v.velocity * share).sum(),
+        };
+        let most = |of: fn(&MovingVertex) -> Vector| {
+            let off = vertices.iter().map(|v| (of(v) - of(&center)).norm());
+            off.fold(0.0, f64::max)
+        };
+        Self {
+            center,
+            radius: most(|v| v.initial),
+            growth: most(|v| v.velocity),
+        }
+    }
+
+    /// Lower bound of the distance of a point within `half` seconds, from its position at `time`
+    /// and its greatest speed.
+    pub fn least_distance(&self, position: Vector, speed: f64, [time, half]: [f64; 2]) -> f64 {
+        let closing = speed + self.center.velocity.norm();
+        let apart = (position - self.center.at(time)).norm();
+        apart - closing * half - self.radius - self.growth * (time + half)
+    }
 }
 
 /// Vertex of the section: `initial + t velocity`.
@@ -112,6 +154,7 @@ pub(crate) struct MovingSet {
     pub vertices: Vec<MovingVertex>,
     /// Faces, sorted by the angle of their normals.
     pub faces: Vec<Face>,
+    pub disc: MovingDisc,
 }
 
 impl MovingSet {
@@ -146,15 +189,23 @@ impl MovingSet {
         Self {
             initial: initial.clone(),
             velocity: velocity.clone(),
+            disc: MovingDisc::around(&vertices),
             vertices,
             faces,
         }
     }
 
+    /// The section at a time.
+    pub fn section_at(&self, time: f64) -> ConvexPolygon {
+        self.initial.minkowski_sum(&self.velocity.scaled(time))
+    }
+
     /// The section at a time, as a fixed set.
     pub fn still_at(&self, time: f64) -> Self {
-        let section = self.initial.minkowski_sum(&self.velocity.scaled(time));
-        Self::new(&section, &ConvexPolygon::point(Vector::zeros()))
+        Self::new(
+            &self.section_at(time),
+            &ConvexPolygon::point(Vector::zeros()),
+        )
     }
 
     /// Returns the supporting line in any unit direction.

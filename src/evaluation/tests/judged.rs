@@ -2,7 +2,7 @@
 //! bound.
 
 use super::*;
-use crate::geometry::Polygon;
+use crate::geometry::{ConvexSet, Ellipse, Polygon};
 
 fn straight() -> Vec<Segment> {
     let mut segments = Vec::new();
@@ -37,6 +37,57 @@ fn a_set_is_judged_from_its_release_on() {
     }
     let found = judge(&straight(), &[left(&wall, 60.1)], &[]);
     assert!(found.verified(), "{:?}", found.violations);
+}
+
+/// Own ship begins on a set that has no inside at the start and is left at once. It crosses a
+/// needle, where no depth exceeds the tolerance.
+#[test]
+fn a_set_without_inside_is_entered_where_it_is_touched() {
+    let polygon = |at: &[Vector]| ConvexSet::from(ConvexPolygon::hull(at).expect("finite"));
+    let ellipse = |length: f64, width: f64| {
+        let axes = [Vector::new(length, 0.0), Vector::new(0.0, width)];
+        ConvexSet::from(Ellipse::from_axes(Vector::zeros(), axes))
+    };
+    let small = polygon(&rectangle([0.1, 0.1], [0.2, 0.3]));
+    let round = |initial: ConvexSet| match initial {
+        ConvexSet::Polygon(_) => small.clone(),
+        ConvexSet::Ellipse(_) => ellipse(0.3, 0.2),
+    };
+    let moved = |set: &ConvexSet, shift: Vector| match set {
+        ConvexSet::Polygon(set) => ConvexSet::from(set.translated(shift)),
+        ConvexSet::Ellipse(set) => ConvexSet::from(set.translated(shift)),
+    };
+    let path = straight();
+    for initial in [
+        polygon(&[Vector::zeros()]),
+        polygon(&[Vector::new(0.0, -30.0), Vector::new(0.0, 30.0)]),
+        polygon(&rectangle([-30.0, 0.0], [0.0, 1e-6])),
+        ellipse(0.0, 0.0),
+        ellipse(0.0, 30.0),
+        ellipse(1e-6, 30.0),
+    ] {
+        let growing = Uncertainty::constant(initial.clone(), round(initial.clone()));
+        let mut twice = growing.clone();
+        twice.velocities.insert(0, twice.velocities[0].clone());
+        twice.velocities[0].until = 20.0;
+        for sets in [growing, twice] {
+            let set = |shift: Vector| SpaceTimeSet {
+                name: "other".to_owned(),
+                from: 0.0,
+                sets: Uncertainty {
+                    initial: moved(&sets.initial, shift),
+                    ..sets.clone()
+                },
+            };
+            let found = judge(&path, &[set(Vector::zeros())], &[]);
+            assert_eq!(words(&found), ["set"], "{sets:?}");
+            assert!(found.violations[0].time < 0.1, "{found:?}");
+            let astern = judge(&path, &[set(Vector::new(-1.0, 0.0))], &[]);
+            assert!(astern.verified(), "{:?}", astern.violations);
+        }
+    }
+    let across = rectangle([200.0, -30.0], [200.000_001, 30.0]);
+    assert_eq!(words(&judge(&path, &[left(&across, 0.0)], &[])), ["set"]);
 }
 
 /// The hulls overlap from 52.4 s to 59.6 s, far from the set with the target's name.

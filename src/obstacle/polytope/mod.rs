@@ -13,9 +13,6 @@ use crate::obstacle::risk::{
 use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::trajectory::Segment;
 
-/// Vertex count above which a local search replaces the search of all vertices.
-const MANY: usize = 64;
-
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a
 /// unit normal in the plane.
 ///
@@ -109,12 +106,12 @@ impl PolytopeObstacle {
             normals.pop();
         }
         let normals: Vec<Vector> = normals.into_iter().map(|(_, normal)| normal).collect();
-        let supports = supports(&initial, &normals).zip(supports(&velocity, &normals));
+        let supports = (initial.extremes(&normals)).zip(velocity.extremes(&normals));
         let faces: Vec<HalfSpace> = (normals.iter().zip(supports))
-            .map(|(normal, (initial_support, velocity_support))| HalfSpace {
+            .map(|(normal, (initial, velocity))| HalfSpace {
                 normal: *normal,
-                velocity_support,
-                initial_support,
+                velocity_support: normal.dot(&velocity),
+                initial_support: normal.dot(&initial),
             })
             .collect();
         let centroid = velocity.centroid();
@@ -153,6 +150,15 @@ impl PolytopeObstacle {
     /// The vertices of the sections for t > 0, counter-clockwise; at most n + m.
     pub fn moving_vertices(&self) -> Vec<MovingVertex> {
         self.moving().to_vec()
+    }
+
+    /// Replaces the supports of the faces. Contact depends on the faces alone; nothing else of this
+    /// polytope is valid afterwards.
+    pub(in crate::obstacle) fn move_faces(&mut self, supports: impl Iterator<Item = Support>) {
+        let faces = &mut Arc::make_mut(&mut self.shared).faces;
+        for (face, support) in faces.iter_mut().zip(supports) {
+            (face.initial_support, face.velocity_support) = (support.value, support.rate);
+        }
     }
 
     pub(in crate::obstacle) fn moving(&self) -> &[MovingVertex] {
@@ -312,12 +318,12 @@ impl SpaceTimeObstacle for PolytopeObstacle {
             let mut level = self.clone();
             peak_by_bisection(segment.start_time, |risk| {
                 let alpha = level_of(risk);
-                let faces = &mut Arc::make_mut(&mut level.shared).faces;
-                for (i, face) in faces.iter_mut().enumerate() {
-                    let nominal = self.shared.spreads[i].nominal_rate;
-                    let rate = self.shared.faces[i].velocity_support - nominal;
-                    face.velocity_support = nominal + alpha * rate;
-                }
+                let faces = self.shared.faces.iter().zip(&self.shared.spreads);
+                level.move_faces(faces.map(|(face, spread)| Support {
+                    value: face.initial_support,
+                    rate: spread.nominal_rate
+                        + alpha * (face.velocity_support - spread.nominal_rate),
+                }));
                 contact::first_contact(&level, segment, 0.0)
             })
         }
@@ -360,7 +366,7 @@ fn moving_vertices(
     let between: Vec<Vector> = (faces.iter().zip(next))
         .map(|(a, b)| a.normal + b.normal)
         .collect();
-    let both = farthest(initial, &between).zip(farthest(velocity, &between));
+    let both = (initial.farthest(&between)).zip(velocity.farthest(&between));
     let mut vertices: Vec<MovingVertex> = both
         .map(|(j, k)| MovingVertex {
             indices: (j, k),
@@ -373,44 +379,6 @@ fn moving_vertices(
         vertices.pop();
     }
     vertices
-}
-
-/// Supports of a set in directions sorted counter-clockwise.
-fn supports<'a>(
-    set: &'a ConvexPolygon,
-    directions: &'a [Vector],
-) -> impl Iterator<Item = f64> + 'a {
-    let both = farthest(set, directions).zip(directions);
-    both.map(|(vertex, along)| along.dot(&set.vertices()[vertex]))
-}
-
-/// Indices of the farthest vertices in directions sorted counter-clockwise.
-///
-/// For a set with many vertices each search starts at the last result, because the vertices are
-/// sorted likewise.
-fn farthest<'a>(
-    set: &'a ConvexPolygon,
-    directions: &'a [Vector],
-) -> impl Iterator<Item = usize> + 'a {
-    let points = set.vertices();
-    let mut at = None;
-    directions.iter().map(move |along| {
-        let further = |from: usize, to: usize| along.dot(&points[to]) > along.dot(&points[from]);
-        let mut best = match at {
-            Some(last) if points.len() > MANY => last,
-            _ => (1..points.len()).fold(0, |best, k| if further(best, k) { k } else { best }),
-        };
-        for _ in 0..points.len() {
-            // one step may be a tie by rounding
-            let ahead = [1, 2].map(|step| (best + step) % points.len());
-            match ahead.into_iter().find(|next| further(best, *next)) {
-                Some(next) => best = next,
-                None => break,
-            }
-        }
-        at = Some(best);
-        best
-    })
 }
 
 #[cfg(test)]
