@@ -140,8 +140,9 @@ pub fn encounter(
                 let mut start = from;
                 let mut best: Option<Closest> = None;
                 for end in ends {
+                    let section = sets.outer_sections_from(start);
                     let here = least(start, end, |time| {
-                        sets.outer_section(time).signed_distance(position(time))
+                        section(time).signed_distance(position(time))
                     });
                     if best.as_ref().is_none_or(|b| here.distance < b.distance) {
                         best = Some(here);

@@ -52,10 +52,10 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
         let stats = &plan.search_stats;
         let (expanded, generated) = (stats.expanded, stats.generated);
         let checked = stats.edges_checked;
-        add(
-            "search",
-            format!("{expanded} expanded, {generated} generated, {checked} edges checked"),
-        );
+        let graph = format!("{expanded} expanded, {generated} generated, {checked} edges checked");
+        let by_rules = plan.compliance == "rules" && generated == 0;
+        let manoeuvre = "a manoeuvre by the rules, found without the graph".to_owned();
+        add("search", if by_rules { manoeuvre } else { graph });
     }
     add(TIME_LINE, format!("{:.2} ms", 1e3 * plan.timing.plan_s));
     lines

@@ -70,6 +70,19 @@ impl Uncertainty {
             })
     }
 
+    /// [`Self::outer_section`] as a function of the times from `start` to the next change of the
+    /// velocities. The earlier velocities are summed once.
+    pub(crate) fn outer_sections_from(&self, start: f64) -> impl Fn(f64) -> ConvexPolygon {
+        let index = self.velocities.partition_point(|set| set.until <= start);
+        let index = index.min(self.velocities.len() - 1);
+        let begun = index
+            .checked_sub(1)
+            .map_or(0.0, |k| self.velocities[k].until);
+        let section = self.outer_section(begun);
+        let velocities = self.velocities[index].velocities.outer_polygon(SET_SIDES);
+        move |time| section.minkowski_sum(&velocities.scaled(time - begun))
+    }
+
     /// A polygon that contains every velocity after `time`, m/s: the convex hull of the sets, with
     /// the circumscribed 64-gons of ellipses.
     pub fn outer_velocities_after(&self, time: f64) -> ConvexPolygon {

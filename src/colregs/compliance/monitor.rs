@@ -128,7 +128,7 @@ impl Trace<'_> {
         })
     }
 
-    /// `G(role begins and persists -> F[react + 2 manoeuvre](range shrinks until turn >= m.turn))`,
+    /// `G(role begins and persists -> F[react + 2 manoeuvre](not past until turn >= m.turn))`,
     /// the turn to starboard, or to either side. Where a lower speed may replace the turn, it is
     /// held for [`APPARENT_TIME`].
     fn alters(
@@ -142,10 +142,10 @@ impl Trace<'_> {
         let mut worst: Option<(f64, f64)> = None;
         let mut open = false;
         for (_, samples) in self.wanted(wanted) {
-            let first = &samples[0];
+            let first = samples[0].at_speed(self.ordered_speed);
             let until = first.time + self.factor * (m.react + 2.0 * m.manoeuvre);
-            let closing = |s: &&EncounterSample| s.time <= until && s.opening() <= 0.0;
-            let meanwhile = samples.iter().take_while(closing).count();
+            let before_passing = |s: &&EncounterSample| s.time <= until && !s.is_past(&first.own);
+            let meanwhile = samples.iter().take_while(before_passing).count();
             let turn = samples[..meanwhile]
                 .iter()
                 .map(|s| {
@@ -154,8 +154,7 @@ impl Trace<'_> {
                 })
                 .fold(0.0, f64::max);
             let mut robustness = turn - m.turn;
-            // the range may open with the very change of speed
-            if may_slow && self.slows(samples, meanwhile + 1) {
+            if may_slow && self.slows(samples, meanwhile) {
                 robustness = robustness.max(0.0);
             }
             if robustness < 0.0 && meanwhile == samples.len() {

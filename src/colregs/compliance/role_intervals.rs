@@ -3,7 +3,6 @@
 
 use super::samples::{EncounterSample, EncounterSamples};
 use crate::colregs::{Role, SteadyShip, Thresholds, role_within};
-use crate::frame::Pose;
 
 /// A role and the time interval in which own ship has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,15 +32,8 @@ fn past_and_clear(
     length: f64,
     t: &Thresholds,
 ) -> bool {
-    let on_first_course = EncounterSample {
-        own: SteadyShip {
-            pose: Pose::new(sample.own.pose.position, first.pose.heading),
-            speed: first.speed,
-        },
-        ..*sample
-    };
     sample.opening() > t.sectors.closing
-        && on_first_course.ahead().time <= 0.0
+        && sample.is_past(first)
         && sample.apart >= t.risk.release_lengths * length
 }
 

@@ -1,7 +1,7 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
 use crate::colregs::SteadyShip;
-use crate::frame::{Vector, relative_bearing, to_port, wrap};
+use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
@@ -48,6 +48,16 @@ impl EncounterSample {
     pub fn at_speed(&self, speed: f64) -> Self {
         let own = SteadyShip { speed, ..self.own };
         Self { own, ..*self }
+    }
+
+    /// True if own ship, on its first course and at its first speed again, would have the target
+    /// behind: the closest approach is over.
+    pub fn is_past(&self, first: &SteadyShip) -> bool {
+        let own = SteadyShip {
+            pose: Pose::new(self.own.pose.position, first.pose.heading),
+            speed: first.speed,
+        };
+        Self { own, ..*self }.ahead().time <= 0.0
     }
 
     /// Metres between the centres.
