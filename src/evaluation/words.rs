@@ -23,6 +23,16 @@ pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String 
     }
 }
 
+/// The displayed word of a plan that may have given up the rules. Only `"relaxed"` says so little
+/// that it is replaced.
+pub fn without_rules(word: String, gives_up_rules: bool) -> String {
+    if gives_up_rules && word == "relaxed" {
+        "not by the rules".to_owned()
+    } else {
+        word
+    }
+}
+
 fn at_risk(risk: f64) -> String {
     format!("at risk {}", risk_figure(risk))
 }

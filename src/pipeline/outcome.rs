@@ -3,7 +3,7 @@
 use super::Run;
 use super::sets::TargetSets;
 use crate::colregs::Role;
-use crate::evaluation::{Safety, facts, outcome_word};
+use crate::evaluation::{Safety, facts, outcome_word, without_rules};
 use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
 use crate::planner::Outcome;
 
@@ -131,12 +131,8 @@ impl Run {
     pub fn word(&self) -> String {
         let ended = Verdict::of(self).word();
         let gives_up_rules = |r: &Relaxation| matches!(r, Relaxation::Compliance { .. });
-        match outcome_word(ended, self.safety(), self.greatest_risk()) {
-            word if word == "relaxed" && self.relaxations.iter().any(gives_up_rules) => {
-                "not by the rules".to_owned()
-            }
-            word => word,
-        }
+        let word = outcome_word(ended, self.safety(), self.greatest_risk());
+        without_rules(word, self.relaxations.iter().any(gives_up_rules))
     }
 
     /// The title, the outcome, and for a plan whether it is verified and safe.

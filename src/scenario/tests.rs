@@ -49,7 +49,7 @@ fn what_is_left_out_takes_the_defaults_of_the_contract() {
     assert!((scenario.time_weight - 25.0).abs() < 1e-12);
     assert_eq!(scenario.deadline, 5.0);
     assert_eq!(scenario.search, SearchKind::AStar);
-    assert_eq!(scenario.compliance, Compliance::Shape);
+    assert_eq!(scenario.compliance, Compliance::Rules);
     let ship = scenario.targets[0].ship().expect("a ship");
     assert_eq!(ship.speed, mps_from_knots(10.0));
     assert!((ship.velocity() - Vector::new(-ship.speed, 0.0)).norm() < 1e-12);

@@ -2,7 +2,7 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::mismatch;
-use crate::evaluation::{Evaluation, Violation, outcome_word};
+use crate::evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use crate::tolerance;
 
 /// Checks the reported safety and verdict against the evaluation.
@@ -17,6 +17,8 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     }
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
     let word = outcome_word(&file.outcome, evaluation.map(|e| e.safety), risk);
+    let gives_up_rules = file.relaxations.iter().any(|r| r.kind == "compliance");
+    let word = without_rules(word, gives_up_rules);
     if file.verdict.as_ref() != Some(&word) {
         let said = file.verdict.clone().unwrap_or_else(nothing);
         found.push(mismatch("verdict", said, word));

@@ -262,7 +262,13 @@ fn one_kind(kind: EncounterKind, seeds: Seeds, report: &mut Report) {
         at_most("crosses ahead", RARELY, &ahead, plans);
     }
     let reduced = seeds_where(&|r| r.shape_reduced);
-    at_most("with a reduced shape", REDUCED, &reduced, all);
+    // an overtaking ship may begin within its domain
+    let may_reduce = if kind == EncounterKind::Overtaken {
+        2.0 * REDUCED
+    } else {
+        REDUCED
+    };
+    at_most("with a reduced shape", may_reduce, &reduced, all);
     let another = seeds_where(&|r| r.roles != [kind.role()]);
     at_most("of another class", ANOTHER_ROLE, &another, all);
     let costs = records.iter().filter_map(|r| Some(r.plan.as_ref()?.1));

@@ -36,7 +36,7 @@ fn is_said_only(pointer: &str) -> bool {
     .any(|part| pointer.starts_with(part))
         // the largest risk may persist for a time interval
         || pointer.contains("max_risk_t_s")
-        || ["roles", "scores", "breaches", "monitors"]
+        || ["roles", "scores", "breaches", "monitors", "manoeuvre"]
             .iter()
             .any(|judged| pointer.contains(&format!("/{judged}")))
 }

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use super::program::{
-    HEAD_ON, assert_values, document, run, searoom, stdout, text, untimed, write,
+    HEAD_ON, assert_values, document, head_on_without_planner, run, searoom, stdout, text, untimed,
+    write,
 };
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -64,16 +65,17 @@ fn every_fault_of_a_file_is_reported_at_once() {
 #[test]
 fn rules_are_kept_by_the_space_time_planner_alone() {
     let folder = tempfile::tempdir().expect("a folder");
-    let ruled = HEAD_ON.replacen(
-        "[mission]",
-        "[planner]\ncompliance = \"rules\"\n[mission]",
-        1,
-    );
-    let file = write(folder.path(), "ruled.toml", ruled.clone());
+    let ruled = HEAD_ON;
+    let file = write(folder.path(), "ruled.toml", ruled);
     searoom(&["plan", &file])
         .code(0)
         .stdout(contains("relaxed").not());
-    searoom(&["plan", &file, "--planner", "path-time"])
+    // another planner on the command line keeps the domains in their place
+    let other = searoom(&["plan", &file, "--planner", "path-time", "--json"]);
+    assert_eq!(document(&other)["compliance"], "shape");
+    let asked = ruled.replacen("[planner]", "[planner]\nkind = \"path-time\"", 1);
+    let asked = write(folder.path(), "asked.toml", asked);
+    searoom(&["plan", &asked])
         .code(2)
         .stdout(is_empty())
         .stderr(contains("planner.compliance").and(contains("path-time")));
@@ -134,8 +136,9 @@ fn what_does_not_fit_the_planner_is_named() {
             "",
         ),
     ] {
-        assert!(HEAD_ON.contains(from), "{from}");
-        let mut content = HEAD_ON.replacen(from, &to, 1);
+        let head_on = head_on_without_planner();
+        assert!(head_on.contains(from), "{from}");
+        let mut content = head_on.replacen(from, &to, 1);
         let expected = if said.is_empty() {
             content = content.replacen("[mission]", &format!("{path_time}[mission]"), 1);
             "own_ship.position: found a start 3 m from the first waypoint"
@@ -153,7 +156,7 @@ fn what_does_not_fit_the_planner_is_named() {
     let file = write(
         folder.path(),
         "unfit.toml",
-        HEAD_ON.replacen(
+        head_on_without_planner().replacen(
             "[mission]",
             &format!("{path_time}objective = \"time\"\n[mission]"),
             1,
@@ -263,7 +266,7 @@ const PLAN: &str = r#"
 /scenario "Head-on"
 /planner "space-time"
 /search "a-star"
-/compliance "shape"
+/compliance "rules"
 /outcome "solved"
 /encounters/0/target "target"
 /encounters/0/role "head-on"
@@ -582,9 +585,10 @@ fn a_pipe_is_not_waited_for() {
 fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "risk.toml", HEAD_ON);
-    let said = searoom(&["plan", &file, "--max-risk", "0.3"]).code(1);
+    let asked = ["plan", &file, "--compliance", "shape", "--max-risk", "0.3"];
+    let said = searoom(&asked).code(1);
     said.stdout(contains("at risk 0.30 (verified, safe)").and(contains("(0.3 accepted)")));
-    let said = searoom(&["plan", &file, "--max-risk", "0.3", "--json"]).code(1);
+    let said = searoom(&[&asked[..], &["--json"]].concat()).code(1);
     let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
     let risk = plan["cost"]["max_risk"].as_f64().expect("a number");
     assert!(risk > 0.2 && risk <= 0.3 + 1e-6, "{risk}");

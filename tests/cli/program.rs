@@ -9,6 +9,13 @@ use serde_json::Value;
 
 pub const HEAD_ON: &str = include_str!("../../scenarios/colregs/head-on.toml");
 
+/// The head-on scenario without its planner section.
+pub fn head_on_without_planner() -> String {
+    let (before, rest) = HEAD_ON.split_once("[planner]").expect("a section");
+    let (_, after) = rest.split_once("[[targets]]").expect("targets");
+    format!("{before}[[targets]]{after}")
+}
+
 pub fn searoom(args: &[&str]) -> Assert {
     Command::new(env!("CARGO_BIN_EXE_searoom"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))

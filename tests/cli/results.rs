@@ -546,7 +546,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
             .expect("a score")
     };
     assert!(
-        safety(&usual) > 0.9 && safety(&mine) < 0.7,
+        safety(&usual) > 0.5 && safety(&mine) < safety(&usual) - 0.1,
         "{}",
         safety(&mine)
     );
@@ -558,7 +558,11 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let compared = |args: &[&str]| {
         let all = [
-            &["compare", "scenarios/colregs/stand-on.toml", "--json"],
+            &[
+                "compare",
+                "scenarios/paper/figure_8_stand_on.toml",
+                "--json",
+            ],
             args,
         ]
         .concat();
@@ -571,15 +575,15 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
         let entry = entries.find(|e| e["method"] == method).expect("one");
         entry["breaks"].clone()
     };
-    assert_eq!(of("space-time, A*", &usual), json!(["17(c)", "R6"]));
+    assert_eq!(of("space-time, A*", &usual), json!(["17(c)"]));
     assert_eq!(of("path-time", &usual), json!([]));
     // the hulls meet
     assert_eq!(of("hold course", &usual), json!(["17(b)", "R1", "S"]));
-    // a ship that need not hold its course has nothing to be violated
-    let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nhold_deg = 180";
+    // to whom no turn is one, none is to port
+    let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nsteady_deg = 180";
     let file = write(folder.path(), "mine.toml", text);
     let mine = compared(&["--thresholds", &file]);
-    assert_eq!(of("space-time, A*", &mine), json!(["17(c)"]));
+    assert_eq!(of("space-time, A*", &mine), json!([]));
     for (usual, mine) in usual
         .as_array()
         .into_iter()

@@ -435,10 +435,10 @@ fn every_relaxation_level_answers_some_encounter() {
         let assumed = Assumed::default();
         situation.scenario(&assumed).expect("no faults").scenario
     };
-    // head-on, and a ship that is overtaken or gives way
-    let by_the_rules = answer(dnv("09"), Compliance::Rules);
+    // two ships head-on and one that gives way; one that gives way and two to overtake
+    let by_the_rules = answer(dnv("23"), Compliance::Rules);
     assert_eq!(by_the_rules.level, RelaxationLevel::Rules);
-    let clear_of_shapes = answer(dnv("07"), Compliance::Rules);
+    let clear_of_shapes = answer(dnv("49"), Compliance::Rules);
     assert_eq!(clear_of_shapes.level, RelaxationLevel::Domains);
     let imazu = Assumed::default().with(Assumption::SafetyMargin, 500.0);
     let case = benchmark("imazu/imazu.json").remove(16);

@@ -340,7 +340,7 @@ vessel = "cybership2-full"
     for (svg, names) in [
         (
             axes(&full),
-            ["Force [kN]", "Moment [kNm]", "Rate of turn [°/s]"],
+            ["Force [N]", "Moment [Nm]", "Rate of turn [°/s]"],
         ),
         (
             axes(&free),

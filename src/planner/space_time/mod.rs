@@ -42,7 +42,7 @@ use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
-use rules::manoeuvre::Manoeuvres;
+use rules::manoeuvre;
 use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
@@ -213,21 +213,12 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
-    if !problem.duty().is_none()
-        && let Some(end) = first_conflict
-    {
-        let stands_on = problem.duty().stands_on;
-        let mut manoeuvres = Manoeuvres::new(&context, &nominal_motion, clock);
-        let found = match stands_on {
-            true => manoeuvres.standing_on(end),
-            false => manoeuvres.giving_way(end),
-        };
-        if let Some(found) = found {
-            let escape = stands_on.then(|| found.escape());
-            let plan = Plan::measured(problem, found.motion, None);
+    if !problem.duty().is_none() && first_conflict.is_some() {
+        if let Some(kept) = manoeuvre::by_the_rules(&context, &nominal_motion, clock) {
+            let plan = Plan::measured(problem, kept.motion, None);
             let outcome = plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved);
             return Planned {
-                escape,
+                escape: kept.escape,
                 ..Planned::of(outcome)
             };
         }

@@ -39,15 +39,14 @@ pub(crate) fn apparent_slow_distance(problem: &Problem, motion: &[Segment]) -> f
         .sum()
 }
 
-/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule,
-/// which a ship without a duty to give way keeps.
-pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[Segment]) -> bool {
+/// True when a motion that leaves the route with a segment complies with own ship's duty.
+pub(crate) fn complies(context: &Context, motion: &[Segment], departure: usize) -> bool {
     let problem = context.problem;
     let duty = problem.duty();
-    if duty.is_none() || motion == nominal_motion {
+    if duty.is_none() {
         return true;
     }
-    let departure = Departure::of(context, motion);
+    let departure = Departure::of(context, motion, departure);
     departure.is_apparent(duty)
         && problem.encountered.iter().all(|encountered| {
             let duties = encountered.role.duties();
@@ -121,7 +120,7 @@ struct Departure {
 }
 
 impl Departure {
-    fn of(context: &Context, motion: &[Segment]) -> Self {
+    fn of(context: &Context, motion: &[Segment], index: usize) -> Self {
         let slow = apparent_slow_speed(context.problem);
         let (mut slow_for, mut slowed) = (0.0, false);
         let mut sees = |s: &Segment| {
@@ -134,19 +133,6 @@ impl Departure {
             slowed |= slow_for >= APPARENT_TIME;
             slowed
         };
-        let mut along = 0.0;
-        let mut index = 0;
-        for s in motion {
-            along += s.length();
-            let (due, _) = context.route.pose_at(along);
-            let end = s.end();
-            let near = (end.position - due.position).norm() <= tolerance::JOINT_M;
-            if !(near && wrap(end.heading - due.heading).abs() <= tolerance::JOINT_RAD) {
-                break;
-            }
-            sees(s);
-            index += 1;
-        }
         let mut departure = Self {
             index,
             heading: motion.get(index).map_or(0.0, |s| s.start.heading),

@@ -10,16 +10,16 @@
 //! first; the best of those that are clear of every set until arrival is improved by a pattern
 //! search. There are few turns and few changes of speed by construction.
 
-use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Encountered, Role, Thresholds};
+use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds};
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
-use crate::obstacle::{PolytopeObstacle, contact};
+use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::first_met;
+use crate::planner::space_time::proxy::{first_contact, first_met};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
@@ -99,11 +99,13 @@ enum FirstAlteration {
 
 /// A clear manoeuvre.
 #[derive(Debug, Clone)]
-pub(crate) struct Found {
+struct Found {
     manoeuvre: Manoeuvre,
-    pub motion: Vec<Segment>,
+    motion: Vec<Segment>,
+    /// Seconds at which own ship is on the route again.
+    joined: f64,
     /// Cost, m².
-    pub cost: f64,
+    cost: f64,
 }
 
 impl Found {
@@ -112,7 +114,7 @@ impl Found {
         rank(&self.manoeuvre.first, self.cost)
     }
 
-    pub(crate) fn escape(&self) -> Escape {
+    fn escape(&self) -> Escape {
         let (turn, speed) = match self.manoeuvre.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
             FirstAlteration::Slow { speed } => (0.0, Some(speed)),
@@ -143,10 +145,100 @@ struct Passing<'a> {
     hulls: PolytopeObstacle,
 }
 
+/// A plan by the rules.
+pub(crate) struct Kept {
+    pub motion: Vec<Segment>,
+    /// The escape of a ship that stands on.
+    pub escape: Option<Escape>,
+}
+
+/// The cheapest motion of this family for each conflict of the nominal motion, one after another:
+/// the next manoeuvre begins when own ship is on the route again. Where that fails, one manoeuvre
+/// for all. `None` where neither is found.
+pub(crate) fn by_the_rules(
+    context: &Context,
+    nominal_motion: &[Segment],
+    clock: Clock,
+) -> Option<Kept> {
+    let encountered = context.problem.encountered;
+    let first = |motion: &[Segment]| {
+        let contact = first_contact(context.proxies, motion).map(|c| c.1);
+        let grounding = land::first_contact(context.problem.land_obstacle, motion);
+        contact.into_iter().chain(grounding).reduce(f64::min)
+    };
+    let one_by_one = || {
+        let mut kept = Kept {
+            motion: nominal_motion.to_vec(),
+            escape: None,
+        };
+        let mut from = 0.0;
+        for step in 0..=encountered.len() {
+            let Some(contact) = first(&kept.motion) else {
+                return Some(kept);
+            };
+            if contact < from {
+                return None;
+            }
+            let ahead = |e: &&Encountered| e.latched <= contact && e.tcpa > from;
+            let group: Vec<Encountered> = encountered.iter().filter(ahead).copied().collect();
+            let all = group.len() == encountered.iter().filter(|e| e.tcpa > from).count();
+            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
+            if step == 0 {
+                kept.escape = Duty::of(group.iter().map(|e| e.role))
+                    .stands_on
+                    .then(|| found.escape());
+            }
+            from = found.joined;
+            kept.motion = found.motion;
+        }
+        None
+    };
+    let at_once = || {
+        let contact = first(nominal_motion)?;
+        let motion = (nominal_motion, 0.0);
+        let found = resolved(context, encountered, true, motion, contact, clock)?;
+        let escape = context.problem.duty().stands_on.then(|| found.escape());
+        Some(Kept {
+            motion: found.motion,
+            escape,
+        })
+    };
+    one_by_one().or_else(at_once)
+}
+
+/// A manoeuvre toward some targets, from a motion that is on the route from a time on.
+fn resolved(
+    context: &Context,
+    group: &[Encountered],
+    all: bool,
+    motion: (&[Segment], f64),
+    contact: f64,
+    clock: Clock,
+) -> Option<Found> {
+    let problem = Problem {
+        encountered: group,
+        ..*context.problem
+    };
+    let context = Context {
+        problem: &problem,
+        ..*context
+    };
+    let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
+    match problem.duty().stands_on {
+        true => manoeuvres.standing_on(contact),
+        false => manoeuvres.giving_way(contact),
+    }
+}
+
 /// The manoeuvres of one problem.
-pub(crate) struct Manoeuvres<'s, 'a> {
+struct Manoeuvres<'s, 'a> {
     context: &'s Context<'a>,
     nominal_motion: &'s [Segment],
+    /// Seconds from which on the nominal motion follows the route.
+    from: f64,
+    /// Per obstacle, true if the motion has to be clear of it to the end, and not only until own
+    /// ship is on the route again.
+    to_the_end: Vec<bool>,
     passing: Vec<Passing<'s>>,
     clock: Clock,
     /// True where no target is passed nearer than a length, Rule 8(d).
@@ -156,11 +248,20 @@ pub(crate) struct Manoeuvres<'s, 'a> {
 }
 
 impl<'s, 'a> Manoeuvres<'s, 'a> {
-    pub(crate) fn new(
+    fn new(
         context: &'s Context<'a>,
-        nominal_motion: &'s [Segment],
+        (nominal_motion, from): (&'s [Segment], f64),
+        all: bool,
         clock: Clock,
     ) -> Self {
+        let has_target = |obstacle: &Obstacle| {
+            context.problem.encountered.iter().any(|e| {
+                let there = e.ship.pose.position + e.ship.velocity() * e.tcpa;
+                obstacle.contains(there, e.tcpa)
+            })
+        };
+        let obstacles = context.problem.obstacles.iter();
+        let to_the_end = obstacles.map(|o| all || has_target(o)).collect();
         let own = &context.problem.own.hull;
         let radius = context.problem.own.turning_radius;
         let passing = context.problem.encountered.iter().map(|encountered| {
@@ -182,6 +283,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         Self {
             context,
             nominal_motion,
+            from,
+            to_the_end,
             passing: passing.collect(),
             clock,
             keeps_a_length: true,
@@ -195,18 +298,22 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
     /// motion meets an obstacle after `contact` seconds.
-    pub(crate) fn giving_way(&mut self, contact: f64) -> Option<Found> {
+    fn giving_way(&mut self, contact: f64) -> Option<Found> {
         let latest = self.ample().min(contact);
         self.with_a_length_if_possible(|search| {
-            let mut times = LEAVE.iter().map(|share| tidy_time(share * latest));
+            let from = search.from;
+            let latest = latest.max(from);
+            let mut times = LEAVE
+                .iter()
+                .map(|share| search.tidy_time(from + share * (latest - from)));
             let found = times.find_map(|time| search.cheapest(time))?;
-            Some(search.improved(found, 0.0..=latest))
+            Some(search.improved(found, from..=latest))
         })
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
     /// there is an escape.
-    pub(crate) fn standing_on(&mut self, contact: f64) -> Option<Found> {
+    fn standing_on(&mut self, contact: f64) -> Option<Found> {
         if self.hurries() {
             return None;
         }
@@ -229,12 +336,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         } else {
             wanted
         };
-        let leave = tidy_time(wanted.clamp(0.0, latest));
-        let earliest = (leave - EARLIER_S).max(may.min(leave)).max(0.0);
+        let latest = latest.max(self.from);
+        let leave = self.tidy_time(wanted.clamp(self.from, latest));
+        let earliest = (leave - EARLIER_S).max(may.min(leave)).max(self.from);
         self.keeps_a_length = true;
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
-            let found = found.or_else(|| search.cheapest(tidy_time(latest)))?;
+            let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
             let leave = found.manoeuvre.leave;
             Some(search.improved(found, earliest.min(leave)..=leave))
         })
@@ -244,6 +352,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     /// motion does not, because the horizon requires an earlier arrival: that is no hold.
     fn hurries(&self) -> bool {
         let (own, leg) = (self.problem().own, &self.problem().desired.legs()[0]);
+        if self.from > 0.0 {
+            return false;
+        }
         let off = (own.pose.position - leg.start).norm();
         let turn = wrap(own.pose.heading - heading_of(leg.direction)).abs();
         let desired = |speed: f64| (speed - leg.speed).abs() <= tolerance::FIGURE * leg.speed;
@@ -333,9 +444,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The latest time from which an escape is found, by sampling and bisection.
     fn latest_escape(&self, contact: f64) -> Option<f64> {
-        let step = contact / SAMPLES as f64;
-        let exists = |time: f64| self.has_clear(tidy_time(time));
-        let mut times = (0..=SAMPLES).rev().map(|k| step * k as f64);
+        let step = (contact - self.from) / SAMPLES as f64;
+        let exists = |time: f64| self.has_clear(self.tidy_time(time));
+        let mut times = (0..=SAMPLES).rev().map(|k| self.from + step * k as f64);
         let mut latest = times.find(|t| self.clock.is_up() || exists(*t))?;
         let mut too_late = latest + step;
         for _ in 0..HALVINGS {
@@ -394,9 +505,27 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let few = self.endings(&out).step_by(ENDINGS_SKIPPED);
             few.into_iter().any(|ending| {
                 self.completed(&out, ending)
-                    .is_some_and(|m| self.is_allowed(&out, &m))
+                    .is_some_and(|(m, joined)| self.is_allowed(&out, &m, joined))
             })
         })
+    }
+
+    /// A time that leaves no short segment before it.
+    fn tidy_time(&self, time: f64) -> f64 {
+        if time < self.from + LEAST_S {
+            self.from
+        } else {
+            time
+        }
+    }
+
+    /// Distance along the route at a time at which the nominal motion follows it, metres.
+    fn along_at(&self, time: f64) -> f64 {
+        let left = self.nominal_motion.iter().map(|s| {
+            let duration = (s.end_time() - s.start_time.max(time)).max(0.0);
+            duration * s.speed
+        });
+        self.context.route.length() - left.sum::<f64>()
     }
 
     /// Seconds from passing to the return, and the angle of the return.
@@ -419,7 +548,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         for (index, out) in outs.iter().enumerate() {
             let first = out.first;
             for (after, back) in self.endings(out) {
-                let Some(motion) = self.completed(out, (after, back)) else {
+                let Some((motion, _)) = self.completed(out, (after, back)) else {
                     continue;
                 };
                 let rank = rank(&first, self.problem().error_of(&motion));
@@ -438,9 +567,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let candidates = candidates.into_iter().take_while(|_| !self.clock.is_up());
         candidates.into_iter().find_map(|(_, out, manoeuvre)| {
             let out = &outs[out];
-            let motion = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
-            self.is_allowed(out, &motion).then(|| Found {
+            let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
+            self.is_allowed(out, &motion, joined).then(|| Found {
                 manoeuvre,
+                joined,
                 cost: self.problem().error_of(&motion),
                 motion,
             })
@@ -461,7 +591,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     let Some(mut tried) = tried.filter(|t| *t != best.manoeuvre) else {
                         continue;
                     };
-                    tried.leave = tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
+                    tried.leave = self.tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
                     if let Some(found) = self.found(&tried, best.rank()) {
                         best = found;
                         gained = true;
@@ -480,16 +610,17 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     fn found(&self, manoeuvre: &Manoeuvre, below: f64) -> Option<Found> {
         let before = until(self.nominal_motion, manoeuvre.leave);
         let out = self.out(&before, manoeuvre.leave, manoeuvre.first)?;
-        let motion = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
+        let (motion, joined) = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
         let cost = self.problem().error_of(&motion);
         let found = Found {
             manoeuvre: *manoeuvre,
             motion,
+            joined,
             cost,
         };
         let cheaper = found.rank() < below;
-        (cheaper && self.is_clear(&out.motion) && self.is_allowed(&out, &found.motion))
-            .then_some(found)
+        let clear = || self.is_clear(&out.motion[out.before..]);
+        (cheaper && clear() && self.is_allowed(&out, &found.motion, joined)).then_some(found)
     }
 
     /// The motion until every target is passed.
@@ -501,7 +632,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         match first {
             FirstAlteration::Slow { speed } => {
                 let route = self.context.route;
-                let along: f64 = motion.iter().map(Segment::length).sum();
+                let along = self.along_at(leave);
                 let (on, _) = route.pose_at(along);
                 let passed = self.passed(on.position, on.ahead() * speed, leave)?;
                 let slow = (passed - leave).max(APPARENT_TIME);
@@ -524,11 +655,18 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
         }
         let in_time = motion.last()?.end_time() <= problem.horizon;
-        in_time.then_some(Out { first, motion })
+        let before = before.len();
+        in_time.then_some(Out {
+            first,
+            leave,
+            before,
+            motion,
+        })
     }
 
-    /// The motion to the end of the route, for an ending.
-    fn completed(&self, out: &Out, (after, back): (f64, f64)) -> Option<Vec<Segment>> {
+    /// The motion to the end of the route for an ending, and the time from which on it follows the
+    /// route.
+    fn completed(&self, out: &Out, (after, back): (f64, f64)) -> Option<(Vec<Segment>, f64)> {
         let (problem, route) = (self.problem(), self.context.route);
         let mut motion = out.motion.clone();
         let last = motion.last_mut()?;
@@ -548,19 +686,39 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         let last = motion.last()?;
         let (pose, time) = (last.end(), last.end_time());
+        let mut joined = time;
         if let FirstAlteration::Slow { .. } = out.first {
-            let along: f64 = motion.iter().map(Segment::length).sum();
-            motion.extend(route.follow(along, time));
+            let slow: f64 = motion[out.before..].iter().map(Segment::length).sum();
+            motion.extend(route.follow(self.along_at(out.leave) + slow, time));
         } else {
             let near = problem.desired.nearest(pose.position, time, 0.0);
             let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
             let mut backs =
                 legs.filter_map(|leg| motion_back(problem, route, (&pose, time), leg, back));
-            motion.extend(backs.next()?);
+            let back = backs.next()?;
+            joined = self.joins(&back)?;
+            motion.extend(back);
         }
-        let tidy = motion.iter().all(|s| s.duration >= LEAST_S);
+        // the route has segments of its own, as short as its corners are
+        let manoeuvre = motion[out.before..].iter();
+        let mut manoeuvre = manoeuvre.take_while(|s| s.start_time < joined);
+        let tidy = manoeuvre.all(|s| s.duration >= LEAST_S);
         let in_time = motion.last()?.end_time() <= problem.horizon;
-        (tidy && in_time).then_some(motion)
+        (tidy && in_time).then_some((motion, joined))
+    }
+
+    /// Time from which on a return follows the route: after an arc, a line and an arc at most.
+    fn joins(&self, back: &[Segment]) -> Option<f64> {
+        let route = self.context.route;
+        let mut left: f64 = back.iter().map(Segment::length).sum();
+        back.iter().take(3).find_map(|s| {
+            left -= s.length();
+            let (on, _) = route.pose_at(route.length() - left);
+            let end = s.end();
+            let near = (end.position - on.position).norm() <= tolerance::JOINT_M;
+            (near && wrap(end.heading - on.heading).abs() <= tolerance::JOINT_RAD)
+                .then_some(s.end_time())
+        })
     }
 
     /// First time at which every target is past and clear on a straight course: on its first
@@ -611,22 +769,38 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
-    fn is_allowed(&self, out: &Out, motion: &[Segment]) -> bool {
+    fn is_allowed(&self, out: &Out, motion: &[Segment], joined: f64) -> bool {
         // the last segment may have become longer
-        self.is_clear(&motion[out.motion.len() - 1..])
-            && complies(self.context, self.nominal_motion, motion)
+        let rest = &motion[out.motion.len() - 1..];
+        let (back, on_route) = rest.split_at(rest.partition_point(|s| s.start_time < joined));
+        let begun = motion.partition_point(|s| s.start_time < self.from);
+        self.is_clear(back)
+            && self.is_clear_to_the_end(on_route)
+            && complies(
+                self.context,
+                &motion[begun..],
+                out.before.saturating_sub(begun),
+            )
+    }
+
+    fn is_clear_to_the_end(&self, segments: &[Segment]) -> bool {
+        let mut proxies = self.context.proxies.iter();
+        let all = self.to_the_end.iter().all(|whole| *whole);
+        let land = self.problem().land_obstacle;
+        proxies.all(|proxy| {
+            !self.to_the_end[proxy.obstacle]
+                || segments.iter().all(|s| proxy.first_contact(s).is_none())
+        }) && !(all && land::meets(land, segments))
     }
 }
 
 /// The motion until every target is passed.
 struct Out {
     first: FirstAlteration,
+    /// Seconds at which the route is left, and the number of segments before.
+    leave: f64,
+    before: usize,
     motion: Vec<Segment>,
-}
-
-/// A time that leaves no short segment before it.
-fn tidy_time(time: f64) -> f64 {
-    if time < LEAST_S { 0.0 } else { time }
 }
 
 impl Manoeuvre {

@@ -15,7 +15,6 @@ use crate::planner::space_time::refinement::approach::{COARSE_CHORD_RAD, FINE_CH
 use crate::planner::space_time::refinement::insertion::{pruned, with_insertions};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
-use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
     Conflict, EvasiveManoeuvre, ahead, from_graph, slowing, waiting,
@@ -124,9 +123,6 @@ impl<'a> Selection<'a> {
     /// the rules.
     pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) -> bool {
         let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
-        if !complies(&self.context, self.nominal_motion, &motion) {
-            return false;
-        }
         self.graph_cost = Some(cost);
         self.guesses.extend(from_graph(self.context.problem, path));
         self.add_candidate(motion);
@@ -296,7 +292,6 @@ impl<'a> Selection<'a> {
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time
             && cost.is_finite()
-            && complies(&self.context, self.nominal_motion, &motion)
             && first_met(self.context.proxies, &motion).is_none()
             && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
