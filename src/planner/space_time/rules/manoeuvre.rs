@@ -10,7 +10,7 @@
 //! first; the best of those that are clear of every set until arrival is improved by a pattern
 //! search. There are few turns and few changes of speed by construction.
 
-use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Encountered, Role, Thresholds};
+use crate::colregs::{APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, Role, Thresholds};
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
 use crate::obstacle::{PolytopeObstacle, contact};
@@ -21,7 +21,7 @@ use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
+use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, Problem};
 use crate::tolerance::{self, TOUCH_M};
@@ -371,7 +371,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
         }
         if duty.may_slow {
-            let slow = apparent_slow_speed(problem);
+            let slow = APPARENT_SPEED * ordered.normal * (1.0 + 1e-9);
             let speeds = own.moving_speeds().filter(|u| *u <= slow);
             all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
         }
@@ -385,7 +385,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let alterations = self.alterations().into_iter();
         alterations.filter_map(move |first| {
             let out = self.out(&before, leave, first)?;
-            self.is_clear(&out.motion[before.len()..]).then_some(out)
+            self.is_clear(&out.motion[out.before..]).then_some(out)
         })
     }
 
@@ -505,7 +505,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 let (on, _) = route.pose_at(along);
                 let passed = self.passed(on.position, on.ahead() * speed, leave)?;
                 let slow = (passed - leave).max(APPARENT_TIME);
-                route.run(along, leave, slow * speed, speed, &mut motion);
+                let end = route.run(along, leave, slow * speed, speed, &mut motion);
+                // at the end of the route the reduction may be too short to be apparent
+                if end - along < speed * APPARENT_TIME - tolerance::LENGTH_M {
+                    return None;
+                }
             }
             FirstAlteration::Turn { turn, aside, speed } => {
                 let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
@@ -524,7 +528,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
         }
         let in_time = motion.last()?.end_time() <= problem.horizon;
-        in_time.then_some(Out { first, motion })
+        let before = before.len();
+        in_time.then_some(Out {
+            first,
+            before,
+            motion,
+        })
     }
 
     /// The motion to the end of the route, for an ending.
@@ -612,15 +621,21 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
     fn is_allowed(&self, out: &Out, motion: &[Segment]) -> bool {
+        let off_route = match out.first {
+            FirstAlteration::Turn { .. } => &motion[out.before..],
+            FirstAlteration::Slow { .. } => &[],
+        };
         // the last segment may have become longer
         self.is_clear(&motion[out.motion.len() - 1..])
-            && complies(self.context, self.nominal_motion, motion)
+            && complies(self.problem(), motion, off_route)
     }
 }
 
 /// The motion until every target is passed.
 struct Out {
     first: FirstAlteration,
+    /// Number of segments before the first alteration.
+    before: usize,
     motion: Vec<Segment>,
 }
 
