@@ -209,11 +209,6 @@ impl Duty {
             &Side::BOTH
         }
     }
-
-    /// Least first alteration of course, radians.
-    pub fn least_turn(self) -> f64 {
-        if self.is_none() { 0.0 } else { APPARENT_TURN }
-    }
 }
 
 #[cfg(test)]
@@ -242,7 +237,5 @@ mod tests {
         assert_eq!(one(Role::Overtaking).sides(), Side::BOTH);
         assert!(one(Role::GiveWay).may_slow && !one(Role::HeadOn).may_slow);
         assert!(one(Role::None).is_none());
-        assert_eq!(one(Role::None).least_turn(), 0.0);
-        assert_eq!(one(Role::GiveWay).least_turn(), APPARENT_TURN);
     }
 }

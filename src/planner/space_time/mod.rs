@@ -8,6 +8,9 @@
 //! The graph decides the sides, the order and whether to wait. The refinement optimises the
 //! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
 //! test wins. The graph's own best plan is one of the candidates.
+//!
+//! Where own ship has a duty by the collision regulations, `rules` plans instead of the graph and
+//! the refinement.
 
 mod bound;
 mod chain;
@@ -230,20 +233,17 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
     let mut search = Search::new(graph.root());
     let search_budget = SearchBudget::of(by_obstacle(proxies).count());
-    let mut selection = Selection::new(context, &nominal_motion, search_budget);
+    let mut selection = Selection::new(context, search_budget);
     let mut stages = search_budget.stages.iter();
     let mut budget = 0;
     let mut timed_out = false;
-    let mut optimum = None;
     loop {
         match search.next_goal(&mut graph, budget) {
             Stop::Goal(goal) => {
-                optimum.get_or_insert(search.counts());
                 let path = node::path_to(&search, goal);
                 let cost = search.nodes()[goal].cost;
-                if selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>()) {
-                    break;
-                }
+                selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>());
+                break;
             }
             Stop::Budget => {
                 let Some((most, weight)) = stages.next() else {
@@ -278,7 +278,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
-    let counts = optimum.unwrap_or(search.counts());
+    let counts = search.counts();
     let stats = SearchStats {
         expanded: counts.expanded,
         generated: counts.generated,

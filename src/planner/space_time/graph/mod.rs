@@ -19,7 +19,7 @@ use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
-use crate::planner::space_time::graph::departure::{departure_motions, leave_for, until};
+use crate::planner::space_time::graph::departure::{leave_for, until};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::motion_back;
@@ -222,10 +222,7 @@ impl<'a> Graph<'a> {
             self.speed_changes(from, out);
         }
         for &time in &times {
-            let before = until(self.nominal_motion, time);
-            for (motion, least_turn) in departure_motions(self.problem, self.route, &before) {
-                self.interceptions(from, &motion, least_turn, out);
-            }
+            self.interceptions(from, &until(self.nominal_motion, time), out);
         }
     }
 
@@ -292,14 +289,7 @@ impl<'a> Graph<'a> {
     }
 
     /// Tangent edges to vertices, from a node or from the end of a motion `before` along the route.
-    /// The first turn is at least `least_turn`, radians.
-    fn interceptions(
-        &self,
-        from: &State,
-        before: &[Segment],
-        least_turn: f64,
-        out: &mut Vec<(State, f64)>,
-    ) {
+    fn interceptions(&self, from: &State, before: &[Segment], out: &mut Vec<(State, f64)>) {
         let radius = self.problem.own.turning_radius;
         let (pose, time) = before
             .last()
@@ -309,7 +299,6 @@ impl<'a> Graph<'a> {
             time: (time + MAX_INTERCEPTION_S).min(self.problem.horizon),
         };
         let interceptors = Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, radius, side));
-        let duty = self.problem.duty();
         let mut scratch = Vec::new();
         let first = out.len();
         for tangent_edges in &self.tangent_edges {
@@ -334,10 +323,6 @@ impl<'a> Graph<'a> {
             };
             tangent_edges.for_each_edge(interceptors, limits, &mut scratch, |edge| {
                 if edge.kind == from.kind || edge.meeting.time < 0.0 {
-                    return;
-                }
-                let apparent = duty.sides().contains(&edge.side) && edge.meeting.turn >= least_turn;
-                if from.kind == NodeKind::Start && !apparent {
                     return;
                 }
                 let mut chain = Chain::new(pose, time, edge.speed, radius);
@@ -422,7 +407,7 @@ impl Space for Graph<'_> {
             NodeKind::Start => self.departures(state, out),
             NodeKind::Vertex { .. } => {
                 if state.chain < MAX_CHAIN {
-                    self.interceptions(state, &[], 0.0, out);
+                    self.interceptions(state, &[], out);
                 }
                 self.returns(state, out);
                 self.hold_course(state, out);

@@ -153,14 +153,13 @@ fn insertions(context: &Context, base: &InitialGuess) -> Option<Vec<Insertion>> 
     let first = unreduced.trial.rollout.runs;
     let mut found = Vec::new();
     let turn = first_turn(&base.structure);
-    let is_seen = !context.problem.duty().is_none();
     for gap in first..=free {
         let beside = [gap.checked_sub(1), Some(gap)];
         let beside = beside.map(|i| i.and_then(|i| base.structure.variables.get(i)));
         for variable in kinds(context) {
             let swings_out = turn.is_some_and(|(at, side)| {
                 gap <= at
-                    && matches!(variable, SegmentVariable::Arc { side: other, .. } if other != side || is_seen && gap < at)
+                    && matches!(variable, SegmentVariable::Arc { side: other, .. } if other != side)
             });
             if swings_out || beside.contains(&Some(&variable)) {
                 continue;

@@ -22,7 +22,6 @@ use crate::planner::space_time::refinement::quadratic::{
 };
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::refinement::trial::{Context, Trial};
-use crate::planner::space_time::rules::readily_apparent::Apparent;
 use crate::trajectory::Segment;
 
 /// Trust region of the lengths, metres: first, largest, smallest.
@@ -98,8 +97,6 @@ pub(crate) struct Refinement {
     structure: Structure,
     lengths: Row,
     model: Model,
-    /// Constraint of a readily apparent alteration, where the rules require one.
-    apparent: Option<Apparent>,
     /// Factor on its costs when it is ranked among others.
     handicap: f64,
     best: Option<Refined>,
@@ -145,20 +142,14 @@ impl Refinement {
         None
     }
 
-    /// `None` when the initial guess's ending does not fit, or its first turn violates the rules.
-    fn new(context: &Context, mut guess: InitialGuess) -> Option<Self> {
-        let apparent = if context.problem.duty().is_none() {
-            None
-        } else {
-            Some(Apparent::of_guess(&mut guess, context.problem)?)
-        };
+    /// `None` when the initial guess's ending does not fit.
+    fn new(context: &Context, guess: InitialGuess) -> Option<Self> {
         let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
         let first = first_turn(&guess);
         let wanted = context.problem.first_turn;
         let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {
-            apparent,
             handicap: if against {
                 1.0 + AGAINST_THE_RULES
             } else {
@@ -269,14 +260,12 @@ impl Refinement {
             if clear || !close || !worth {
                 return;
             }
-            let (mut low, mut high) = (self.lengths.map(|l| -l), [LARGEST_RADIUS_M; MAX_VARIABLES]);
-            self.keep_apparent(&self.lengths, &mut low, &mut high);
             let programme = Programme {
                 size: n,
                 hessian: &identity,
                 gradient: &[0.0; MAX_VARIABLES],
-                low: &low,
-                high: &high,
+                low: &self.lengths.map(|l| -l),
+                high: &[LARGEST_RADIUS_M; MAX_VARIABLES],
                 rows: &self.model.rows,
                 price: None,
             };
@@ -313,13 +302,6 @@ impl Refinement {
         self.restore(context);
     }
 
-    /// Narrows the bounds of a step so that a readily apparent alteration stays apparent.
-    fn keep_apparent(&self, lengths: &Row, low: &mut Row, high: &mut Row) {
-        if let Some(apparent) = &self.apparent {
-            apparent.narrow(lengths, low, high);
-        }
-    }
-
     /// Takes one SQP step.
     pub(crate) fn step(&mut self, context: &Context) {
         self.steps += 1;
@@ -348,15 +330,12 @@ impl Refinement {
         if trial.violation <= CORRECTION_M {
             return None;
         }
-        let mut low = trial_lengths.map(|l| (-self.radius).max(-l));
-        let mut high = [self.radius; MAX_VARIABLES];
-        self.keep_apparent(trial_lengths, &mut low, &mut high);
         let programme = Programme {
             size: self.structure.free(),
             hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
-            low: &low,
-            high: &high,
+            low: &trial_lengths.map(|l| (-self.radius).max(-l)),
+            high: &[self.radius; MAX_VARIABLES],
             rows: &context.rows(&self.structure, trial),
             price: None,
         };
@@ -380,7 +359,6 @@ impl Refinement {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
-        self.keep_apparent(&self.lengths, &mut low, &mut high);
         let mut rows = Vec::with_capacity(self.model.rows.len());
         for row in &self.model.rows {
             let (mut reach, mut least) = (0.0, 0.0);

@@ -1,15 +1,10 @@
-//! Compliance of a manoeuvre with the collision regulations, toward targets on their nominal
-//! tracks.
+//! What the collision regulations ask of a manoeuvre beyond its first alteration, toward targets on
+//! their nominal tracks.
 
-use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
-};
-use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN};
+use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
-use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
-use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::Hull;
 
@@ -23,44 +18,22 @@ const PASSED_S: f64 = 3.0;
 /// Greatest time between two samples for the closest approach, seconds.
 const NEAREST_S: f64 = 1.0;
 
-/// Speed at or below which a speed reduction is readily apparent, m/s.
-pub(crate) fn apparent_slow_speed(problem: &Problem) -> f64 {
-    APPARENT_SPEED * ManoeuvreSpeeds::of(problem).normal * (1.0 + 1e-9)
-}
-
-/// Length of the apparent speed reduction at the end of a motion along the route, metres.
-pub(crate) fn apparent_slow_distance(problem: &Problem, motion: &[Segment]) -> f64 {
-    if problem.duty().is_none() {
-        return 0.0;
-    }
-    let last = motion.iter().rev();
-    last.take_while(|s| s.speed <= apparent_slow_speed(problem))
-        .map(Segment::length)
-        .sum()
-}
-
-/// True when a motion that leaves the route with a segment complies with own ship's duty.
-pub(crate) fn complies(context: &Context, motion: &[Segment], departure: usize) -> bool {
-    let problem = context.problem;
-    let duty = problem.duty();
-    if duty.is_none() {
-        return true;
-    }
-    let departure = Departure::of(context, motion, departure);
-    departure.is_apparent(duty)
-        && problem.encountered.iter().all(|encountered| {
-            let duties = encountered.role.duties();
-            if !keeps_off_bow(encountered, motion) {
-                return false;
-            }
-            let nearest = Nearest::of(&problem.own.hull, encountered, motion);
-            let passes = nearest.drifts_to_port || !duties.port_to_port;
-            let heads = !duties.no_port_heading
-                || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
-            let plain =
-                !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
-            passes && heads && plain
-        })
+/// True when a motion passes every target as the rules ask: not ahead of it, port to port, without
+/// a course to port, without a succession of small turns. `off_route` is the part that begins with
+/// the turn off the route; it is empty where own ship only slows down.
+pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segment]) -> bool {
+    problem.encountered.iter().all(|encountered| {
+        let duties = encountered.role.duties();
+        if !keeps_off_bow(encountered, motion) {
+            return false;
+        }
+        let nearest = Nearest::of(&problem.own.hull, encountered, motion);
+        let passes = nearest.drifts_to_port || !duties.port_to_port;
+        let heads =
+            !duties.no_port_heading || keeps_off_port(problem, off_route, nearest.time + PASSED_S);
+        let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+        passes && heads && plain
+    })
 }
 
 /// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
@@ -106,77 +79,20 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     })
 }
 
-/// Departure of a motion from the route.
-#[derive(Debug)]
-struct Departure {
-    /// First segment that is not on the route.
-    index: usize,
-    /// Own ship's course before.
-    heading: f64,
-    /// First turn after it, radians, to port positive.
-    turn: f64,
-    /// True where an apparent speed reduction precedes it.
-    slowed: bool,
-}
-
-impl Departure {
-    fn of(context: &Context, motion: &[Segment], index: usize) -> Self {
-        let slow = apparent_slow_speed(context.problem);
-        let (mut slow_for, mut slowed) = (0.0, false);
-        let mut sees = |s: &Segment| {
-            // negated on purpose: a NaN is fast
-            slow_for = if !(s.speed <= slow) {
-                0.0
-            } else {
-                slow_for + s.duration
-            };
-            slowed |= slow_for >= APPARENT_TIME;
-            slowed
-        };
-        let mut departure = Self {
-            index,
-            heading: motion.get(index).map_or(0.0, |s| s.start.heading),
-            turn: 0.0,
-            slowed: false,
-        };
-        for s in &motion[index..] {
-            let turn = s.turn_rate * s.duration;
-            if departure.turn == 0.0 {
-                departure.turn = turn;
-                if turn == 0.0 {
-                    sees(s);
-                }
-            } else if turn * departure.turn > 0.0 {
-                departure.turn += turn;
-            } else {
-                break;
-            }
-        }
-        departure.slowed = slowed;
-        departure
-    }
-
-    fn is_apparent(&self, duty: Duty) -> bool {
-        let allowed = Side::of_turn(self.turn).is_none_or(|side| duty.sides().contains(&side));
-        allowed
-            && (self.slowed && duty.may_slow
-                || self.turn.abs() >= duty.least_turn() - tolerance::JOINT_RAD)
-    }
-
-    /// True when own ship never heads to port of its course before the departure, nor of the path's
-    /// course there, until a time.
-    fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
-        motion_until(&motion[self.index..], until).iter().all(|s| {
-            [s.start, s.end()].iter().all(|pose| {
-                let at = problem
-                    .desired
-                    .nearest(pose.position, s.start_time, problem.time_weight);
-                let path = heading_of(problem.desired.legs()[at.leg].direction);
-                let beyond = |course: f64| wrap(pose.heading - course) > ON_COURSE;
-                !(beyond(self.heading) && beyond(path))
-            })
+/// True when own ship never heads to port of its course before the departure, nor of the path's
+/// course there, until a time.
+fn keeps_off_port(problem: &Problem, off_route: &[Segment], until: f64) -> bool {
+    let before = off_route.first().map_or(0.0, |s| s.start.heading);
+    motion_until(off_route, until).iter().all(|s| {
+        [s.start, s.end()].iter().all(|pose| {
+            let at = problem
+                .desired
+                .nearest(pose.position, s.start_time, problem.time_weight);
+            let path = heading_of(problem.desired.legs()[at.leg].direction);
+            let beyond = |course: f64| wrap(pose.heading - course) > ON_COURSE;
+            !(beyond(before) && beyond(path))
         })
-    }
+    })
 }
 
 /// Closest approach of the hulls on a motion to a target that holds course and speed.

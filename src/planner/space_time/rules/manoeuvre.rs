@@ -10,7 +10,9 @@
 //! first; the best of those that are clear of every set until arrival is improved by a pattern
 //! search. There are few turns and few changes of speed by construction.
 
-use crate::colregs::{APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds};
+use crate::colregs::{
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds,
+};
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
@@ -21,7 +23,7 @@ use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{first_contact, first_met};
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
+use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, Problem};
 use crate::tolerance::{self, TOUCH_M};
@@ -482,7 +484,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
         }
         if duty.may_slow {
-            let slow = apparent_slow_speed(problem);
+            let slow = APPARENT_SPEED * ordered.normal * (1.0 + 1e-9);
             let speeds = own.moving_speeds().filter(|u| *u <= slow);
             all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
         }
@@ -496,7 +498,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let alterations = self.alterations().into_iter();
         alterations.filter_map(move |first| {
             let out = self.out(&before, leave, first)?;
-            self.is_clear(&out.motion[before.len()..]).then_some(out)
+            self.is_clear(&out.motion[out.before..]).then_some(out)
         })
     }
 
@@ -636,7 +638,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 let (on, _) = route.pose_at(along);
                 let passed = self.passed(on.position, on.ahead() * speed, leave)?;
                 let slow = (passed - leave).max(APPARENT_TIME);
-                route.run(along, leave, slow * speed, speed, &mut motion);
+                let end = route.run(along, leave, slow * speed, speed, &mut motion);
+                // at the end of the route the reduction may be too short to be apparent
+                if end - along < speed * APPARENT_TIME - tolerance::LENGTH_M {
+                    return None;
+                }
             }
             FirstAlteration::Turn { turn, aside, speed } => {
                 let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
@@ -770,17 +776,17 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
     fn is_allowed(&self, out: &Out, motion: &[Segment], joined: f64) -> bool {
+        let off_route = match out.first {
+            FirstAlteration::Turn { .. } => &motion[out.before..],
+            FirstAlteration::Slow { .. } => &[],
+        };
         // the last segment may have become longer
         let rest = &motion[out.motion.len() - 1..];
         let (back, on_route) = rest.split_at(rest.partition_point(|s| s.start_time < joined));
         let begun = motion.partition_point(|s| s.start_time < self.from);
         self.is_clear(back)
             && self.is_clear_to_the_end(on_route)
-            && complies(
-                self.context,
-                &motion[begun..],
-                out.before.saturating_sub(begun),
-            )
+            && complies(self.problem(), &motion[begun..], off_route)
     }
 
     fn is_clear_to_the_end(&self, segments: &[Segment]) -> bool {

@@ -1,6 +1,4 @@
-//! Requirements of the collision regulations on a manoeuvre: the permitted side, a readily apparent
-//! alteration, and holding course and speed as the stand-on ship.
+//! Manoeuvres by the collision regulations: the family, and what else a motion has to comply with.
 
-pub(crate) mod compliance;
+mod compliance;
 pub(crate) mod manoeuvre;
-pub(crate) mod readily_apparent;

@@ -1,6 +1,5 @@
 //! Initial guesses of the refinement: the graph's plans, and predefined manoeuvres on both sides.
 
-use crate::colregs::APPARENT_TIME;
 use crate::frame::{Side, to_port};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::node::State;
@@ -9,7 +8,6 @@ use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::rules::compliance::{apparent_slow_distance, apparent_slow_speed};
 use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
@@ -123,10 +121,6 @@ impl Conflict {
 
 /// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
-
-/// Turns (radians) and outbound line (metres) of a manoeuvre that only slows down on the route.
-const SLOWING_TURN: f64 = 0.2;
-const SLOWING_OUT_M: f64 = 20.0;
 
 /// Distance beyond the route behind a target that passed ahead, metres, and return angle, radians.
 const OVERSHOOT_M: f64 = 20.0;
@@ -246,10 +240,7 @@ impl EvasiveManoeuvre {
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
         // two arcs alone reach an offset of twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
-        let turn = self
-            .turn
-            .min(needed.max(0.1))
-            .max(problem.duty().least_turn());
+        let turn = self.turn.min(needed.max(0.1));
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
         let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
@@ -343,41 +334,6 @@ pub(crate) fn waiting(
     builder.build(Ending::Return { leg, speed: fast })
 }
 
-/// Manoeuvre that slows down on the route until the target has passed, then moves slightly to the
-/// side and back.
-pub(crate) fn slowing(
-    problem: &Problem,
-    side: Side,
-    conflict: &Conflict,
-    leg: usize,
-) -> Option<InitialGuess> {
-    let speeds = ManoeuvreSpeeds::of(problem);
-    let (lag, due) = conflict.astern;
-    let duration = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
-    let begin = (due - duration).max(0.0);
-    // negated on purpose: a NaN gives no initial guess
-    if !(problem.duty().may_slow
-        && speeds.slow <= apparent_slow_speed(problem)
-        && duration < 2.0 * due)
-    {
-        return None;
-    }
-    let radius = problem.own.turning_radius;
-    let arc = SLOWING_TURN * radius;
-    let back = side.opposite();
-    let mut builder = InitialGuessBuilder::default();
-    builder.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
-    builder.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
-    builder.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
-    builder.turn(back, &[(speeds.fast, arc)]);
-    builder.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
-    builder.turn(back, &[(speeds.fast, arc)]);
-    builder.build(Ending::Return {
-        leg,
-        speed: speeds.fast,
-    })
-}
-
 /// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed, turns to the
 /// side halfway through the contact for the missing distance, and loses its lead on a slow return.
 pub(crate) fn ahead(
@@ -422,8 +378,7 @@ pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGu
     }
     let mut builder = InitialGuessBuilder::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
-    let slow = apparent_slow_distance(problem, &departure.motion);
-    builder.runs(&speeds, along - slow, 0.0, slow);
+    builder.runs(&speeds, along, 0.0, 0.0);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {

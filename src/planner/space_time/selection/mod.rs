@@ -17,7 +17,7 @@ use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
-    Conflict, EvasiveManoeuvre, ahead, from_graph, slowing, waiting,
+    Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
 };
 use crate::trajectory::Segment;
 
@@ -90,8 +90,6 @@ struct Candidate {
 #[derive(Debug)]
 pub(crate) struct Selection<'a> {
     context: Context<'a>,
-    /// Route on schedule.
-    nominal_motion: &'a [Segment],
     search_budget: &'a SearchBudget,
     guesses: Vec<InitialGuess>,
     best: Option<Candidate>,
@@ -99,14 +97,9 @@ pub(crate) struct Selection<'a> {
 }
 
 impl<'a> Selection<'a> {
-    pub(crate) fn new(
-        context: Context<'a>,
-        nominal_motion: &'a [Segment],
-        search_budget: &'a SearchBudget,
-    ) -> Self {
+    pub(crate) fn new(context: Context<'a>, search_budget: &'a SearchBudget) -> Self {
         Self {
             context,
-            nominal_motion,
             search_budget,
             guesses: Vec::new(),
             best: None,
@@ -119,14 +112,12 @@ impl<'a> Selection<'a> {
         self.guesses.push(guess);
     }
 
-    /// Adds a tested plan of the graph, given by the states after the root; false where it violates
-    /// the rules.
-    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) -> bool {
+    /// Adds a tested plan of the graph, given by the states after the root.
+    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) {
         let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
         self.graph_cost = Some(cost);
         self.guesses.extend(from_graph(self.context.problem, path));
         self.add_candidate(motion);
-        true
     }
 
     /// Refines the graph's plan and the predefined manoeuvres; true when the deadline was reached.
@@ -136,30 +127,23 @@ impl<'a> Selection<'a> {
         let (problem, route) = (context.problem, context.route);
         let mut guesses = std::mem::take(&mut self.guesses);
         let leg = problem.desired.legs().len() - 1;
-        let duty = problem.duty();
-        let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
             if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
                 for across in [false, true] {
+                    let both = Side::BOTH.into_iter();
                     guesses.extend(
-                        sides
-                            .iter()
-                            .filter_map(|side| waiting(problem, *side, across, conflict, leg)),
+                        both.filter_map(|side| waiting(problem, side, across, conflict, leg)),
                     );
                 }
             }
-            if !duty.is_none() {
-                let slower = sides.iter();
-                guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
-            }
-            if duty.is_none() && conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
+            if conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
-            for &side in sides {
+            for side in Side::BOTH {
                 guesses.extend(
                     manoeuvres
                         .iter()

@@ -29,7 +29,7 @@ const RUNS_AND_DEPENDENTS: usize = 5;
 ///
 /// The guarantees of [`crate::planner::space_time::plan`] hold. Either function may find a plan
 /// where the other finds none. Cost: some milliseconds, without a search. Plans with waits or with
-/// very many turns give no initial guess, and then no plan.
+/// very many turns give no initial guess, and then no plan. A duty of own ship is not regarded.
 pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
     crate::planner::space_time::plan_normalised(problem, |problem, proxies, similarity| {
@@ -45,7 +45,6 @@ pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
 fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
     let found = Route::new(problem, clock).and_then(|route| {
         let guess = initial_guess_from(problem, &route, motion)?;
-        let nominal_motion = route.follow(0.0, 0.0);
         let blocks = land::proxies(problem);
         let context = Context {
             problem,
@@ -54,7 +53,7 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
         };
-        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::WARM_START);
+        let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], clock);
         Some((selection.plan(), timed_out))
