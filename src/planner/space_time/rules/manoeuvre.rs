@@ -657,6 +657,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 }
                 let passed = straight(&chain)?;
                 chain.line(speed * (passed - chain.time));
+                // a turn along a corner of the route is no alteration
+                let arc = chain.segments.first()?;
+                if self.is_on_route(arc.end(), self.along_at(leave) + arc.length()) {
+                    return None;
+                }
                 motion.extend(chain.segments);
             }
         }
@@ -695,7 +700,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let mut joined = time;
         if let FirstAlteration::Slow { .. } = out.first {
             let slow: f64 = motion[out.before..].iter().map(Segment::length).sum();
-            motion.extend(route.follow(self.along_at(out.leave) + slow, time));
+            let along = self.along_at(out.leave) + slow;
+            // the last segment may lead straight on where the route turns
+            if !self.is_on_route(pose, along) {
+                return None;
+            }
+            motion.extend(route.follow(along, time));
         } else {
             let near = problem.desired.nearest(pose.position, time, 0.0);
             let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
@@ -719,10 +729,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let mut left: f64 = back.iter().map(Segment::length).sum();
         back.iter().take(3).find_map(|s| {
             left -= s.length();
-            let (on, _) = route.pose_at(route.length() - left);
-            let end = s.end();
-            let near = (end.position - on.position).norm() <= tolerance::JOINT_M;
-            (near && wrap(end.heading - on.heading).abs() <= tolerance::JOINT_RAD)
+            self.is_on_route(s.end(), route.length() - left)
                 .then_some(s.end_time())
         })
     }
@@ -797,6 +804,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             !self.to_the_end[proxy.obstacle]
                 || segments.iter().all(|s| proxy.first_contact(s).is_none())
         }) && !(all && land::meets(land, segments))
+    }
+
+    /// True for a pose of the route after this many metres.
+    fn is_on_route(&self, pose: Pose, along: f64) -> bool {
+        let (on, _) = self.context.route.pose_at(along);
+        (pose.position - on.position).norm() <= tolerance::JOINT_M
+            && wrap(pose.heading - on.heading).abs() <= tolerance::JOINT_RAD
     }
 }
 
