@@ -657,6 +657,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 }
                 let passed = straight(&chain)?;
                 chain.line(speed * (passed - chain.time));
+                // a turn along a corner of the route is no alteration
+                let arc = chain.segments.first()?;
+                if self.is_on_route(arc.end(), self.along_at(leave) + arc.length()) {
+                    return None;
+                }
                 motion.extend(chain.segments);
             }
         }
@@ -695,7 +700,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let mut joined = time;
         if let FirstAlteration::Slow { .. } = out.first {
             let slow: f64 = motion[out.before..].iter().map(Segment::length).sum();
-            motion.extend(route.follow(self.along_at(out.leave) + slow, time));
+            let along = self.along_at(out.leave) + slow;
+            // the last segment may lead straight on where the route turns
+            if !self.is_on_route(pose, along) {
+                return None;
+            }
+            motion.extend(route.follow(along, time));
         } else {
             let near = problem.desired.nearest(pose.position, time, 0.0);
             let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
@@ -719,10 +729,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let mut left: f64 = back.iter().map(Segment::length).sum();
         back.iter().take(3).find_map(|s| {
             left -= s.length();
-            let (on, _) = route.pose_at(route.length() - left);
-            let end = s.end();
-            let near = (end.position - on.position).norm() <= tolerance::JOINT_M;
-            (near && wrap(end.heading - on.heading).abs() <= tolerance::JOINT_RAD)
+            self.is_on_route(s.end(), route.length() - left)
                 .then_some(s.end_time())
         })
     }
@@ -798,6 +805,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 || segments.iter().all(|s| proxy.first_contact(s).is_none())
         }) && !(all && land::meets(land, segments))
     }
+
+    /// True for a pose of the route after this many metres.
+    fn is_on_route(&self, pose: Pose, along: f64) -> bool {
+        let (on, _) = self.context.route.pose_at(along);
+        (pose.position - on.position).norm() <= tolerance::JOINT_M
+            && wrap(pose.heading - on.heading).abs() <= tolerance::JOINT_RAD
+    }
 }
 
 /// The motion until every target is passed.
@@ -829,5 +843,46 @@ impl Manoeuvre {
             _ => return None,
         }
         Some(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::pipeline;
+    use crate::scenario::Scenario;
+
+    /// Less speed that is kept for some time after passing may reach a corner of the route.
+    #[test]
+    fn less_speed_is_kept_on_the_route_only() {
+        let text = r#"
+            title = "Less speed before a corner"
+            horizon_s = 359.1
+            [own_ship]
+            position = { east_m = 0.0, north_m = 0.0 }
+            course_deg = 90.0
+            speed_mps = 5.0
+            length_m = 30.0
+            beam_m = 8.0
+            turning_radius_m = 100.0
+            speeds_mps = [2.5, 5.0, 6.0]
+            safety_margin_m = 20.0
+            [mission]
+            waypoints = [
+                { east_m = 0.0, north_m = 0.0 }, { east_m = 405.01, north_m = 0.0 },
+                { east_m = 706.65, north_m = -45.04 }, { east_m = 944.59, north_m = 116.11 },
+            ]
+            speed_mps = 5.0
+            [planner]
+            compliance = "rules"
+            [[targets]]
+            name = "t0"
+            position = { east_m = 633.181, north_m = 373.244 }
+            course_deg = 165.24
+            speed_mps = 2.878
+            length_m = 30.0
+            beam_m = 8.0
+        "#;
+        let run = pipeline::run(Scenario::parse(text).expect("valid"));
+        assert!(run.planned.outcome.plan().is_some(), "{:?}", run.planned);
     }
 }
