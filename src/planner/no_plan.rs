@@ -104,9 +104,9 @@ pub enum NoPlan {
         /// Time of the contact, seconds.
         time: f64,
     },
-    /// No candidate that complies with the rules for own ship's roles is clear of every set.
+    /// No manoeuvre by the rules for own ship's roles is clear of every set.
     #[error(
-        "no trajectory of the graph or its refinement keeps the rules toward all and is clear of every set until arrival; held on the \
+        "no manoeuvre by the rules toward all targets is clear of every set until arrival; held on the \
          desired trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoneComplies {

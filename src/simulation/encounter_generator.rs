@@ -78,7 +78,7 @@ impl Meeting {
         horizon: 1000.0,
     };
 
-    /// The risk arises later: 300 to 900 s before the closest approach.
+    /// The scene begins 300 to 900 s before the closest approach; the risk mostly arises later.
     pub const FAR: Self = Self {
         time: 300.0..=900.0,
         path_length: 7500.0,

@@ -2,8 +2,8 @@
 //!
 //! `score` computes the scores of the literature and the rule violations; `monitor` evaluates the
 //! rules as formulas of temporal logic. Both use the [`EncounterSamples`], the [`roles`] that last
-//! until the target is past and clear, and the thresholds, which differ between sources. They share
-//! no other formula, so they may disagree.
+//! until the target is past and clear, the time from which another target frees own ship, and the
+//! thresholds, which differ between sources. Each has its own formulas, so they may disagree.
 
 mod monitor;
 mod role_intervals;

@@ -65,7 +65,7 @@ struct Trace<'a> {
     t: &'a Thresholds,
     /// Factor of the times.
     factor: f64,
-    /// Seconds from which on an alteration for another target excuses the ship that stands on.
+    /// Seconds from which on own ship need not hold its course because of another target.
     excused_from: f64,
     /// Of the longer ship, metres.
     length: f64,
@@ -256,7 +256,7 @@ impl Trace<'_> {
     ) -> MonitorResult {
         let verdict = match worst {
             None => MonitorVerdict::Idle,
-            // touching is encounter: the sets are closed
+            // touching is contact: the sets are closed
             Some((r, _)) if r > 0.0 || (r == 0.0 && measure == Measure::Angle) => {
                 MonitorVerdict::Satisfied
             }

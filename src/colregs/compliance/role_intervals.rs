@@ -38,7 +38,8 @@ fn past_and_clear(
 }
 
 /// Roles of own ship toward the target, in order of time. A role begins with the first of
-/// `evaluations` consecutive samples at risk (at once at the very first sample), and lasts until
+/// `evaluations` consecutive samples at risk (at once at the very first sample); the last of them
+/// decides which role. It lasts until
 /// the first of as many at which the target is past and clear. Neither own ship's manoeuvre nor a
 /// later change of bearing ends or changes it.
 pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> {

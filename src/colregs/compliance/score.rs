@@ -72,7 +72,7 @@ struct Act<'a> {
     length: f64,
     own_length: f64,
     ordered_speed: f64,
-    /// Seconds from which on an alteration for another target excuses the ship that stands on.
+    /// Seconds from which on own ship need not hold its course because of another target.
     excused_from: f64,
     /// At least one.
     samples: &'a [EncounterSample],
@@ -159,7 +159,8 @@ impl Act<'_> {
         self.samples.iter().find(due).unwrap_or(self.closest())
     }
 
-    /// Delay of action: 0 in ample time, 1 never.
+    /// Delay of action: 0 in ample time. Without an alteration 1 if it would pass within a length,
+    /// else 0.
     fn delay(&self) -> f64 {
         let Some(onset) = self.onset() else {
             let near = self.first().ahead().distance < self.t.score.least_lengths * self.length;
@@ -439,7 +440,7 @@ impl Act<'_> {
             }
             Role::None | Role::Static => {}
         }
-        if !self.role.duties().stands_on {
+        if self.role.duties().keeps_clear {
             if let Some(time) = self.succession() {
                 let what = "makes a succession of small alterations".to_owned();
                 violation("8(b)", time, what);
@@ -456,7 +457,7 @@ impl Act<'_> {
     }
 }
 
-/// What is said of own ship toward one target.
+/// Scores, rule violations and the manoeuvre toward one target.
 pub(super) struct Judged {
     pub scores: Scores,
     pub violations: Vec<RuleViolation>,

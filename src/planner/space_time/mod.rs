@@ -219,7 +219,11 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     if !problem.duty().is_none() && first_conflict.is_some() {
         if let Some(kept) = manoeuvre::by_the_rules(&context, &nominal_motion, clock) {
             let plan = Plan::measured(problem, kept.motion, None);
-            let outcome = plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved);
+            let outcome = match plan {
+                Some(plan) if clock.is_up() => Outcome::Deadline(Some(plan)),
+                Some(plan) => Outcome::Solved(plan),
+                None => Outcome::Infeasible(NoPlan::NoRoute),
+            };
             return Planned {
                 escape: kept.escape,
                 ..Planned::of(outcome)

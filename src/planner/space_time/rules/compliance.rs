@@ -79,7 +79,7 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     })
 }
 
-/// True when own ship never heads to port of its course before the departure, nor of the path's
+/// True unless own ship heads to port both of its course before the departure and of the path's
 /// course there, until a time.
 fn keeps_off_port(problem: &Problem, off_route: &[Segment], until: f64) -> bool {
     let before = off_route.first().map_or(0.0, |s| s.start.heading);

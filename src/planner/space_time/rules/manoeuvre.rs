@@ -6,9 +6,8 @@
 //! hold ─► half speed or less ───────────► passed ─► follow the route
 //! ```
 //!
-//! A manoeuvre has at most five parameters. All combinations of a coarse grid are made, cheapest
-//! first; the best of those that are clear of every set until arrival is improved by a pattern
-//! search. There are few turns and few changes of speed by construction.
+//! A manoeuvre has at most five parameters. For the latest departure that has a clear manoeuvre,
+//! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds,
@@ -38,13 +37,13 @@ const ASIDE_S: [f64; 6] = [f64::INFINITY, 15.0, 35.0, 60.0, 100.0, 180.0];
 /// Seconds from passing to the return.
 const AFTER_S: [f64; 5] = [0.0, 15.0, 40.0, 90.0, 180.0];
 
-/// Only each such ending tells whether there is an escape.
-const ENDINGS_SKIPPED: usize = 2;
+/// The search for the latest escape tries every second ending.
+const ENDING_STRIDE: usize = 2;
 
 /// Angles between the return line and the route, radians.
 const BACK: [f64; 3] = [0.3, 0.6, 1.0];
 
-/// Fractions of the latest time of the first alteration.
+/// Departures, as fractions of the time until the latest one.
 const LEAVE: [f64; 3] = [1.0, 0.6, 0.2];
 
 /// Seconds. The first alteration of a ship that meets a risk follows at once.
@@ -76,8 +75,8 @@ const MAY_S: f64 = 1.5;
 /// Seconds by which a stand-on ship that may act does so earlier, where that is cheaper.
 const EARLIER_S: f64 = 60.0;
 
-/// Ranges in lengths within which a stand-on ship acts, and beyond which it does not wait longer.
-const ESCAPE_LENGTHS: [f64; 2] = [6.0, 4.0];
+/// Range in lengths within which a stand-on ship acts.
+const ACT_LENGTHS: f64 = 6.0;
 
 /// A manoeuvre of the family.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -148,7 +147,7 @@ struct Passing<'a> {
 }
 
 /// A plan by the rules.
-pub(crate) struct Kept {
+pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
     /// The escape of a ship that stands on.
     pub escape: Option<Escape>,
@@ -161,15 +160,19 @@ pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
     clock: Clock,
-) -> Option<Kept> {
+) -> Option<RulePlan> {
     let encountered = context.problem.encountered;
+    // a speed that is mixed from others is not held
+    let speed = context.problem.desired.legs()[0].speed;
+    let listed = |u: &f64| (u - speed).abs() <= tolerance::FIGURE * speed;
+    let holds = context.problem.own.speeds.iter().any(listed);
     let first = |motion: &[Segment]| {
         let contact = first_contact(context.proxies, motion).map(|c| c.1);
         let grounding = land::first_contact(context.problem.land_obstacle, motion);
         contact.into_iter().chain(grounding).reduce(f64::min)
     };
     let one_by_one = || {
-        let mut kept = Kept {
+        let mut kept = RulePlan {
             motion: nominal_motion.to_vec(),
             escape: None,
         };
@@ -186,9 +189,8 @@ pub(crate) fn by_the_rules(
             let all = group.len() == encountered.iter().filter(|e| e.tcpa > from).count();
             let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
             if step == 0 {
-                kept.escape = Duty::of(group.iter().map(|e| e.role))
-                    .stands_on
-                    .then(|| found.escape());
+                let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+                kept.escape = (stands_on && holds).then(|| found.escape());
             }
             from = found.joined;
             kept.motion = found.motion;
@@ -199,8 +201,9 @@ pub(crate) fn by_the_rules(
         let contact = first(nominal_motion)?;
         let motion = (nominal_motion, 0.0);
         let found = resolved(context, encountered, true, motion, contact, clock)?;
-        let escape = context.problem.duty().stands_on.then(|| found.escape());
-        Some(Kept {
+        let stands_on = context.problem.duty().stands_on;
+        let escape = (stands_on && holds).then(|| found.escape());
+        Some(RulePlan {
             motion: found.motion,
             escape,
         })
@@ -330,8 +333,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         if latest < may && may < contact && self.cheapest(may).is_some() {
             latest = may;
         }
-        let [near, nearest] = ESCAPE_LENGTHS.map(|lengths| self.comes_within(lengths));
-        let wanted = (latest - SPARE_S).min(near).max(may).min(nearest.max(may));
+        let near = self.comes_within(ACT_LENGTHS);
+        let wanted = (latest - SPARE_S).min(near).max(may);
         // it cannot hold on for as long as it must: then not longer than is safe
         let wanted = if latest < may - MAY_S {
             latest - SPARE_S
@@ -484,16 +487,18 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
         }
         if duty.may_slow {
-            let slow = APPARENT_SPEED * ordered.normal * (1.0 + 1e-9);
+            // half of the desired speed, also where the ship cannot keep just that
+            let legs = problem.desired.legs().iter().map(|leg| leg.speed);
+            let desired = legs.fold(0.0, f64::max).min(ordered.normal);
+            let slow = APPARENT_SPEED * desired * (1.0 + 1e-9);
             let speeds = own.moving_speeds().filter(|u| *u <= slow);
             all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
         }
         all
     }
 
-    /// The motions until every target is passed that are clear so far, with their lengths in
-    /// segments before they leave the route.
-    fn clear_outs(&self, leave: f64) -> impl Iterator<Item = Out> + '_ {
+    /// The motions until every target is passed that are clear so far, from a departure on.
+    fn clear_outward_legs(&self, leave: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
         let before = until(self.nominal_motion, leave);
         let alterations = self.alterations().into_iter();
         alterations.filter_map(move |first| {
@@ -503,8 +508,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     fn has_clear(&self, leave: f64) -> bool {
-        self.clear_outs(leave).any(|out| {
-            let few = self.endings(&out).step_by(ENDINGS_SKIPPED);
+        self.clear_outward_legs(leave).any(|out| {
+            let few = self.endings(&out).step_by(ENDING_STRIDE);
             few.into_iter().any(|ending| {
                 self.completed(&out, ending)
                     .is_some_and(|(m, joined)| self.is_allowed(&out, &m, joined))
@@ -531,7 +536,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// Seconds from passing to the return, and the angle of the return.
-    fn endings(&self, out: &Out) -> impl Iterator<Item = (f64, f64)> + use<> {
+    fn endings(&self, out: &OutwardLeg) -> impl Iterator<Item = (f64, f64)> + use<> {
         let angles = match out.first {
             FirstAlteration::Turn { .. } => &BACK[..],
             FirstAlteration::Slow { .. } => &BACK[..1],
@@ -545,8 +550,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     /// The cheapest clear manoeuvre that begins at a time.
     fn cheapest(&self, leave: f64) -> Option<Found> {
         let mut candidates: Vec<(f64, usize, Manoeuvre)> = Vec::new();
-        let outs = self.clear_outs(leave).take_while(|_| !self.clock.is_up());
-        let outs: Vec<Out> = outs.collect();
+        let outs = self
+            .clear_outward_legs(leave)
+            .take_while(|_| !self.clock.is_up());
+        let outs: Vec<OutwardLeg> = outs.collect();
         for (index, out) in outs.iter().enumerate() {
             let first = out.first;
             for (after, back) in self.endings(out) {
@@ -626,7 +633,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// The motion until every target is passed.
-    fn out(&self, before: &[Segment], leave: f64, first: FirstAlteration) -> Option<Out> {
+    fn out(&self, before: &[Segment], leave: f64, first: FirstAlteration) -> Option<OutwardLeg> {
         let problem = self.problem();
         let own = problem.own;
         let mut motion = before.to_vec();
@@ -656,7 +663,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     chain.arc(-turn * own.turning_radius);
                 }
                 let passed = straight(&chain)?;
-                chain.line(speed * (passed - chain.time));
+                // a straight part between two turns, also where the target is passed at once
+                chain.line(speed * (passed - chain.time).max(LEAST_S));
                 // a turn along a corner of the route is no alteration
                 let arc = chain.segments.first()?;
                 if self.is_on_route(arc.end(), self.along_at(leave) + arc.length()) {
@@ -667,7 +675,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         let in_time = motion.last()?.end_time() <= problem.horizon;
         let before = before.len();
-        in_time.then_some(Out {
+        in_time.then_some(OutwardLeg {
             first,
             leave,
             before,
@@ -677,7 +685,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The motion to the end of the route for an ending, and the time from which on it follows the
     /// route.
-    fn completed(&self, out: &Out, (after, back): (f64, f64)) -> Option<(Vec<Segment>, f64)> {
+    fn completed(
+        &self,
+        out: &OutwardLeg,
+        (after, back): (f64, f64),
+    ) -> Option<(Vec<Segment>, f64)> {
         let (problem, route) = (self.problem(), self.context.route);
         let mut motion = out.motion.clone();
         let last = motion.last_mut()?;
@@ -712,6 +724,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let mut backs =
                 legs.filter_map(|leg| motion_back(problem, route, (&pose, time), leg, back));
             let back = backs.next()?;
+            // on to the same side it would be a circle
+            let again = |turn: f64| back[0].is_arc() && back[0].turn_rate * turn > 0.0;
+            if matches!(out.first, FirstAlteration::Turn { turn, .. } if again(turn)) {
+                return None;
+            }
             joined = self.joins(&back)?;
             motion.extend(back);
         }
@@ -772,17 +789,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// True for segments that are clear of every set, of land, and of a length around every target.
     fn is_clear(&self, segments: &[Segment]) -> bool {
-        let near = |s: &Segment| {
-            let mut passing = self.passing.iter();
-            passing.any(|p| contact::first_contact(&p.within_a_length, s, TOUCH_M).is_some())
-        };
         first_met(self.context.proxies, segments).is_none()
             && !land::meets(self.problem().land_obstacle, segments)
-            && !(self.keeps_a_length && segments.iter().any(near))
+            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
     }
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
-    fn is_allowed(&self, out: &Out, motion: &[Segment], joined: f64) -> bool {
+    fn is_allowed(&self, out: &OutwardLeg, motion: &[Segment], joined: f64) -> bool {
         let off_route = match out.first {
             FirstAlteration::Turn { .. } => &motion[out.before..],
             FirstAlteration::Slow { .. } => &[],
@@ -796,6 +809,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             && complies(self.problem(), &motion[begun..], off_route)
     }
 
+    fn is_within_a_length(&self, segment: &Segment) -> bool {
+        let mut passing = self.passing.iter();
+        passing.any(|p| contact::first_contact(&p.within_a_length, segment, TOUCH_M).is_some())
+    }
+
     fn is_clear_to_the_end(&self, segments: &[Segment]) -> bool {
         let mut proxies = self.context.proxies.iter();
         let all = self.to_the_end.iter().all(|whole| *whole);
@@ -804,6 +822,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             !self.to_the_end[proxy.obstacle]
                 || segments.iter().all(|s| proxy.first_contact(s).is_none())
         }) && !(all && land::meets(land, segments))
+            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
     }
 
     /// True for a pose of the route after this many metres.
@@ -815,7 +834,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 }
 
 /// The motion until every target is passed.
-struct Out {
+struct OutwardLeg {
     first: FirstAlteration,
     /// Seconds at which the route is left, and the number of segments before.
     leave: f64,
