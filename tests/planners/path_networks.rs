@@ -27,6 +27,7 @@ fn faults(document: &Value) -> String {
 fn verified(text: &str) -> Run {
     let mut scenario = Scenario::parse(text).expect("readable");
     scenario.planner = &PathTimePlanner;
+    scenario.compliance = searoom::scenario::Compliance::Shape;
     let run = pipeline::run(scenario);
     if run.planned.outcome.plan().is_some() {
         let judged = run.evaluation.as_ref().expect("every plan is judged");
