@@ -244,6 +244,15 @@ fn fault(name: &str) -> Scenario {
     Scenario::read(&folder.join(name)).expect("a scenario")
 }
 
+/// Own ship may stop until the set has gone. The path leads back to the start, but is still to be
+/// sailed.
+#[test]
+fn a_stop_at_the_start_of_a_round_trip_is_no_arrival() {
+    let run = run(fault("round_trip_from_inside.toml"));
+    let evaluation = run.evaluation.expect("a plan");
+    assert!(evaluation.verified(), "{:?}", evaluation.violations);
+}
+
 fn changes_of_speed(trajectory: &Trajectory) -> usize {
     let segments = trajectory.segments().windows(2);
     segments

@@ -8,7 +8,7 @@
 //! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
 //! instead.
 
-use crate::frame::{Pose, Side};
+use crate::frame::{Pose, Side, Vector};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
@@ -18,7 +18,7 @@ use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
 use crate::planner::{NominalTarget, Plan, Problem};
-use crate::tolerance::TOUCH_M;
+use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
 
@@ -399,6 +399,10 @@ fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
     later.map(|s| s.between(from, s.end_time())).collect()
 }
 
+fn is_at_end(desired: &DesiredTrajectory, place: Vector) -> bool {
+    (desired.end() - place).norm() <= tolerance::ARRIVAL_M
+}
+
 /// Appends to a motion another one, whose clock starts at the first one's end.
 fn append(
     problem: &Problem,
@@ -413,7 +417,12 @@ fn append(
         pose: beginning.last().map_or(problem.own.pose, Segment::end),
         ..problem.own.clone()
     };
-    let desired = problem.desired.remaining(start);
+    let here = own.pose.position;
+    let mut desired = problem.desired.remaining(start);
+    // where a round trip has begun in time alone, it is still to be sailed
+    if problem.desired.comes_by(here) && !desired.comes_by(here) && is_at_end(&desired, here) {
+        desired = problem.desired.clone();
+    }
     let later: Vec<Obstacle> = (problem.obstacles.iter())
         .map(|set| set.remainder(start))
         .collect();
