@@ -25,6 +25,7 @@ title = "Head-on"
 horizon_s = 400.0
 own_ship = { position = { east_m = 0.0, north_m = 0.0 }, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0, beam_m = 8.0, turning_radius_m = 100.0, speeds_mps = [2.5, 5.0, 6.0], safety_margin_m = 20.0 }
 mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }] }
+planner = { compliance = "shape" }
 [[targets]]
 name = "ferry / Ærø"
 position = { east_m = 1500.0, north_m = 0.0 }
@@ -342,7 +343,7 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
 /// The curves of the risk reach the value of the plan document, for the same set.
 #[test]
 fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
-    let text = HEAD_ON.replace("[[targets]]", "[planner]\nmax_risk = 0.4\n[[targets]]");
+    let text = HEAD_ON.replace("\"shape\"", "\"shape\", max_risk = 0.4");
     let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
     let [peak] = run.risks()[..] else {
         panic!("one target");
