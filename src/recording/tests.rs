@@ -330,7 +330,9 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
     assert!(reasons.iter().any(|r| r.contains("Rule 14")), "{reasons:?}");
 
     let harbour = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
-    let run = pipeline::run(Scenario::read(&harbour).expect("valid"));
+    let mut scenario = Scenario::read(&harbour).expect("valid");
+    scenario.compliance = crate::scenario::Compliance::Shape;
+    let run = pipeline::run(scenario);
     write_run(&run, &path).expect("writes");
     let reasons = labels(
         &Recorded::read(&path).expect("whole"),
