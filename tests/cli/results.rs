@@ -291,7 +291,7 @@ mod recordings {
         for expected in [
             "Head-on: solved (verified, safe)",
             "space-time, a-star",
-            " expanded, ",
+            "a manoeuvre by the rules",
             "head-on with 'target'",
             "sim_time 0 to 300 s",
             "/curves/clearance_m",
