@@ -27,7 +27,7 @@ pub struct Thresholds {
     /// Compliance monitors.
     pub monitor: MonitorLimits,
     /// Factor of the times of risk, of ample time, to react and to manoeuvre for own ships of
-    /// [`LARGE_M`] and more.
+    /// `LARGE_M` (100 m) and more.
     pub large_factor: f64,
 }
 

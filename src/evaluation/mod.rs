@@ -61,7 +61,7 @@ pub struct Passage {
     /// Time of the closest approach, seconds.
     pub tcpa: f64,
     /// Side of own ship on which the target lies at `tcpa`. Dead ahead and astern, to
-    /// [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M), count as starboard.
+    /// [`tolerance::DEPTH_M`], count as starboard.
     pub passing_side: Side,
     /// Least distance between own hull and any hull that the target may have, metres; negative in
     /// overlap. For explicit sets: distance from own position to the set.
@@ -127,11 +127,11 @@ impl Evaluation {
 /// Checks
 ///
 /// - start, joints, turning radius and speeds or paths, and arrival;
-/// - every set in continuous time, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M);
+/// - every set in continuous time, to [`tolerance::DEPTH_M`];
 /// - every hull that a target may have, independently of the sets;
 /// - own hull against the edges of the land.
 ///
-/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)). The
+/// Distances are certified least values ([`tolerance::MARGIN_M`]). The
 /// costs are integrated by a separate quadrature. A segment with a non-finite value is a violation,
 /// and the figures are then NaN.
 ///

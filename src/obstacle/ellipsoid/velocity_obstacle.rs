@@ -73,7 +73,7 @@ impl EllipsoidObstacle {
     /// b))` with `c = n . z + distance`, `a = n' Q_o n / r_o`, `b = n' Q_v n / r_v`. The root is
     /// concave in `u`, so the maximum is at the root of a quadratic or at `1/T`. Returns the two
     /// tangents from own ship to the widened `O_0`, each moved outward by the support of `V`, and
-    /// [`TANGENTS`] between them, denser beside these two. O([`TANGENTS`]).
+    /// `TANGENTS` between them, denser beside these two. O(`TANGENTS`).
     pub fn outer_velocities_within(
         &self,
         position: Vector,
