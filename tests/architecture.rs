@@ -171,6 +171,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "tolerance",
             "geometry",
             "trajectory",
+            "vessel",
             "target",
             "colregs",
             "obstacle",

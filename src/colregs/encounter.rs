@@ -43,6 +43,47 @@ impl Risk {
         let offset = self.target.pose.position - self.own.pose.position;
         self.time + offset.dot(&relative) / relative.norm_squared()
     }
+
+    /// The same risk seen at another time: own ship at a position on its first course, the target
+    /// as it is then.
+    pub(crate) fn with_ships_at(&self, time: f64, own: Vector, target: SteadyShip) -> Self {
+        Self {
+            time,
+            own: SteadyShip {
+                pose: Pose::new(own, self.own.pose.heading),
+                ..self.own
+            },
+            target,
+            ..*self
+        }
+    }
+}
+
+/// What is known of one target from before the scenario's time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TargetMemory {
+    /// The role that own ship has had since some time, and both ships then.
+    pub role: Option<Risk>,
+    /// The target's states at earlier times, in order of time, seconds.
+    pub track: Vec<(f64, SteadyShip)>,
+}
+
+impl TargetMemory {
+    /// The first time at which the target's state is known, seconds.
+    pub fn known_from(&self) -> Option<f64> {
+        self.track.first().map(|(time, _)| *time)
+    }
+
+    /// The target at a time before t = 0, from the last state before; `None` from then on.
+    pub fn at(&self, time: f64) -> Option<SteadyShip> {
+        let known = self.track.partition_point(|(t, _)| *t <= time);
+        let (then, ship) = self.track.get(known.checked_sub(1)?)?;
+        let moved = ship.velocity() * (time - then);
+        (time < 0.0).then(|| SteadyShip {
+            pose: Pose::new(ship.pose.position + moved, ship.pose.heading),
+            ..*ship
+        })
+    }
 }
 
 /// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half

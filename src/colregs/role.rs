@@ -52,6 +52,17 @@ pub enum Role {
 }
 
 impl Role {
+    /// The roles that own ship has while there is risk of collision.
+    pub const DUTIES: [Self; 7] = [
+        Self::HeadOn,
+        Self::GiveWay,
+        Self::StandOn,
+        Self::Overtaking,
+        Self::Overtaken,
+        Self::BothGiveWay,
+        Self::PortToPort,
+    ];
+
     /// The role as tables, documents and recordings name it.
     pub const fn name(self) -> &'static str {
         match self {

@@ -11,6 +11,7 @@ mod control;
 mod encounter;
 mod lines;
 mod lint;
+mod memory;
 mod parts;
 mod path_time;
 mod plan;
@@ -34,6 +35,10 @@ pub use encounter::{
 pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
+pub use memory::{
+    KnownRoleDocument, MemoryDocument, NotPrevious, PlannedManoeuvreDocument, StateDocument,
+    TargetMemoryDocument, memory_after,
+};
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
 use super::encounter::{EncounterDocument, encounters};
+use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::parts::{
     CostDocument, EscapeDocument, MissionDocument, NodeDocument, ObstacleDocument, OwnShipDocument,
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
@@ -47,6 +48,9 @@ pub struct PlanDocument {
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
     pub max_risk: f64,
+    /// The present on the clock of the scenario file. All other times count from it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub time_s: f64,
     pub horizon_s: f64,
     pub own_ship: OwnShipDocument,
     pub mission: MissionDocument,
@@ -67,6 +71,10 @@ pub struct PlanDocument {
     pub trajectory: Option<TrajectoryDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub manoeuvres: Vec<PlannedManoeuvreDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<MemoryDocument>,
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
@@ -96,6 +104,7 @@ impl PlanDocument {
             },
             time_weight_m2_per_s2: scenario.time_weight,
             max_risk: run.max_risk,
+            time_s: scenario.time,
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
@@ -122,6 +131,8 @@ impl PlanDocument {
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
+            manoeuvres: run.planned.manoeuvres.iter().map(Into::into).collect(),
+            memory: MemoryDocument::of(run),
             targets: scenario.targets.iter().map(target).collect(),
             obstacles: (run.targets.iter())
                 .flat_map(|target| {
@@ -301,19 +312,30 @@ pub(super) fn stats(run: &Run) -> SearchStatsDocument {
     }
 }
 
-fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
-    let start = |pose: Pose, time: f64| StartDocument {
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+pub(super) fn start(pose: Pose, time: f64) -> StartDocument {
+    StartDocument {
         t_s: time,
         east_m: pose.position.x + 0.0,
         north_m: pose.position.y + 0.0,
         course_deg: course_deg_from_heading(pose.heading),
-    };
-    let segments = trajectory.segments().iter().map(|segment| SegmentDocument {
+    }
+}
+
+pub(super) fn segment_document(segment: &Segment) -> SegmentDocument {
+    SegmentDocument {
         start: start(segment.start, segment.start_time),
         duration_s: segment.duration,
         speed_mps: segment.speed,
         turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
-    });
+    }
+}
+
+fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
+    let segments = trajectory.segments().iter().map(segment_document);
     TrajectoryDocument {
         segments: trajectory.steered().is_none().then(|| segments.collect()),
         samples: trajectory

@@ -6,6 +6,7 @@ mod land;
 mod no_return;
 mod outcome;
 mod relaxation;
+mod remainder;
 mod risk;
 mod rules;
 mod sets;
@@ -137,6 +138,7 @@ pub fn problem<'a>(
         deadline: deadline(scenario),
         first_turn: None,
         encountered: &[],
+        under_way: scenario.memory.under_way,
     }
 }
 

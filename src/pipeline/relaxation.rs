@@ -6,6 +6,7 @@
 use std::time::{Duration, Instant};
 
 use super::entered;
+use super::remainder::better_remainder;
 use super::rules::{encountered, first_turn};
 use super::sets::TargetSets;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
@@ -110,11 +111,15 @@ impl Relaxer<'_> {
     pub fn answer(&self) -> Attempt {
         let with_domain = self.scenario.compliance.shapes();
         let scale = if with_domain { 1.0 } else { 0.0 };
-        let first = self.attempt(
+        let mut first = self.attempt(
             RelaxationLevel::Compliant,
             &self.scales(scale),
             self.scenario.max_risk,
         );
+        let problem = self.problem(&first.obstacles);
+        if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
+            first.planned = kept;
+        }
         if self.scenario.planner.facts().relaxes_domains_only {
             return self.without_domains(first, with_domain);
         }

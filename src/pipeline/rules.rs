@@ -6,6 +6,7 @@ use crate::colregs::{Duty, Encountered, Role, SteadyShip, Thresholds};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::{Compliance, Scenario};
+use crate::trajectory::Trajectory;
 
 /// The first turn by Rules 14 and 15: to starboard where own ship meets head-on or gives way.
 pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
@@ -60,17 +61,50 @@ fn asking<'a>(
             speed: track.speed,
         };
         let risk = sets.encounter.risk?;
+        let tcpa = if risk.time < 0.0 {
+            risk.with_ships_at(0.0, scenario.own_ship.pose.position, ship)
+                .tcpa()
+        } else {
+            risk.tcpa()
+        };
         let encountered = Encountered {
             role,
             ship,
             hull: track.hull,
             own: risk.own,
             latched: risk.time,
-            tcpa: risk.tcpa(),
+            tcpa,
         };
         let asks = !Duty::of(std::iter::once(role)).is_none();
         asks.then_some((sets, encountered))
     })
+}
+
+/// Number of rules and monitors that a trajectory violates by the standard thresholds.
+pub(super) fn breaks(scenario: &Scenario, trajectory: &Trajectory) -> usize {
+    let reports = conduct(scenario, Some(trajectory), Thresholds::standard());
+    reports.iter().flatten().map(|r| r.broken().count()).sum()
+}
+
+/// Compliance of a trajectory toward each target, together with the motion before it.
+fn conduct(
+    scenario: &Scenario,
+    trajectory: Option<&Trajectory>,
+    thresholds: &Thresholds,
+) -> Vec<Option<ComplianceReport>> {
+    let (own, memory) = (&scenario.own_ship, &scenario.memory);
+    let track = trajectory
+        .map(|trajectory| OwnSamples::along(&memory.sailed, trajectory, own.hull, own.speed));
+    let targets = scenario.targets.iter().enumerate();
+    let samples = targets.map(|(index, target)| {
+        let (track, ship) = (track.as_ref()?, target.ship()?);
+        let known = memory.target(index);
+        Some(ComplianceReport::samples(track, ship, known, thresholds))
+    });
+    let samples: Vec<_> = samples.collect();
+    let mut reports = ComplianceReport::of_all(samples.iter().flatten(), thresholds).into_iter();
+    let report = |samples: &Option<_>| samples.as_ref().and_then(|_| reports.next());
+    samples.iter().map(report).collect()
 }
 
 impl Run {
@@ -80,17 +114,11 @@ impl Run {
     /// trajectory and the nominal track alone. O(targets × seconds), less for distant targets.
     pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
         let plan = self.planned.outcome.plan();
-        let own = &self.scenario.own_ship;
-        let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own.hull, own.speed));
-        let samples = self.scenario.targets.iter().map(|target| {
-            let (track, ship) = (track.as_ref()?, target.ship()?);
-            Some(ComplianceReport::samples(track, ship, thresholds))
-        });
-        let samples: Vec<_> = samples.collect();
-        let mut reports =
-            ComplianceReport::of_all(samples.iter().flatten(), thresholds).into_iter();
-        let report = |samples: &Option<_>| samples.as_ref().and_then(|_| reports.next());
-        samples.iter().map(report).collect()
+        conduct(
+            &self.scenario,
+            plan.map(|plan| &plan.trajectory),
+            thresholds,
+        )
     }
 
     /// [`Run::conduct`] by the scenario's thresholds.

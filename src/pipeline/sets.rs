@@ -79,14 +79,20 @@ impl TargetSets {
 
 /// The obstacles and the encounter of every target, in the scenario's order.
 pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
-    let of = |target| target_sets(scenario, target);
-    without_domains_of_give_way_targets(scenario, scenario.targets.iter().map(of).collect())
+    let targets = scenario.targets.iter().enumerate();
+    let sets = targets.map(|(index, target)| target_sets(scenario, index, target));
+    without_domains_of_give_way_targets(scenario, sets.collect())
 }
 
-fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
+fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets {
     let own = &scenario.own_ship;
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
-    let encounter = colregs::encounter(own, desired, target, horizon);
+    let mut encounter = colregs::encounter(own, desired, target, horizon);
+    // a role lasts, whatever the desired trajectory would make of it now
+    if let Some(known) = scenario.memory.target(index).and_then(|known| known.role) {
+        encounter.role = known.role;
+        encounter.risk = Some(known);
+    }
     // explicit sets are used unchanged: own ship is a point
     let explicit = |obstacle: Obstacle| TargetSets {
         with_domain: obstacle.clone(),

@@ -30,6 +30,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
     let points = [Vector::zeros(), Vector::new(1500.0, 0.0)];
     Scenario {
         title: "one target".to_owned(),
+        time: 0.0,
         horizon: 400.0,
         arrival_hold: 60.0,
         own_ship: OwnShip {
@@ -61,6 +62,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         thresholds: None,
         earth: None,
         land: None,
+        memory: crate::scenario::Memory::default(),
     }
 }
 

@@ -142,6 +142,8 @@ pub struct Problem<'a> {
     /// Targets toward which a plan must comply with the collision regulations; empty where
     /// compliance is not required.
     pub encountered: &'a [Encountered],
+    /// Manoeuvre by the rules that own ship carries out at t = 0.
+    pub under_way: Option<UnderWay>,
 }
 
 impl<'a> Problem<'a> {
@@ -166,6 +168,7 @@ impl<'a> Problem<'a> {
             deadline: Duration::from_secs(60),
             first_turn: None,
             encountered: &[],
+            under_way: None,
         }
     }
 
@@ -241,6 +244,48 @@ pub struct Escape {
     pub speed: f64,
 }
 
+/// A manoeuvre by the rules along a plan: own ship alters course or speed, keeps it until the
+/// targets have passed, returns, and joins the route.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlannedManoeuvre {
+    /// Seconds of the first alteration.
+    pub begins: f64,
+    /// Seconds of the turn back, or of the change of speed back.
+    pub returns: f64,
+    /// Seconds from which on own ship follows the route again.
+    pub joins: f64,
+    /// Heading before, radians.
+    pub first_heading: f64,
+    /// First turn, radians, to port positive; 0 where own ship reduces speed only.
+    pub turn: f64,
+}
+
+impl PlannedManoeuvre {
+    /// The same manoeuvre with a clock that starts `time` seconds later.
+    pub fn after(self, time: f64) -> Self {
+        Self {
+            begins: self.begins - time,
+            returns: self.returns - time,
+            joins: self.joins - time,
+            ..self
+        }
+    }
+}
+
+/// The manoeuvre that own ship carries out at t = 0: it has left the route and has not begun to
+/// return.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnderWay {
+    /// Heading before the manoeuvre, radians.
+    pub first_heading: f64,
+    /// First turn, radians, to port positive; 0 where own ship reduces speed only.
+    pub turn: f64,
+    /// Heading that own ship steers or turns to, radians.
+    pub heading: f64,
+    /// Speed, m/s.
+    pub speed: f64,
+}
+
 /// Result of a planner. None of these is an error.
 #[derive(Debug, Clone)]
 pub enum Outcome {
@@ -294,6 +339,8 @@ pub struct Planned {
     pub control: Option<Box<optimal_control::ControlReport>>,
     /// Escape of a stand-on ship (Rule 17).
     pub escape: Option<Escape>,
+    /// The manoeuvres of a plan by the rules, in order of time.
+    pub manoeuvres: Vec<PlannedManoeuvre>,
 }
 
 impl Planned {
@@ -306,6 +353,7 @@ impl Planned {
             path_time: None,
             control: None,
             escape: None,
+            manoeuvres: Vec::new(),
         }
     }
 }

@@ -5,10 +5,12 @@ use std::path::Path;
 use super::plane::{POSITION, Plane};
 use super::planner::{PlannerTable, planner};
 use super::targets::targets;
-use super::{Compliance, Land, Scenario, land, limits};
+use super::{Compliance, Land, Memory, Scenario, land, limits};
+use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Faults, Field, Node, Table, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
+use crate::target::Target;
 use crate::text::LINE;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
@@ -40,6 +42,10 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .require("title", LINE)
         .and_then(|field| field.line_of_text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
+    let time = match root.has("time_s") {
+        true => root.number("time_s", limits::CLOCK),
+        false => Some(0.0),
+    };
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
@@ -51,7 +57,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .required_table("mission")
-        .and_then(|table| mission(table, speed, &plane));
+        .and_then(|table| mission(table, speed, &plane, time));
     // without a length the file is faulty, and any length serves
     let length = own_ship.as_ref().map_or(1.0, |own| own.hull.length);
     let planner: PlannerTable = root
@@ -59,7 +65,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .and_then(|field| field.table("a table"))
         .map(|table| planner(table, length))
         .unwrap_or_default();
-    let targets = targets(&mut root, &plane);
+    let targets = targets(&mut root, &plane, time, own_ship.as_ref());
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
         let paths = mission
@@ -76,10 +82,11 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         },
         own_ship,
     ) = (mission?, own_ship?);
+    let (targets, known): (Vec<Target>, Vec<TargetMemory>) = targets?.into_iter().unzip();
+    let known_any = known.iter().any(|known| known.role.is_some());
     let mean_speed = desired.length() / desired.duration();
     let kind = planner.kind.unwrap_or(DEFAULT_PLANNER);
-    let tracked =
-        (targets.iter().flatten()).any(|target: &crate::target::Target| target.ship().is_some());
+    let tracked = targets.iter().any(|target| target.ship().is_some());
     let default_compliance = if kind.facts().keeps_rules && tracked {
         Compliance::Rules
     } else {
@@ -87,13 +94,14 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     };
     Some(Scenario {
         title: title?.to_owned(),
+        time: time?,
         horizon: horizon?,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
         desired,
         alternatives,
-        targets: targets?,
+        targets,
         planner: kind,
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
         settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),
@@ -104,6 +112,10 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         thresholds: None,
         earth: plane.earth(),
         land,
+        memory: Memory {
+            targets: if known_any { known } else { Vec::new() },
+            ..Memory::default()
+        },
     })
 }
 
@@ -206,7 +218,16 @@ struct Mission {
     alternatives: Vec<Vec<Vector>>,
 }
 
-fn mission(mut table: Table, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
+fn mission(
+    mut table: Table,
+    own_speed: Option<f64>,
+    plane: &Plane,
+    time: Option<f64>,
+) -> Option<Mission> {
+    let start = match table.has("start_s") {
+        true => time.and_then(|now| table.number("start_s", limits::until(now))),
+        false => time,
+    };
     let alternatives = match table.take("alternatives") {
         Some(field) => alternatives(&field, plane),
         None => Some(Vec::new()),
@@ -220,8 +241,13 @@ fn mission(mut table: Table, own_speed: Option<f64>, plane: &Plane) -> Option<Mi
     table.finish();
     // every leg is long and fast enough by now
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
+    let elapsed = time? - start?;
     Some(Mission {
-        desired,
+        desired: if elapsed > 0.0 {
+            desired.remaining(elapsed)
+        } else {
+            desired
+        },
         alternatives: alternatives?,
     })
 }

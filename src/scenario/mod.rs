@@ -6,6 +6,7 @@ mod explicit_sets;
 pub mod import;
 mod land;
 mod limits;
+mod memory;
 mod plane;
 mod planner;
 mod targets;
@@ -14,6 +15,7 @@ mod tests;
 
 pub use crate::input::{Fault, InputError as ScenarioError};
 pub use land::Land;
+pub use memory::Memory;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -43,13 +45,15 @@ pub enum Compliance {
 pub struct Scenario {
     /// The scenario's title.
     pub title: String,
+    /// The present on the clock of the file, seconds. All other times count from it.
+    pub time: f64,
     /// Planning horizon, seconds.
     pub horizon: f64,
     /// Seconds after arrival for which own ship is observed at its berth; no effect on plans.
     pub arrival_hold: f64,
     /// Own ship.
     pub own_ship: OwnShip,
-    /// The desired trajectory.
+    /// The desired trajectory from the present on.
     pub desired: DesiredTrajectory,
     /// Other allowed paths, metres; for the path-time planner.
     pub alternatives: Vec<Vec<Vector>>,
@@ -77,6 +81,8 @@ pub struct Scenario {
     pub earth: Option<Georeference>,
     /// The land, if there is a map.
     pub land: Option<Land>,
+    /// What is known from before the present.
+    pub memory: Memory,
 }
 
 impl Scenario {

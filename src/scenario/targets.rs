@@ -3,16 +3,22 @@
 use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
-use super::explicit_sets;
-use super::limits;
 use super::plane::Plane;
-use crate::frame::radians_from_deg;
+use super::{explicit_sets, limits};
+use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
+use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
 use crate::input::{Field, Table};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::text::LINE;
+use crate::vessel::OwnShip;
 
-/// The list `targets`, which may be absent.
-pub(super) fn targets(root: &mut Table, plane: &Plane) -> Option<Vec<Target>> {
+/// The list `targets`, which may be absent, with what is known of each from before the present.
+pub(super) fn targets(
+    root: &mut Table,
+    plane: &Plane,
+    time: Option<f64>,
+    own: Option<&OwnShip>,
+) -> Option<Vec<(Target, TargetMemory)>> {
     let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };
@@ -36,14 +42,68 @@ pub(super) fn targets(root: &mut Table, plane: &Plane) -> Option<Vec<Target>> {
             );
         }
         let known = known(&mut table, plane);
+        let ship = match known.as_ref().map(|known| &known.motion) {
+            Some(Motion::Ship(ship)) => Some(ship),
+            _ => None,
+        };
+        let role = role(&mut table, time, own, ship);
         table.finish();
-        targets.push(text.zip(known).map(|(name, known)| Target {
-            name: name.to_owned(),
-            motion: known.motion,
-            representation: known.representation,
+        targets.push(text.zip(known).zip(role).map(|((name, known), role)| {
+            let target = Target {
+                name: name.to_owned(),
+                motion: known.motion,
+                representation: known.representation,
+            };
+            let memory = TargetMemory {
+                role,
+                ..TargetMemory::default()
+            };
+            (target, memory)
         }));
     }
     targets.into_iter().collect()
+}
+
+/// The role that own ship has had toward a tracked ship since some time; the outer `None` is a
+/// fault. Both ships then are where they would have come from on own ship's first course, and on
+/// the target's present one.
+fn role(
+    table: &mut Table,
+    time: Option<f64>,
+    own: Option<&OwnShip>,
+    ship: Option<&ShipTrack>,
+) -> Option<Option<Risk>> {
+    const MORE: [&str; 2] = ["role_since_s", "first_course_deg"];
+    let Some(field) = table.take("role") else {
+        for key in MORE {
+            table.forbid(key, "nothing: there is no role");
+        }
+        return Some(None);
+    };
+    let since = match table.has(MORE[0]) {
+        true => time.and_then(|now| table.number(MORE[0], limits::until(now))),
+        false => time,
+    };
+    let course = match table.take(MORE[1]) {
+        Some(field) => Some(field.number(limits::COURSE).map(heading_from_course_deg)?),
+        None => None,
+    };
+    let role = field.choice(&Role::DUTIES.map(|role| (role.name(), role)))?;
+    let Some(ship) = ship else {
+        return field.refuse("nothing: only a tracked ship has a role");
+    };
+    let (own, since) = (own?, since? - time?);
+    let heading = course.unwrap_or(own.pose.heading);
+    let at = |pose: Pose, speed: f64| SteadyShip {
+        pose: Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
+        speed,
+    };
+    Some(Some(Risk {
+        role,
+        time: since,
+        own: at(Pose::new(own.pose.position, heading), own.speed),
+        target: at(ship.pose, ship.speed),
+    }))
 }
 
 /// Motion and representation of a target.

@@ -10,7 +10,7 @@ use crate::colregs::{Role, Sectors};
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
-use crate::scenario::{Compliance, Scenario};
+use crate::scenario::{Compliance, Memory, Scenario};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
 use crate::vessel::{Hull, OwnShip};
@@ -297,6 +297,7 @@ fn scene(
     Ok(RandomEncounter {
         scenario: Scenario {
             title,
+            time: 0.0,
             horizon: meeting.horizon,
             own_ship: OwnShip {
                 pose: origin,
@@ -321,6 +322,7 @@ fn scene(
             thresholds: None,
             earth: None,
             land: None,
+            memory: Memory::default(),
         },
         kinds,
         rejected,

@@ -17,7 +17,7 @@ pub(crate) use samples::OwnSamples;
 pub use score::Scores;
 use score::scores;
 
-use super::Thresholds;
+use super::{TargetMemory, Thresholds};
 use crate::target::ShipTrack;
 
 /// A rule that own ship violates.
@@ -116,6 +116,7 @@ impl ComplianceReport {
     pub(crate) fn samples(
         track: &OwnSamples,
         target: &ShipTrack,
+        memory: Option<&TargetMemory>,
         thresholds: &Thresholds,
     ) -> EncounterSamples {
         let risk = &thresholds.risk;
@@ -123,7 +124,7 @@ impl ComplianceReport {
         let factor = thresholds.time_factor(track.hull().length);
         let soon = factor * risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);
-        track.encounter(target, far)
+        track.encounter(target, memory, far)
     }
 
     /// True without a rule violation and without a violated monitor.

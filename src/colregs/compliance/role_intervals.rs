@@ -41,7 +41,7 @@ fn past_and_clear(
 /// `evaluations` consecutive samples at risk (at once at the very first sample); the last of them
 /// decides which role. It lasts until
 /// the first of as many at which the target is past and clear. Neither own ship's manoeuvre nor a
-/// later change of bearing ends or changes it.
+/// later change of bearing ends or changes it. A role that is known from before begins when it did.
 pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> {
     let length = encounter.length();
     let mut intervals: Vec<RoleInterval> = Vec::new();
@@ -49,12 +49,25 @@ pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> 
     let mut active: Option<SteadyShip> = None;
     // number of consecutive samples that ask for a change, and the time of the first
     let (mut asking, mut since) = (0, 0.0);
+    let mut known = encounter.known_role();
     for (index, sample) in encounter.samples().iter().enumerate() {
         // before a change of speed at the very beginning
         let sample = &match index {
             0 => sample.at_speed(encounter.ordered_speed()),
             _ => *sample,
         };
+        if let Some(risk) = known {
+            if sample.time < risk.time && index + 1 < encounter.samples().len() {
+                continue;
+            }
+            known = None;
+            active = Some(risk.own);
+            intervals.push(RoleInterval {
+                role: risk.role,
+                from: risk.time,
+                until: sample.time,
+            });
+        }
         let change = match &active {
             Some(first) => past_and_clear(sample, first, length, t),
             None => at_risk(sample, encounter, t),

@@ -1,9 +1,9 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
-use crate::colregs::SteadyShip;
+use crate::colregs::{Risk, SteadyShip, TargetMemory};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
 /// Seconds between two samples; the joints of a trajectory are samples too.
@@ -108,6 +108,7 @@ impl EncounterSample {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EncounterSamples {
     samples: Vec<EncounterSample>,
+    known_role: Option<Risk>,
     own: Hull,
     ordered_speed: f64,
     target: Hull,
@@ -123,12 +124,21 @@ impl EncounterSamples {
         ordered_speed: f64,
         target: &ShipTrack,
     ) -> Self {
-        OwnSamples::along(trajectory, own, ordered_speed).encounter(target, f64::INFINITY)
+        OwnSamples::along(&[], trajectory, own, ordered_speed).encounter(
+            target,
+            None,
+            f64::INFINITY,
+        )
     }
 
     /// The samples in order of time, at least one.
     pub(crate) fn samples(&self) -> &[EncounterSample] {
         &self.samples
+    }
+
+    /// The role that own ship has had since before some sample, and both ships when it began.
+    pub fn known_role(&self) -> Option<&Risk> {
+        self.known_role.as_ref()
     }
 
     /// Length of the longer ship, metres.
@@ -163,13 +173,20 @@ pub(crate) struct OwnSamples {
 }
 
 impl OwnSamples {
-    pub(crate) fn along(trajectory: &Trajectory, hull: Hull, ordered_speed: f64) -> Self {
+    /// Along the motion so far, whose times are negative, and a trajectory from t = 0 on.
+    pub(crate) fn along(
+        sailed: &[Segment],
+        trajectory: &Trajectory,
+        hull: Hull,
+        ordered_speed: f64,
+    ) -> Self {
         let at = |time: f64| SteadyShip {
             pose: trajectory.pose_at(time),
             speed: trajectory.speed_at(time),
         };
+        let mut ships = sampled(sailed);
         let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
-        let ships: Vec<_> = times.map(|time| (time, at(time))).collect();
+        ships.extend(times.map(|time| (time, at(time))));
         let speeds = ships.iter().map(|(_, ship)| ship.speed);
         // a trajectory under forces may be faster between two samples
         let greatest_speed = match trajectory.steered() {
@@ -184,6 +201,27 @@ impl OwnSamples {
         }
     }
 
+    /// The motion so far alone, and own ship at its end.
+    pub(crate) fn of_past(
+        sailed: &[Segment],
+        now: SteadyShip,
+        hull: Hull,
+        ordered_speed: f64,
+    ) -> Self {
+        let mut ships = sampled(sailed);
+        ships.push((0.0, now));
+        Self {
+            greatest_speed: f64::INFINITY,
+            ships,
+            hull,
+            ordered_speed,
+        }
+    }
+
+    pub(crate) fn ordered_speed(&self) -> f64 {
+        self.ordered_speed
+    }
+
     pub(crate) fn hull(&self) -> Hull {
         self.hull
     }
@@ -194,30 +232,47 @@ impl OwnSamples {
     }
 
     /// All samples of a target, or the nearest sample alone if the hulls are never within `far`
-    /// metres.
-    pub(crate) fn encounter(&self, target: &ShipTrack, far: f64) -> EncounterSamples {
-        let nearest = far.is_finite().then(|| self.nearest(target)).flatten();
-        let samples = match nearest {
+    /// metres. With a memory, all samples from its first state on.
+    pub(crate) fn encounter(
+        &self,
+        target: &ShipTrack,
+        memory: Option<&TargetMemory>,
+        far: f64,
+    ) -> EncounterSamples {
+        let nominal = |time: f64| SteadyShip {
+            pose: target.pose_at(time),
+            speed: target.speed,
+        };
+        let near = || match memory {
+            None if far.is_finite() => self.nearest(target),
+            _ => None,
+        };
+        let samples = match near() {
             Some(sample) if sample.apart > far => vec![sample],
-            _ => (0..self.ships.len())
-                .map(|index| self.sample(index, target))
-                .collect(),
+            _ => {
+                let known = memory.and_then(TargetMemory::known_from).unwrap_or(0.0);
+                let known = (0..self.ships.len()).filter(|index| self.ships[*index].0 >= known);
+                known
+                    .map(|index| {
+                        let past = memory.and_then(|m| m.at(self.ships[index].0));
+                        let there = past.unwrap_or_else(|| nominal(self.ships[index].0));
+                        self.sample(index, &target.hull, there)
+                    })
+                    .collect()
+            }
         };
         EncounterSamples {
             samples,
+            known_role: memory.and_then(|memory| memory.role),
             own: self.hull,
             ordered_speed: self.ordered_speed,
             target: target.hull,
         }
     }
 
-    fn sample(&self, index: usize, track: &ShipTrack) -> EncounterSample {
+    fn sample(&self, index: usize, hull: &Hull, target: SteadyShip) -> EncounterSample {
         let (time, own) = self.ships[index];
-        let target = SteadyShip {
-            pose: track.pose_at(time),
-            speed: track.speed,
-        };
-        let between = Between::of(&self.hull, &own, &track.hull, &target);
+        let between = Between::of(&self.hull, &own, hull, &target);
         let apart = between.distance();
         let closing = own.velocity() - target.velocity();
         // negated on purpose: a NaN is a meeting
@@ -245,10 +300,17 @@ impl OwnSamples {
             let (time, own) = &self.ships[index];
             (target.pose_at(*time).position - own.pose.position).norm()
         };
-        let mut best = self.sample(0, target);
+        let sample = |index: usize| {
+            let there = SteadyShip {
+                pose: target.pose_at(self.ships[index].0),
+                speed: target.speed,
+            };
+            self.sample(index, &target.hull, there)
+        };
+        let mut best = sample(0);
         let mut open = vec![(0, self.ships.len() - 1)];
         while let Some((from, until)) = open.pop() {
-            let last = self.sample(until, target);
+            let last = sample(until);
             if last.apart < best.apart || last.apart == best.apart && last.time < best.time {
                 best = last;
             }
@@ -263,6 +325,25 @@ impl OwnSamples {
         }
         best.apart.is_finite().then_some(best)
     }
+}
+
+/// Samples of the motion so far: its joints, and every second from each.
+fn sampled(sailed: &[Segment]) -> Vec<(f64, SteadyShip)> {
+    let samples = sailed.iter().flat_map(|s| {
+        let steps = (s.duration / STEP_S)
+            .ceil()
+            .max(1.0)
+            .min(f64::from(MOST_SAMPLES));
+        (0..steps as usize).map(move |k| {
+            let time = s.start_time + STEP_S * k as f64;
+            let ship = SteadyShip {
+                pose: s.pose_at(time),
+                speed: s.speed,
+            };
+            (time, ship)
+        })
+    });
+    samples.filter(|(time, _)| *time < 0.0).collect()
 }
 
 /// Minkowski sum of two hulls about the offset of their centres: the intersection of four strips.
@@ -470,7 +551,7 @@ mod tests {
             length: 50.0,
             beam: 10.0,
         };
-        let track = OwnSamples::along(&own, hull, 6.0);
+        let track = OwnSamples::along(&[], &own, hull, 6.0);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {
             let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
@@ -485,10 +566,10 @@ mod tests {
                 domain: DomainKind::Hull,
             };
             let whole = EncounterSamples::along(&own, hull, 6.0, &target);
-            let samples = ComplianceReport::samples(&track, &target, standard());
+            let samples = ComplianceReport::samples(&track, &target, None, standard());
             let found = ComplianceReport::judge(&samples, standard());
             assert_eq!(found, ComplianceReport::judge(&whole, standard()));
-            match track.encounter(&target, 12e3).samples().len() {
+            match track.encounter(&target, None, 12e3).samples().len() {
                 1 => few += 1,
                 _ => all += 1,
             }

@@ -1,0 +1,444 @@
+//! What a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles, and the
+//! plan that own ship follows.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{SegmentDocument, StartDocument};
+use super::plan::{PlanDocument, segment_document, start};
+use super::targets::ShipDocument;
+use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
+use crate::colregs::{Risk, Role, SteadyShip, TargetMemory, Thresholds};
+use crate::frame::{
+    Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians,
+    heading_from_course_deg, radians_from_deg, wrap,
+};
+use crate::geometry::ConvexPolygon;
+use crate::pipeline::Run;
+use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
+use crate::scenario::{Memory, Scenario};
+use crate::target::{DomainKind, ShipTrack, Uncertainty};
+use crate::tolerance::{self, POSITION_SIGMAS};
+use crate::trajectory::Segment;
+use crate::vessel::Hull;
+
+/// Own ship may be this far from where the previous plan has it: own lengths, and degrees.
+const OFF_PLAN_LENGTHS: f64 = 1.0;
+const OFF_PLAN_DEG: f64 = 20.0;
+
+/// Degrees. A target whose course has changed by more may give own ship another role.
+const NEW_COURSE_DEG: f64 = 20.0;
+
+/// Metres per second, and metres: rounding of a target's state in a file.
+const ASSUMED: f64 = 1e-6;
+
+/// Seconds of motion that are kept before the first role.
+const BEFORE_S: f64 = 2.0;
+
+/// What is known from before the plan. Times are negative.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct MemoryDocument {
+    pub sailed: Vec<SegmentDocument>,
+    pub targets: Vec<TargetMemoryDocument>,
+}
+
+/// What is known of one target from before the plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TargetMemoryDocument {
+    pub name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<KnownRoleDocument>,
+    pub track: Vec<StateDocument>,
+}
+
+/// A role that own ship has had since before the plan, and both ships when it began.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KnownRoleDocument {
+    pub role: String,
+    pub own_ship: StateDocument,
+    pub target: StateDocument,
+}
+
+/// A ship at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StateDocument {
+    #[serde(flatten)]
+    pub at: StartDocument,
+    pub speed_mps: f64,
+}
+
+/// A manoeuvre by the rules.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PlannedManoeuvreDocument {
+    pub begins_s: f64,
+    pub returns_s: f64,
+    pub joins_s: f64,
+    pub first_course_deg: f64,
+    pub turn_deg: f64,
+}
+
+/// Why a scenario cannot be planned from a previous plan.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotPrevious {
+    /// The plan of another scenario.
+    #[error("a plan of \"{found}\"; allowed: a plan of \"{title}\"")]
+    OtherScenario {
+        /// Title in the plan.
+        found: String,
+        /// Title of the scenario.
+        title: String,
+    },
+    /// A plan without lines and arcs.
+    #[error("a document without a plan of lines and arcs; allowed: one with `trajectory.segments`")]
+    NoMotion,
+    /// A plan of another time.
+    #[error("a plan for time_s {from} to {until}; allowed: one that holds at time_s {now}")]
+    OtherTime {
+        /// Seconds on the clock of the file.
+        from: f64,
+        /// Seconds on the clock of the file.
+        until: f64,
+        /// The scenario's time.
+        now: f64,
+    },
+    /// Own ship is not where the plan has it.
+    #[error(
+        "own ship is {metres:.1} m and {degrees:.1} degrees off the plan; allowed: {most} m and {OFF_PLAN_DEG} degrees"
+    )]
+    OffPlan {
+        /// Metres.
+        metres: f64,
+        /// Degrees.
+        degrees: f64,
+        /// Allowed metres: own length.
+        most: f64,
+    },
+}
+
+impl MemoryDocument {
+    /// The memory of a run; `None` where nothing was known.
+    pub(super) fn of(run: &Run) -> Option<Self> {
+        let memory = &run.scenario.memory;
+        let known = !memory.sailed.is_empty() || !memory.targets.is_empty();
+        let targets = run.scenario.targets.iter().zip(&memory.targets);
+        known.then(|| Self {
+            sailed: memory.sailed.iter().map(segment_document).collect(),
+            targets: targets
+                .map(|(target, known)| TargetMemoryDocument {
+                    name: target.name.clone(),
+                    role: known.role.as_ref().map(|risk| KnownRoleDocument {
+                        role: risk.role.name().to_owned(),
+                        own_ship: state_document(risk.time, &risk.own),
+                        target: state_document(risk.time, &risk.target),
+                    }),
+                    track: (known.track.iter())
+                        .map(|(time, ship)| state_document(*time, ship))
+                        .collect(),
+                })
+                .collect(),
+        })
+    }
+}
+
+impl From<&PlannedManoeuvre> for PlannedManoeuvreDocument {
+    fn from(manoeuvre: &PlannedManoeuvre) -> Self {
+        Self {
+            begins_s: manoeuvre.begins,
+            returns_s: manoeuvre.returns,
+            joins_s: manoeuvre.joins,
+            first_course_deg: course_deg_from_heading(manoeuvre.first_heading),
+            turn_deg: clockwise_deg(manoeuvre.turn),
+        }
+    }
+}
+
+impl From<&PlannedManoeuvreDocument> for PlannedManoeuvre {
+    fn from(document: &PlannedManoeuvreDocument) -> Self {
+        Self {
+            begins: document.begins_s,
+            returns: document.returns_s,
+            joins: document.joins_s,
+            first_heading: heading_from_course_deg(document.first_course_deg),
+            turn: -radians_from_deg(document.turn_deg),
+        }
+    }
+}
+
+/// What a plan leaves to its scenario at a later time.
+///
+/// Roles last until the target is past and clear; a role that has begun since is found on the
+/// motion so far. A target whose course has changed by more than 20 degrees gives own ship the role
+/// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)).
+/// O(seconds sailed × targets).
+pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, NotPrevious> {
+    if previous.scenario != scenario.title {
+        return Err(NotPrevious::OtherScenario {
+            found: previous.scenario.clone(),
+            title: scenario.title.clone(),
+        });
+    }
+    let documents = previous
+        .trajectory
+        .as_ref()
+        .and_then(|t| t.segments.as_ref());
+    let planned: Vec<Segment> = (documents.into_iter().flatten()).map(segment).collect();
+    let (Some(last), true) = (planned.last(), planned.iter().all(Segment::is_valid)) else {
+        return Err(NotPrevious::NoMotion);
+    };
+    let elapsed = scenario.time - previous.time_s;
+    if !(elapsed >= 0.0 && elapsed <= last.end_time()) {
+        return Err(NotPrevious::OtherTime {
+            from: previous.time_s,
+            until: previous.time_s + last.end_time(),
+            now: scenario.time,
+        });
+    }
+    let shifted = |s: Segment| Segment {
+        start_time: s.start_time - elapsed,
+        ..s
+    };
+    let remainder: Vec<Segment> = (planned.iter())
+        .filter(|s| s.end_time() > elapsed)
+        .map(|s| shifted(s.between(elapsed, s.end_time())))
+        .collect();
+    let own = &scenario.own_ship;
+    let then = remainder.first().map_or(last.end(), |s| s.start);
+    let metres = (then.position - own.pose.position).norm();
+    let degrees = deg_from_radians(wrap(then.heading - own.pose.heading).abs());
+    let most = OFF_PLAN_LENGTHS * own.hull.length;
+    if !(metres <= most && degrees <= OFF_PLAN_DEG) {
+        return Err(NotPrevious::OffPlan {
+            metres,
+            degrees,
+            most,
+        });
+    }
+    let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
+    let mut sailed: Vec<Segment> = before.map(segment).map(shifted).collect();
+    let since = planned.iter().filter(|s| s.start_time < elapsed);
+    sailed.extend(since.map(|s| shifted(s.between(s.start_time, elapsed))));
+
+    let now = SteadyShip {
+        pose: own.pose,
+        speed: remainder.first().map_or(own.speed, |s| s.speed),
+    };
+    let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
+    let known = scenario.targets.iter().enumerate().map(|(index, target)| {
+        let mut memory = target_memory(previous, &target.name, elapsed);
+        let Some(ship) = target.ship() else {
+            return TargetMemory::default();
+        };
+        memory.role = match scenario.memory.target(index).and_then(|known| known.role) {
+            Some(given) => Some(given),
+            None => role_now(&samples, now, ship, &memory),
+        };
+        memory
+    });
+    let mut targets: Vec<TargetMemory> = known.collect();
+    forget(&mut sailed, &mut targets);
+    let manoeuvres = previous.manoeuvres.iter();
+    let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
+        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
+        .filter(|m| m.joins > 0.0)
+        .collect();
+    let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S && m.returns > 0.0;
+    let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
+    Ok(Memory {
+        under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
+            first_heading: manoeuvre.first_heading,
+            turn: manoeuvre.turn,
+            heading: steered.end().heading,
+            speed: steered.speed,
+        }),
+        escape: (previous.escape.as_ref())
+            .filter(|escape| escape.held_until_s > elapsed)
+            .map(|escape| Escape {
+                held_until: escape.held_until_s - elapsed,
+                turn: -radians_from_deg(escape.turn_deg),
+                speed: escape.speed_mps,
+            }),
+        left: left(previous, scenario, elapsed),
+        sailed,
+        remainder,
+        manoeuvres,
+        targets,
+    })
+}
+
+/// Names of the targets whose present state is outside the sets that the previous plan assumed: a
+/// velocity that they would not take, or a place that they would not reach.
+fn left(previous: &PlanDocument, scenario: &Scenario, elapsed: f64) -> Vec<String> {
+    let left = |name: &str, ship: &ShipTrack| {
+        let mut then = previous.targets.iter().filter(|target| target.name == name);
+        let then = then.next_back()?.ship.as_ref().map(track)?;
+        let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
+        let set = Uncertainty::new(ConvexPolygon::point(then.pose.position), velocities);
+        let now = set.outer_velocities_after(elapsed);
+        let reached = set.outer_section(elapsed);
+        let known = POSITION_SIGMAS * (then.position_std + ship.position_std);
+        let stays = now.signed_distance(ship.velocity()) <= ASSUMED
+            && reached.signed_distance(ship.pose.position) <= known + ASSUMED * (1.0 + elapsed);
+        Some(!stays)
+    };
+    let ships = scenario
+        .targets
+        .iter()
+        .filter_map(|target| Some((target, target.ship()?)));
+    ships
+        .filter(|(target, ship)| left(&target.name, ship).unwrap_or(false))
+        .map(|(target, _)| target.name.clone())
+        .collect()
+}
+
+/// The tracked ship of a document; its domain is unknown.
+fn track(ship: &ShipDocument) -> ShipTrack {
+    ShipTrack {
+        pose: Pose::new(
+            Vector::new(ship.position.east_m, ship.position.north_m),
+            heading_from_course_deg(ship.course_deg),
+        ),
+        speed: ship.speed_mps,
+        hull: Hull {
+            length: ship.length_m,
+            beam: ship.beam_m,
+        },
+        position_std: ship.position_std_m,
+        speed_spread: ship.speed_spread_mps,
+        course_spread: radians_from_deg(ship.course_spread_deg),
+        turn_rate: radians_from_deg(ship.turn_rate_deg_per_s),
+        domain: DomainKind::Hull,
+    }
+}
+
+/// What the previous plan knows of a target.
+fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMemory {
+    let before = previous.memory.iter().flat_map(|memory| &memory.targets);
+    let before = before.filter(|target| target.name == name).next_back();
+    let mut memory = TargetMemory::default();
+    if let Some(before) = before {
+        memory.role = before.role.as_ref().and_then(|known| risk(known, elapsed));
+        memory.track = (before.track.iter())
+            .map(|state| steady(state, elapsed))
+            .collect();
+    }
+    let then = previous.targets.iter().find(|target| target.name == name);
+    if let Some(ship) = then.and_then(|target| target.ship.as_ref()) {
+        memory.track.push((-elapsed, steady_ship(&track(ship))));
+    }
+    memory
+}
+
+/// The role that own ship has now.
+fn role_now(
+    samples: &OwnSamples,
+    now: SteadyShip,
+    ship: &ShipTrack,
+    memory: &TargetMemory,
+) -> Option<Risk> {
+    let thresholds = Thresholds::standard();
+    let encounter = ComplianceReport::samples(samples, ship, Some(memory), thresholds);
+    let last = roles(&encounter, thresholds).into_iter().next_back();
+    let lasting = last
+        .filter(|interval| interval.until >= 0.0)
+        .map(|interval| {
+            let known = memory.role.filter(|risk| risk.time == interval.from);
+            known.unwrap_or_else(|| {
+                let begun = encounter.samples().iter().find(|s| s.time >= interval.from);
+                let (own, target) = begun.map_or((now, steady_ship(ship)), |s| (s.own, s.target));
+                Risk {
+                    role: interval.role,
+                    time: interval.from,
+                    own,
+                    target,
+                }
+            })
+        });
+    let turned = |risk: &Risk| wrap(ship.pose.heading - risk.target.pose.heading).abs();
+    match lasting {
+        Some(risk)
+            if turned(&risk) > radians_from_deg(NEW_COURSE_DEG)
+                && risk.role != Role::Overtaking =>
+        {
+            let present = OwnSamples::of_past(&[], now, samples.hull(), samples.ordered_speed());
+            let present = ComplianceReport::samples(&present, ship, None, thresholds);
+            let role = roles(&present, thresholds)
+                .first()
+                .map(|interval| interval.role);
+            Some(match role {
+                Some(role) if role != risk.role => Risk {
+                    role,
+                    time: 0.0,
+                    own: now,
+                    target: steady_ship(ship),
+                },
+                _ => risk,
+            })
+        }
+        other => other,
+    }
+}
+
+fn steady_ship(ship: &ShipTrack) -> SteadyShip {
+    SteadyShip {
+        pose: ship.pose,
+        speed: ship.speed,
+    }
+}
+
+/// Drops what lies before the first role that lasts.
+fn forget(sailed: &mut Vec<Segment>, targets: &mut [TargetMemory]) {
+    let begun = targets.iter().filter_map(|target| target.role);
+    let from = begun.map(|risk| risk.time).fold(0.0, f64::min) - BEFORE_S;
+    sailed.retain(|s| s.end_time() > from);
+    if let Some(first) = sailed.first_mut() {
+        *first = first.between(from, first.end_time());
+    }
+    for target in targets {
+        let kept = target.track.partition_point(|(time, _)| *time <= from);
+        target.track.drain(..kept.saturating_sub(1));
+    }
+}
+
+fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
+    StateDocument {
+        at: start(ship.pose, time),
+        speed_mps: ship.speed,
+    }
+}
+
+fn pose(at: &StartDocument) -> Pose {
+    Pose::new(
+        Vector::new(at.east_m, at.north_m),
+        heading_from_course_deg(at.course_deg),
+    )
+}
+
+fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
+    let ship = SteadyShip {
+        pose: pose(&state.at),
+        speed: state.speed_mps,
+    };
+    (state.at.t_s - elapsed, ship)
+}
+
+fn risk(known: &KnownRoleDocument, elapsed: f64) -> Option<Risk> {
+    let role = Role::DUTIES
+        .into_iter()
+        .find(|role| role.name() == known.role)?;
+    let (time, own) = steady(&known.own_ship, elapsed);
+    Some(Risk {
+        role,
+        time,
+        own,
+        target: steady(&known.target, elapsed).1,
+    })
+}
+
+fn segment(document: &SegmentDocument) -> Segment {
+    Segment {
+        start: pose(&document.start),
+        start_time: document.start.t_s,
+        duration: document.duration_s,
+        speed: document.speed_mps,
+        turn_rate: -radians_from_deg(document.turn_rate_deg_per_s),
+    }
+}

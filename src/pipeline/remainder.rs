@@ -1,0 +1,69 @@
+//! The remainder of the plan that own ship follows, as a candidate beside the new plan.
+
+use std::cmp::Ordering;
+
+use super::relaxation::Attempt;
+use super::rules;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::planner::{Outcome, Plan, Planned, Problem};
+use crate::scenario::{Compliance, Scenario};
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// A new plan replaces the remainder where it costs less than this fraction of it.
+const WORTH_A_CHANGE: f64 = 0.98;
+
+/// The remainder, where it is better than the new plan of an attempt: where there is no new plan,
+/// where the new plan breaks rules that the remainder keeps, where a target has left the set that
+/// it was assumed to stay in, and where the new plan is hardly cheaper. Only a remainder that is
+/// clear of the same sets, in time, and starts at own ship's pose.
+pub(super) fn better_remainder(
+    scenario: &Scenario,
+    problem: &Problem,
+    attempt: &Attempt,
+) -> Option<Planned> {
+    let plan = remainder(scenario, problem, &attempt.obstacles)?;
+    let breaks = |plan: &Plan| match scenario.compliance {
+        Compliance::Rules => rules::breaks(scenario, &plan.trajectory),
+        _ => 0,
+    };
+    let keep = match attempt.planned.outcome.plan() {
+        None => true,
+        Some(_) if !scenario.memory.left.is_empty() => true,
+        Some(new) => match breaks(&plan).cmp(&breaks(new)) {
+            Ordering::Less => true,
+            Ordering::Greater => false,
+            Ordering::Equal => new.cost >= WORTH_A_CHANGE * plan.cost,
+        },
+    };
+    keep.then(|| Planned {
+        escape: scenario.memory.escape,
+        manoeuvres: scenario.memory.manoeuvres.clone(),
+        ..Planned::of(Outcome::Solved(plan))
+    })
+}
+
+fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> Option<Plan> {
+    let mut motion = scenario.memory.remainder.clone();
+    let (own, first) = (&scenario.own_ship, motion.first_mut()?);
+    let off = (first.start.position - own.pose.position).norm();
+    let turned = crate::frame::wrap(first.start.heading - own.pose.heading).abs();
+    if !(off <= tolerance::JOINT_M && turned <= tolerance::joint_rad(own.turning_radius)) {
+        return None;
+    }
+    first.start = own.pose;
+    first.start_time = 0.0;
+    let last = motion.last()?;
+    let arrives = (last.end().position - problem.desired.end()).norm() <= tolerance::ARRIVAL_M;
+    let enters = |set: &Obstacle| {
+        let enters = |s: &Segment| set.first_contact(s, tolerance::TOUCH_M).is_some();
+        motion.iter().any(enters)
+    };
+    let land = |s: &Segment| problem.land_obstacle.meets(s, tolerance::TOUCH_M);
+    let fits = arrives
+        && last.end_time() <= problem.horizon
+        && !obstacles.iter().any(enters)
+        && !motion.iter().any(land);
+    fits.then(|| Plan::measured(problem, motion, None))
+        .flatten()
+}

@@ -1,0 +1,34 @@
+//! What is known from before a scenario's time: roles, own ship's motion, and the plan that it
+//! follows.
+
+use crate::colregs::TargetMemory;
+use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
+use crate::trajectory::Segment;
+
+/// What is known from before the scenario's time. Every time counts from the scenario's time and is
+/// negative before it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Memory {
+    /// Own ship's motion up to t = 0, in order of time. Later segments need not begin exactly where
+    /// earlier ones end.
+    pub sailed: Vec<Segment>,
+    /// The remainder of the plan that own ship follows, from t = 0 on; empty without one.
+    pub remainder: Vec<Segment>,
+    /// The manoeuvres of the remainder.
+    pub manoeuvres: Vec<PlannedManoeuvre>,
+    /// The escape of the remainder, where own ship still holds course and speed.
+    pub escape: Option<Escape>,
+    /// The manoeuvre that own ship carries out.
+    pub under_way: Option<UnderWay>,
+    /// Names of the targets that have left the sets which the last plan assumed.
+    pub left: Vec<String>,
+    /// One per target in the scenario's order, or none at all.
+    pub targets: Vec<TargetMemory>,
+}
+
+impl Memory {
+    /// What is known of a target; nothing where no memory is.
+    pub fn target(&self, index: usize) -> Option<&TargetMemory> {
+        self.targets.get(index)
+    }
+}
