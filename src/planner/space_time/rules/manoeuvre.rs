@@ -10,7 +10,7 @@
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, SMALL_TURN, Thresholds,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -22,7 +22,7 @@ use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{first_contact, first_met};
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::complies;
+use crate::planner::space_time::rules::compliance::{broken_rules, complies};
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, Problem};
 use crate::tolerance::{self, TOUCH_M};
@@ -68,9 +68,9 @@ const HALVINGS: usize = 5;
 /// Seconds by which a stand-on ship acts before the latest certified escape.
 const SPARE_S: f64 = 40.0;
 
-/// Seconds after the first instant at which a stand-on ship may act: more than the step of the
-/// judges' samples, so that one of them sees it.
-const MAY_S: f64 = 1.5;
+/// Seconds: more than the step of the judges' samples, so that one of them sees an alteration that
+/// is in time.
+const SAMPLE_S: f64 = 1.5;
 
 /// Seconds by which a stand-on ship that may act does so earlier, where that is cheaper.
 const EARLIER_S: f64 = 60.0;
@@ -146,6 +146,10 @@ struct Passing<'a> {
     hulls: PolytopeObstacle,
 }
 
+const FROM_ALL: fn(&Passing) -> bool = |_| true;
+const FROM_KEPT_CLEAR: fn(&Passing) -> bool = |p| p.encountered.role.duties().keeps_clear;
+const FROM_NONE: fn(&Passing) -> bool = |_| false;
+
 /// A plan by the rules.
 pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
@@ -153,12 +157,48 @@ pub(crate) struct RulePlan {
     pub escape: Option<Escape>,
 }
 
+/// Targets that are passed in one manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Together {
+    /// Those whose risk has begun when the first set would be met.
+    AtContact,
+    /// Those whose risk has begun when own ship is on the route again.
+    UntilJoined,
+    All,
+}
+
 /// The cheapest motion of this family for each conflict of the nominal motion, one after another:
-/// the next manoeuvre begins when own ship is on the route again. Where that fails, one manoeuvre
-/// for all. `None` where neither is found.
+/// the next manoeuvre begins when own ship is on the route again. Of several targets those are
+/// taken together that leave the fewest rules broken. `None` where no manoeuvre is found.
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
+    clock: Clock,
+) -> Option<RulePlan> {
+    let several = context.problem.encountered.len() > 1;
+    let mut best: Option<(usize, RulePlan)> = None;
+    for together in [Together::AtContact, Together::UntilJoined, Together::All] {
+        let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
+            continue;
+        };
+        let broken = match several {
+            true => broken_rules(context.problem, &plan.motion),
+            false => 0,
+        };
+        if best.as_ref().is_none_or(|(least, _)| broken < *least) {
+            best = Some((broken, plan));
+        }
+        if broken == 0 || clock.is_up() {
+            break;
+        }
+    }
+    best.map(|(_, plan)| plan)
+}
+
+fn one_by_one(
+    context: &Context,
+    nominal_motion: &[Segment],
+    together: Together,
     clock: Clock,
 ) -> Option<RulePlan> {
     let encountered = context.problem.encountered;
@@ -171,44 +211,45 @@ pub(crate) fn by_the_rules(
         let grounding = land::first_contact(context.problem.land_obstacle, motion);
         contact.into_iter().chain(grounding).reduce(f64::min)
     };
-    let one_by_one = || {
-        let mut kept = RulePlan {
-            motion: nominal_motion.to_vec(),
-            escape: None,
+    let mut kept = RulePlan {
+        motion: nominal_motion.to_vec(),
+        escape: None,
+    };
+    let mut from = 0.0;
+    for step in 0..=encountered.len() {
+        let Some(contact) = first(&kept.motion) else {
+            return Some(kept);
         };
-        let mut from = 0.0;
-        for step in 0..=encountered.len() {
-            let Some(contact) = first(&kept.motion) else {
-                return Some(kept);
-            };
-            if contact < from {
-                return None;
-            }
-            let ahead = |e: &&Encountered| e.latched <= contact && e.tcpa > from;
-            let group: Vec<Encountered> = encountered.iter().filter(ahead).copied().collect();
-            let all = group.len() == encountered.iter().filter(|e| e.tcpa > from).count();
-            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
-            if step == 0 {
-                let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-                kept.escape = (stands_on && holds).then(|| found.escape());
-            }
-            from = found.joined;
-            kept.motion = found.motion;
+        if contact < from {
+            return None;
         }
-        None
-    };
-    let at_once = || {
-        let contact = first(nominal_motion)?;
-        let motion = (nominal_motion, 0.0);
-        let found = resolved(context, encountered, true, motion, contact, clock)?;
-        let stands_on = context.problem.duty().stands_on;
-        let escape = (stands_on && holds).then(|| found.escape());
-        Some(RulePlan {
-            motion: found.motion,
-            escape,
-        })
-    };
-    one_by_one().or_else(at_once)
+        let left = encountered.iter().filter(|e| e.tcpa > from);
+        let mut until = match together {
+            Together::All => f64::INFINITY,
+            _ => contact,
+        };
+        let (group, found) = loop {
+            let group: Vec<_> = left
+                .clone()
+                .filter(|e| e.latched <= until)
+                .copied()
+                .collect();
+            let all = group.len() == left.clone().count();
+            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
+            let begun = |e: &Encountered| e.latched > until && e.latched < found.joined;
+            if together != Together::UntilJoined || !left.clone().any(begun) {
+                break (group, found);
+            }
+            until = found.joined;
+        };
+        if step == 0 {
+            let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+            kept.escape = (stands_on && holds).then(|| found.escape());
+        }
+        from = found.joined;
+        kept.motion = found.motion;
+    }
+    None
 }
 
 /// A manoeuvre toward some targets, from a motion that is on the route from a time on.
@@ -246,8 +287,8 @@ struct Manoeuvres<'s, 'a> {
     to_the_end: Vec<bool>,
     passing: Vec<Passing<'s>>,
     clock: Clock,
-    /// True where no target is passed nearer than a length, Rule 8(d).
-    keeps_a_length: bool,
+    /// True for a target that is not passed nearer than a length, Rule 8(d).
+    keeps_a_length: fn(&Passing) -> bool,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     unit: f64,
 }
@@ -292,7 +333,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             to_the_end,
             passing: passing.collect(),
             clock,
-            keeps_a_length: true,
+            keeps_a_length: FROM_ALL,
             unit: (radius / ManoeuvreSpeeds::of(context.problem).normal / NORMAL_TURN_S).max(1.0),
         }
     }
@@ -322,11 +363,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         if self.hurries() {
             return None;
         }
-        let may = self.may_act() + MAY_S;
+        let may = self.may_act() + SAMPLE_S;
         let mut latest = self.latest_escape(contact);
         if latest.is_none_or(|latest| latest < may) {
             // to hold on for as long as it must is worth more than a length
-            self.keeps_a_length = false;
+            self.keeps_a_length = FROM_NONE;
             latest = self.latest_escape(contact);
         }
         let mut latest = latest?;
@@ -336,7 +377,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let near = self.comes_within(ACT_LENGTHS);
         let wanted = (latest - SPARE_S).min(near).max(may);
         // it cannot hold on for as long as it must: then not longer than is safe
-        let wanted = if latest < may - MAY_S {
+        let wanted = if latest < may - SAMPLE_S {
             latest - SPARE_S
         } else {
             wanted
@@ -344,7 +385,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
         let earliest = (leave - EARLIER_S).max(may.min(leave)).max(self.from);
-        self.keeps_a_length = true;
+        self.keeps_a_length = FROM_ALL;
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
             let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
@@ -376,21 +417,34 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         &mut self,
         find: impl Fn(&Self) -> Option<Found>,
     ) -> Option<Found> {
-        let found = find(self);
-        if found.is_some() || self.clock.is_up() {
-            return found;
+        let mut tried = usize::MAX;
+        for keeps_a_length in [FROM_ALL, FROM_KEPT_CLEAR, FROM_NONE] {
+            let number = self.passing.iter().filter(|p| keeps_a_length(p)).count();
+            if number == tried {
+                continue;
+            }
+            tried = number;
+            self.keeps_a_length = keeps_a_length;
+            let found = find(self);
+            if found.is_some() || self.clock.is_up() {
+                return found;
+            }
         }
-        self.keeps_a_length = false;
-        find(self)
+        None
     }
 
-    /// Latest time of the first alteration that is in ample time for every target, seconds.
+    /// Latest time of the first alteration that is in ample time for every target, and after which
+    /// a turn can soon be seen, seconds.
     fn ample(&self) -> f64 {
-        let ample = Thresholds::STANDARD.ample_time(self.problem().own.hull.length);
+        let (limits, own) = (Thresholds::standard(), self.problem().own);
+        let ample = limits.ample_time(own.hull.length);
+        let soon = limits.time_factor(own.hull.length) * limits.monitor.response();
+        let turning = SMALL_TURN * own.turning_radius / ManoeuvreSpeeds::of(self.problem()).normal;
         let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
         let latest = self.passing.iter().filter(keeps_clear).map(|p| {
             let e = p.encountered;
-            e.tcpa - ample.min(e.tcpa - e.latched - REACT_S)
+            let seen = e.latched + (soon - turning - SAMPLE_S).max(REACT_S);
+            (e.tcpa - ample).max(e.latched + REACT_S).min(seen)
         });
         latest.fold(f64::INFINITY, f64::min).max(0.0)
     }
@@ -692,33 +746,18 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     ) -> Option<(Vec<Segment>, f64)> {
         let (problem, route) = (self.problem(), self.context.route);
         let mut motion = out.motion.clone();
-        let last = motion.last_mut()?;
-        if after > 0.0 {
-            if last.is_arc() {
-                let mut chain = Chain::new(
-                    last.end(),
-                    last.end_time(),
-                    last.speed,
-                    problem.own.turning_radius,
-                );
-                chain.line(after * last.speed);
-                motion.extend(chain.segments);
-            } else {
-                last.duration += after;
-            }
-        }
-        let last = motion.last()?;
-        let (pose, time) = (last.end(), last.end_time());
-        let mut joined = time;
-        if let FirstAlteration::Slow { .. } = out.first {
+        let joined;
+        if let FirstAlteration::Slow { speed } = out.first {
             let slow: f64 = motion[out.before..].iter().map(Segment::length).sum();
-            let along = self.along_at(out.leave) + slow;
-            // the last segment may lead straight on where the route turns
-            if !self.is_on_route(pose, along) {
-                return None;
-            }
-            motion.extend(route.follow(along, time));
+            let along = self.along_at(out.leave);
+            motion.truncate(out.before);
+            let along = route.run(along, out.leave, slow + after * speed, speed, &mut motion);
+            joined = motion.last()?.end_time();
+            motion.extend(route.follow(along, joined));
         } else {
+            let last = motion.last_mut()?;
+            last.duration += after;
+            let (pose, time) = (last.end(), last.end_time());
             let near = problem.desired.nearest(pose.position, time, 0.0);
             let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
             let mut backs =
@@ -732,10 +771,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             joined = self.joins(&back)?;
             motion.extend(back);
         }
-        // the route has segments of its own, as short as its corners are
-        let manoeuvre = motion[out.before..].iter();
-        let mut manoeuvre = manoeuvre.take_while(|s| s.start_time < joined);
-        let tidy = manoeuvre.all(|s| s.duration >= LEAST_S);
+        // also at the speed to be on time again; but the route has segments of its own, as short as
+        // its corners are
+        let begun = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
+        let changes = |pair: &[Segment]| pair[0].speed != pair[1].speed;
+        let end = begun + usize::from(motion[begun..].windows(2).next().is_some_and(changes));
+        let tidy = (motion[out.before..end].iter()).all(|s| s.duration >= LEAST_S);
         let in_time = motion.last()?.end_time() <= problem.horizon;
         (tidy && in_time).then_some((motion, joined))
     }
@@ -779,7 +820,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         while passed <= horizon {
             let there = position + velocity * (passed - time);
             let clear = |p: &Passing| p.within_a_length.slack(there, passed).value > 0.0;
-            if !self.keeps_a_length || self.passing.iter().all(clear) {
+            if self.kept_off().all(clear) {
                 return Some(passed);
             }
             passed += STEP_S;
@@ -791,7 +832,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     fn is_clear(&self, segments: &[Segment]) -> bool {
         first_met(self.context.proxies, segments).is_none()
             && !land::meets(self.problem().land_obstacle, segments)
-            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
+            && !segments.iter().any(|s| self.is_within_a_length(s))
     }
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
@@ -809,9 +850,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             && complies(self.problem(), &motion[begun..], off_route)
     }
 
+    /// The targets that are not passed nearer than a length.
+    fn kept_off(&self) -> impl Iterator<Item = &Passing<'s>> {
+        self.passing.iter().filter(|p| (self.keeps_a_length)(p))
+    }
+
     fn is_within_a_length(&self, segment: &Segment) -> bool {
-        let mut passing = self.passing.iter();
-        passing.any(|p| contact::first_contact(&p.within_a_length, segment, TOUCH_M).is_some())
+        self.kept_off()
+            .any(|p| contact::first_contact(&p.within_a_length, segment, TOUCH_M).is_some())
     }
 
     fn is_clear_to_the_end(&self, segments: &[Segment]) -> bool {
@@ -822,7 +868,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             !self.to_the_end[proxy.obstacle]
                 || segments.iter().all(|s| proxy.first_contact(s).is_none())
         }) && !(all && land::meets(land, segments))
-            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
+            && !segments.iter().any(|s| self.is_within_a_length(s))
     }
 
     /// True for a pose of the route after this many metres.
