@@ -58,6 +58,10 @@ const LEAST_S: f64 = 3.0;
 /// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
 const SPEED_PRICE: f64 = 2.0;
 
+/// Ratio of the costs above which own ship is on time again by a change of speed for less than
+/// [`LEAST_S`].
+const SHORT_PRICE: f64 = 2.0;
+
 /// Rounds of the pattern search.
 const ROUNDS: usize = 7;
 
@@ -105,16 +109,11 @@ struct Found {
     motion: Vec<Segment>,
     /// Seconds at which own ship is on the route again.
     joined: f64,
-    /// Cost, m².
-    cost: f64,
+    /// Cost by which manoeuvres are compared, m².
+    rank: f64,
 }
 
 impl Found {
-    /// Cost by which manoeuvres are compared: a turn is preferred over less speed.
-    fn rank(&self) -> f64 {
-        rank(&self.manoeuvre.first, self.cost)
-    }
-
     fn escape(&self) -> Escape {
         let (turn, speed) = match self.manoeuvre.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
@@ -127,13 +126,6 @@ impl Found {
             turn,
             speed: speed.or(then.map(|s| s.speed)).unwrap_or(0.0),
         }
-    }
-}
-
-fn rank(first: &FirstAlteration, cost: f64) -> f64 {
-    match first {
-        FirstAlteration::Turn { .. } => cost,
-        FirstAlteration::Slow { .. } => SPEED_PRICE * cost,
     }
 }
 
@@ -611,10 +603,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         for (index, out) in outs.iter().enumerate() {
             let first = out.first;
             for (after, back) in self.endings(out) {
-                let Some((motion, _)) = self.completed(out, (after, back)) else {
+                let Some((motion, joined)) = self.completed(out, (after, back)) else {
                     continue;
                 };
-                let rank = rank(&first, self.problem().error_of(&motion));
+                let rank = self.rank(&first, &motion, joined);
                 if rank.is_finite() {
                     let manoeuvre = Manoeuvre {
                         leave,
@@ -628,16 +620,29 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let candidates = candidates.into_iter().take_while(|_| !self.clock.is_up());
-        candidates.into_iter().find_map(|(_, out, manoeuvre)| {
+        candidates.into_iter().find_map(|(rank, out, manoeuvre)| {
             let out = &outs[out];
             let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
             self.is_allowed(out, &motion, joined).then(|| Found {
                 manoeuvre,
                 joined,
-                cost: self.problem().error_of(&motion),
+                rank,
                 motion,
             })
         })
+    }
+
+    /// Cost by which manoeuvres are compared: a turn is preferred over less speed.
+    fn rank(&self, first: &FirstAlteration, motion: &[Segment], joined: f64) -> f64 {
+        let on_route = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
+        // the route has segments of its own, as short as its corners are
+        let short = motion[on_route..]
+            .windows(2)
+            .next()
+            .is_some_and(|pair| pair[0].duration < LEAST_S && pair[0].speed != pair[1].speed);
+        let slow = matches!(first, FirstAlteration::Slow { .. });
+        let price = |is: bool, price: f64| if is { price } else { 1.0 };
+        self.problem().error_of(motion) * price(slow, SPEED_PRICE) * price(short, SHORT_PRICE)
     }
 
     /// Pattern search: each parameter in turn, by steps that shrink.
@@ -655,7 +660,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                         continue;
                     };
                     tried.leave = self.tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
-                    if let Some(found) = self.found(&tried, best.rank()) {
+                    if let Some(found) = self.found(&tried, best.rank) {
                         best = found;
                         gained = true;
                         break;
@@ -674,14 +679,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let before = until(self.nominal_motion, manoeuvre.leave);
         let out = self.out(&before, manoeuvre.leave, manoeuvre.first)?;
         let (motion, joined) = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
-        let cost = self.problem().error_of(&motion);
+        let rank = self.rank(&manoeuvre.first, &motion, joined);
         let found = Found {
             manoeuvre: *manoeuvre,
             motion,
             joined,
-            cost,
+            rank,
         };
-        let cheaper = found.rank() < below;
+        let cheaper = rank < below;
         let clear = || self.is_clear(&out.motion[out.before..]);
         (cheaper && clear() && self.is_allowed(&out, &found.motion, joined)).then_some(found)
     }
@@ -771,12 +776,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             joined = self.joins(&back)?;
             motion.extend(back);
         }
-        // also at the speed to be on time again; but the route has segments of its own, as short as
-        // its corners are
-        let begun = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
-        let changes = |pair: &[Segment]| pair[0].speed != pair[1].speed;
-        let end = begun + usize::from(motion[begun..].windows(2).next().is_some_and(changes));
-        let tidy = (motion[out.before..end].iter()).all(|s| s.duration >= LEAST_S);
+        // the route has segments of its own, as short as its corners are
+        let manoeuvre = motion[out.before..].iter();
+        let mut manoeuvre = manoeuvre.take_while(|s| s.start_time < joined);
+        let tidy = manoeuvre.all(|s| s.duration >= LEAST_S);
         let in_time = motion.last()?.end_time() <= problem.horizon;
         (tidy && in_time).then_some((motion, joined))
     }
