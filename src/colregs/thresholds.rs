@@ -164,6 +164,11 @@ impl MonitorLimits {
         react: 60.0,
         manoeuvre: 70.0,
     };
+
+    /// Seconds in which a ship that keeps clear alters its course.
+    pub fn response(&self) -> f64 {
+        self.react + 2.0 * self.manoeuvre
+    }
 }
 
 /// Metres: own ships of this length and more act earlier.

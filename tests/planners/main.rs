@@ -12,3 +12,4 @@ mod optimal_control;
 mod path_networks;
 mod path_time;
 mod roles;
+mod rules;

@@ -143,7 +143,7 @@ impl Trace<'_> {
         let mut open = false;
         for (_, samples) in self.wanted(wanted) {
             let first = samples[0].at_speed(self.ordered_speed);
-            let until = first.time + self.factor * (m.react + 2.0 * m.manoeuvre);
+            let until = first.time + self.factor * m.response();
             let before_passing = |s: &&EncounterSample| s.time <= until && !s.is_past(&first.own);
             let meanwhile = samples.iter().take_while(before_passing).count();
             let turn = samples[..meanwhile]

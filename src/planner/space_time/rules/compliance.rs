@@ -1,11 +1,13 @@
 //! What the collision regulations ask of a manoeuvre beyond its first alteration, toward targets on
 //! their nominal tracks.
 
-use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN};
+use crate::colregs::compliance::{ComplianceReport, OwnSamples};
+use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN, Thresholds};
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
-use crate::trajectory::Segment;
+use crate::target::{DomainKind, ShipTrack};
+use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
 /// Samples per segment for the position relative to a target.
@@ -36,6 +38,31 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
     })
 }
 
+/// Number of rules that both judges find broken by a motion. O(targets × seconds).
+pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
+    let Ok(trajectory) = Trajectory::new(motion.to_vec()) else {
+        return usize::MAX;
+    };
+    let thresholds = Thresholds::standard();
+    let own = OwnSamples::along(&trajectory, problem.own.hull, problem.own.speed);
+    let samples = problem.encountered.iter().map(|e| {
+        let track = ShipTrack {
+            pose: e.ship.pose,
+            speed: e.ship.speed,
+            hull: e.hull,
+            position_std: 0.0,
+            speed_spread: 0.0,
+            course_spread: 0.0,
+            turn_rate: 0.0,
+            domain: DomainKind::Hull,
+        };
+        ComplianceReport::samples(&own, &track, thresholds)
+    });
+    let samples: Vec<_> = samples.collect();
+    let reports = ComplianceReport::of_all(samples.iter(), thresholds);
+    reports.iter().map(|report| report.broken().count()).sum()
+}
+
 /// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
 /// count as one.
 fn small_turns(motion: &[Segment], until: f64) -> usize {
@@ -49,7 +76,7 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
 }
 
 /// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
-/// of the target.
+/// of the target, nor is slower than a target that it overtakes there.
 fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     let room = encountered.bow_room();
     if room <= 0.0 {
@@ -65,9 +92,13 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     };
     let mut before: Option<Vector> = None;
     motion.iter().all(|s| {
+        let hampers = room.is_finite() && s.speed < ship.speed;
         (0..=ARC_SAMPLES).all(|k| {
             let share = f64::from(k) / f64::from(ARC_SAMPLES);
             let here = seen(s, s.start_time + s.duration * share);
+            if hampers && here.x > 0.0 && here.norm() < room {
+                return false;
+            }
             let from = before.replace(here).unwrap_or(here);
             if (from.y < 0.0) == (here.y < 0.0) {
                 return true;

@@ -10,7 +10,7 @@
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, Thresholds,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, SMALL_TURN, Thresholds,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -22,7 +22,7 @@ use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{first_contact, first_met};
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::complies;
+use crate::planner::space_time::rules::compliance::{broken_rules, complies};
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, Problem};
 use crate::tolerance::{self, TOUCH_M};
@@ -58,6 +58,10 @@ const LEAST_S: f64 = 3.0;
 /// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
 const SPEED_PRICE: f64 = 2.0;
 
+/// Ratio of the costs above which own ship is on time again by a change of speed for less than
+/// [`LEAST_S`].
+const SHORT_PRICE: f64 = 2.0;
+
 /// Rounds of the pattern search.
 const ROUNDS: usize = 7;
 
@@ -68,9 +72,9 @@ const HALVINGS: usize = 5;
 /// Seconds by which a stand-on ship acts before the latest certified escape.
 const SPARE_S: f64 = 40.0;
 
-/// Seconds after the first instant at which a stand-on ship may act: more than the step of the
-/// judges' samples, so that one of them sees it.
-const MAY_S: f64 = 1.5;
+/// Seconds: more than the step of the judges' samples, so that one of them sees an alteration that
+/// is in time.
+const SAMPLE_S: f64 = 1.5;
 
 /// Seconds by which a stand-on ship that may act does so earlier, where that is cheaper.
 const EARLIER_S: f64 = 60.0;
@@ -105,16 +109,11 @@ struct Found {
     motion: Vec<Segment>,
     /// Seconds at which own ship is on the route again.
     joined: f64,
-    /// Cost, m².
-    cost: f64,
+    /// Cost by which manoeuvres are compared, m².
+    rank: f64,
 }
 
 impl Found {
-    /// Cost by which manoeuvres are compared: a turn is preferred over less speed.
-    fn rank(&self) -> f64 {
-        rank(&self.manoeuvre.first, self.cost)
-    }
-
     fn escape(&self) -> Escape {
         let (turn, speed) = match self.manoeuvre.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
@@ -130,13 +129,6 @@ impl Found {
     }
 }
 
-fn rank(first: &FirstAlteration, cost: f64) -> f64 {
-    match first {
-        FirstAlteration::Turn { .. } => cost,
-        FirstAlteration::Slow { .. } => SPEED_PRICE * cost,
-    }
-}
-
 /// A target that own ship must not pass nearer than a length.
 struct Passing<'a> {
     encountered: &'a Encountered,
@@ -146,6 +138,10 @@ struct Passing<'a> {
     hulls: PolytopeObstacle,
 }
 
+const FROM_ALL: fn(&Passing) -> bool = |_| true;
+const FROM_KEPT_CLEAR: fn(&Passing) -> bool = |p| p.encountered.role.duties().keeps_clear;
+const FROM_NONE: fn(&Passing) -> bool = |_| false;
+
 /// A plan by the rules.
 pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
@@ -153,12 +149,48 @@ pub(crate) struct RulePlan {
     pub escape: Option<Escape>,
 }
 
+/// Targets that are passed in one manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Together {
+    /// Those whose risk has begun when the first set would be met.
+    AtContact,
+    /// Those whose risk has begun when own ship is on the route again.
+    UntilJoined,
+    All,
+}
+
 /// The cheapest motion of this family for each conflict of the nominal motion, one after another:
-/// the next manoeuvre begins when own ship is on the route again. Where that fails, one manoeuvre
-/// for all. `None` where neither is found.
+/// the next manoeuvre begins when own ship is on the route again. Of several targets those are
+/// taken together that leave the fewest rules broken. `None` where no manoeuvre is found.
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
+    clock: Clock,
+) -> Option<RulePlan> {
+    let several = context.problem.encountered.len() > 1;
+    let mut best: Option<(usize, RulePlan)> = None;
+    for together in [Together::AtContact, Together::UntilJoined, Together::All] {
+        let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
+            continue;
+        };
+        let broken = match several {
+            true => broken_rules(context.problem, &plan.motion),
+            false => 0,
+        };
+        if best.as_ref().is_none_or(|(least, _)| broken < *least) {
+            best = Some((broken, plan));
+        }
+        if broken == 0 || clock.is_up() {
+            break;
+        }
+    }
+    best.map(|(_, plan)| plan)
+}
+
+fn one_by_one(
+    context: &Context,
+    nominal_motion: &[Segment],
+    together: Together,
     clock: Clock,
 ) -> Option<RulePlan> {
     let encountered = context.problem.encountered;
@@ -171,44 +203,45 @@ pub(crate) fn by_the_rules(
         let grounding = land::first_contact(context.problem.land_obstacle, motion);
         contact.into_iter().chain(grounding).reduce(f64::min)
     };
-    let one_by_one = || {
-        let mut kept = RulePlan {
-            motion: nominal_motion.to_vec(),
-            escape: None,
+    let mut kept = RulePlan {
+        motion: nominal_motion.to_vec(),
+        escape: None,
+    };
+    let mut from = 0.0;
+    for step in 0..=encountered.len() {
+        let Some(contact) = first(&kept.motion) else {
+            return Some(kept);
         };
-        let mut from = 0.0;
-        for step in 0..=encountered.len() {
-            let Some(contact) = first(&kept.motion) else {
-                return Some(kept);
-            };
-            if contact < from {
-                return None;
-            }
-            let ahead = |e: &&Encountered| e.latched <= contact && e.tcpa > from;
-            let group: Vec<Encountered> = encountered.iter().filter(ahead).copied().collect();
-            let all = group.len() == encountered.iter().filter(|e| e.tcpa > from).count();
-            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
-            if step == 0 {
-                let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-                kept.escape = (stands_on && holds).then(|| found.escape());
-            }
-            from = found.joined;
-            kept.motion = found.motion;
+        if contact < from {
+            return None;
         }
-        None
-    };
-    let at_once = || {
-        let contact = first(nominal_motion)?;
-        let motion = (nominal_motion, 0.0);
-        let found = resolved(context, encountered, true, motion, contact, clock)?;
-        let stands_on = context.problem.duty().stands_on;
-        let escape = (stands_on && holds).then(|| found.escape());
-        Some(RulePlan {
-            motion: found.motion,
-            escape,
-        })
-    };
-    one_by_one().or_else(at_once)
+        let left = encountered.iter().filter(|e| e.tcpa > from);
+        let mut until = match together {
+            Together::All => f64::INFINITY,
+            _ => contact,
+        };
+        let (group, found) = loop {
+            let group: Vec<_> = left
+                .clone()
+                .filter(|e| e.latched <= until)
+                .copied()
+                .collect();
+            let all = group.len() == left.clone().count();
+            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
+            let begun = |e: &Encountered| e.latched > until && e.latched < found.joined;
+            if together != Together::UntilJoined || !left.clone().any(begun) {
+                break (group, found);
+            }
+            until = found.joined;
+        };
+        if step == 0 {
+            let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+            kept.escape = (stands_on && holds).then(|| found.escape());
+        }
+        from = found.joined;
+        kept.motion = found.motion;
+    }
+    None
 }
 
 /// A manoeuvre toward some targets, from a motion that is on the route from a time on.
@@ -246,8 +279,8 @@ struct Manoeuvres<'s, 'a> {
     to_the_end: Vec<bool>,
     passing: Vec<Passing<'s>>,
     clock: Clock,
-    /// True where no target is passed nearer than a length, Rule 8(d).
-    keeps_a_length: bool,
+    /// True for a target that is not passed nearer than a length, Rule 8(d).
+    keeps_a_length: fn(&Passing) -> bool,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     unit: f64,
 }
@@ -292,7 +325,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             to_the_end,
             passing: passing.collect(),
             clock,
-            keeps_a_length: true,
+            keeps_a_length: FROM_ALL,
             unit: (radius / ManoeuvreSpeeds::of(context.problem).normal / NORMAL_TURN_S).max(1.0),
         }
     }
@@ -322,11 +355,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         if self.hurries() {
             return None;
         }
-        let may = self.may_act() + MAY_S;
+        let may = self.may_act() + SAMPLE_S;
         let mut latest = self.latest_escape(contact);
         if latest.is_none_or(|latest| latest < may) {
             // to hold on for as long as it must is worth more than a length
-            self.keeps_a_length = false;
+            self.keeps_a_length = FROM_NONE;
             latest = self.latest_escape(contact);
         }
         let mut latest = latest?;
@@ -336,7 +369,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let near = self.comes_within(ACT_LENGTHS);
         let wanted = (latest - SPARE_S).min(near).max(may);
         // it cannot hold on for as long as it must: then not longer than is safe
-        let wanted = if latest < may - MAY_S {
+        let wanted = if latest < may - SAMPLE_S {
             latest - SPARE_S
         } else {
             wanted
@@ -344,7 +377,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
         let earliest = (leave - EARLIER_S).max(may.min(leave)).max(self.from);
-        self.keeps_a_length = true;
+        self.keeps_a_length = FROM_ALL;
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
             let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
@@ -376,21 +409,34 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         &mut self,
         find: impl Fn(&Self) -> Option<Found>,
     ) -> Option<Found> {
-        let found = find(self);
-        if found.is_some() || self.clock.is_up() {
-            return found;
+        let mut tried = usize::MAX;
+        for keeps_a_length in [FROM_ALL, FROM_KEPT_CLEAR, FROM_NONE] {
+            let number = self.passing.iter().filter(|p| keeps_a_length(p)).count();
+            if number == tried {
+                continue;
+            }
+            tried = number;
+            self.keeps_a_length = keeps_a_length;
+            let found = find(self);
+            if found.is_some() || self.clock.is_up() {
+                return found;
+            }
         }
-        self.keeps_a_length = false;
-        find(self)
+        None
     }
 
-    /// Latest time of the first alteration that is in ample time for every target, seconds.
+    /// Latest time of the first alteration that is in ample time for every target, and after which
+    /// a turn can soon be seen, seconds.
     fn ample(&self) -> f64 {
-        let ample = Thresholds::STANDARD.ample_time(self.problem().own.hull.length);
+        let (limits, own) = (Thresholds::standard(), self.problem().own);
+        let ample = limits.ample_time(own.hull.length);
+        let soon = limits.time_factor(own.hull.length) * limits.monitor.response();
+        let turning = SMALL_TURN * own.turning_radius / ManoeuvreSpeeds::of(self.problem()).normal;
         let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
         let latest = self.passing.iter().filter(keeps_clear).map(|p| {
             let e = p.encountered;
-            e.tcpa - ample.min(e.tcpa - e.latched - REACT_S)
+            let seen = e.latched + (soon - turning - SAMPLE_S).max(REACT_S);
+            (e.tcpa - ample).max(e.latched + REACT_S).min(seen)
         });
         latest.fold(f64::INFINITY, f64::min).max(0.0)
     }
@@ -557,10 +603,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         for (index, out) in outs.iter().enumerate() {
             let first = out.first;
             for (after, back) in self.endings(out) {
-                let Some((motion, _)) = self.completed(out, (after, back)) else {
+                let Some((motion, joined)) = self.completed(out, (after, back)) else {
                     continue;
                 };
-                let rank = rank(&first, self.problem().error_of(&motion));
+                let rank = self.rank(&first, &motion, joined);
                 if rank.is_finite() {
                     let manoeuvre = Manoeuvre {
                         leave,
@@ -574,16 +620,29 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let candidates = candidates.into_iter().take_while(|_| !self.clock.is_up());
-        candidates.into_iter().find_map(|(_, out, manoeuvre)| {
+        candidates.into_iter().find_map(|(rank, out, manoeuvre)| {
             let out = &outs[out];
             let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
             self.is_allowed(out, &motion, joined).then(|| Found {
                 manoeuvre,
                 joined,
-                cost: self.problem().error_of(&motion),
+                rank,
                 motion,
             })
         })
+    }
+
+    /// Cost by which manoeuvres are compared: a turn is preferred over less speed.
+    fn rank(&self, first: &FirstAlteration, motion: &[Segment], joined: f64) -> f64 {
+        let on_route = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
+        // the route has segments of its own, as short as its corners are
+        let short = motion[on_route..]
+            .windows(2)
+            .next()
+            .is_some_and(|pair| pair[0].duration < LEAST_S && pair[0].speed != pair[1].speed);
+        let slow = matches!(first, FirstAlteration::Slow { .. });
+        let price = |is: bool, price: f64| if is { price } else { 1.0 };
+        self.problem().error_of(motion) * price(slow, SPEED_PRICE) * price(short, SHORT_PRICE)
     }
 
     /// Pattern search: each parameter in turn, by steps that shrink.
@@ -601,7 +660,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                         continue;
                     };
                     tried.leave = self.tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
-                    if let Some(found) = self.found(&tried, best.rank()) {
+                    if let Some(found) = self.found(&tried, best.rank) {
                         best = found;
                         gained = true;
                         break;
@@ -620,14 +679,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let before = until(self.nominal_motion, manoeuvre.leave);
         let out = self.out(&before, manoeuvre.leave, manoeuvre.first)?;
         let (motion, joined) = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
-        let cost = self.problem().error_of(&motion);
+        let rank = self.rank(&manoeuvre.first, &motion, joined);
         let found = Found {
             manoeuvre: *manoeuvre,
             motion,
             joined,
-            cost,
+            rank,
         };
-        let cheaper = found.rank() < below;
+        let cheaper = rank < below;
         let clear = || self.is_clear(&out.motion[out.before..]);
         (cheaper && clear() && self.is_allowed(&out, &found.motion, joined)).then_some(found)
     }
@@ -692,33 +751,18 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     ) -> Option<(Vec<Segment>, f64)> {
         let (problem, route) = (self.problem(), self.context.route);
         let mut motion = out.motion.clone();
-        let last = motion.last_mut()?;
-        if after > 0.0 {
-            if last.is_arc() {
-                let mut chain = Chain::new(
-                    last.end(),
-                    last.end_time(),
-                    last.speed,
-                    problem.own.turning_radius,
-                );
-                chain.line(after * last.speed);
-                motion.extend(chain.segments);
-            } else {
-                last.duration += after;
-            }
-        }
-        let last = motion.last()?;
-        let (pose, time) = (last.end(), last.end_time());
-        let mut joined = time;
-        if let FirstAlteration::Slow { .. } = out.first {
+        let joined;
+        if let FirstAlteration::Slow { speed } = out.first {
             let slow: f64 = motion[out.before..].iter().map(Segment::length).sum();
-            let along = self.along_at(out.leave) + slow;
-            // the last segment may lead straight on where the route turns
-            if !self.is_on_route(pose, along) {
-                return None;
-            }
-            motion.extend(route.follow(along, time));
+            let along = self.along_at(out.leave);
+            motion.truncate(out.before);
+            let along = route.run(along, out.leave, slow + after * speed, speed, &mut motion);
+            joined = motion.last()?.end_time();
+            motion.extend(route.follow(along, joined));
         } else {
+            let last = motion.last_mut()?;
+            last.duration += after;
+            let (pose, time) = (last.end(), last.end_time());
             let near = problem.desired.nearest(pose.position, time, 0.0);
             let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
             let mut backs =
@@ -779,7 +823,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         while passed <= horizon {
             let there = position + velocity * (passed - time);
             let clear = |p: &Passing| p.within_a_length.slack(there, passed).value > 0.0;
-            if !self.keeps_a_length || self.passing.iter().all(clear) {
+            if self.kept_off().all(clear) {
                 return Some(passed);
             }
             passed += STEP_S;
@@ -791,7 +835,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     fn is_clear(&self, segments: &[Segment]) -> bool {
         first_met(self.context.proxies, segments).is_none()
             && !land::meets(self.problem().land_obstacle, segments)
-            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
+            && !segments.iter().any(|s| self.is_within_a_length(s))
     }
 
     /// True for a motion that goes on from a clear one, is clear to its end, and by the rules.
@@ -809,9 +853,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             && complies(self.problem(), &motion[begun..], off_route)
     }
 
+    /// The targets that are not passed nearer than a length.
+    fn kept_off(&self) -> impl Iterator<Item = &Passing<'s>> {
+        self.passing.iter().filter(|p| (self.keeps_a_length)(p))
+    }
+
     fn is_within_a_length(&self, segment: &Segment) -> bool {
-        let mut passing = self.passing.iter();
-        passing.any(|p| contact::first_contact(&p.within_a_length, segment, TOUCH_M).is_some())
+        self.kept_off()
+            .any(|p| contact::first_contact(&p.within_a_length, segment, TOUCH_M).is_some())
     }
 
     fn is_clear_to_the_end(&self, segments: &[Segment]) -> bool {
@@ -822,7 +871,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             !self.to_the_end[proxy.obstacle]
                 || segments.iter().all(|s| proxy.first_contact(s).is_none())
         }) && !(all && land::meets(land, segments))
-            && !(self.keeps_a_length && segments.iter().any(|s| self.is_within_a_length(s)))
+            && !segments.iter().any(|s| self.is_within_a_length(s))
     }
 
     /// True for a pose of the route after this many metres.
