@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 use campaigns::{
     Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
-    path_time, wild,
+    path_time, replanning, wild,
 };
 use clap::{Args, Parser, Subcommand};
 use searoom::simulation::Meeting;
@@ -42,6 +42,17 @@ enum Campaign {
         /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
         #[arg(long)]
         far: bool,
+    },
+    /// Encounters planned again and again, a fifth of each kind; the sailed motion is judged
+    Replanning {
+        #[command(flatten)]
+        scenes: Scenes<1_000>,
+        /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
+        #[arg(long)]
+        far: bool,
+        /// Every plan begins anew
+        #[arg(long)]
+        no_memory: bool,
     },
     /// Traffic among land, a third of the scenes in each of three waters
     Harbour(Scenes<300>),
@@ -102,6 +113,14 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Compliance { scenes, far } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             compliance::run(scenes.of_each(5), &meeting)
+        }
+        Campaign::Replanning {
+            scenes,
+            far,
+            no_memory,
+        } => {
+            let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
+            replanning::run(scenes.of_each(5), &meeting, !no_memory)
         }
         Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),

@@ -104,6 +104,13 @@ pub struct PlanArgs {
     /// Also find the last time at which a plan clear of every hard set exists (space-time planner)
     #[arg(long)]
     pub no_return: bool,
+    /// Go on from a plan that own ship follows, as `plan --json` wrote it: with its roles, its
+    /// manoeuvre and its remainder
+    #[arg(long, value_name = "PLAN.json")]
+    pub previous: Option<PathBuf>,
+    /// Plan without the previous plan where it does not fit
+    #[arg(long, requires = "previous")]
+    pub ignore_previous: bool,
     // the last, because its heading holds for all that follows
     #[command(flatten)]
     pub assumed: AssumedArgs,

@@ -11,7 +11,7 @@ use super::input::scenes;
 use super::output::Output;
 use super::output::products::{Failure, Products};
 use super::output::status::ExitStatus;
-use super::runner::{Attempt, attempt};
+use super::runner::{Attempt, Previous, attempt};
 
 /// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> ExitStatus {
@@ -20,15 +20,17 @@ pub fn plan(args: &PlanArgs, output: &Output) -> ExitStatus {
         let found = std::slice::from_ref(&scene.found);
         let products = Products::prepare(found, args.shared.written.wanted());
         let products = products.map_err(|error| format!("{error:#}"))?;
-        Ok((scene, products))
+        let previous = args.previous.as_ref();
+        let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
+        Ok((scene, products, previous.transpose()?))
     });
-    let (scene, products) = match opened {
+    let (scene, products, previous) = match opened {
         Ok(opened) => opened,
         Err(error) => {
             return output.refuse(&error);
         }
     };
-    match attempt(&scene, &args.shared, &assumed) {
+    match attempt(&scene, &args.shared, &assumed, previous.as_ref()) {
         Attempt::Run(run, notes) => {
             for note in notes {
                 output.note(&note);

@@ -3,15 +3,22 @@
 use std::any::Any;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, Location, catch_unwind};
+use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use searoom::document::{PlanDocument, memory_after};
+use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
-use searoom::scenario::ScenarioError;
 use searoom::scenario::import::Assumed;
+use searoom::scenario::{Fault, Scenario, ScenarioError};
+use searoom::verification::verify;
 
 use super::args::Shared;
 use super::input::scenes::{Made, Scene};
+
+/// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
+pub const PLAN_MEBIBYTES: u64 = 64;
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -84,20 +91,82 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
+/// A plan that own ship follows.
+pub struct Previous {
+    pub file: PathBuf,
+    pub plan: PlanDocument,
+    /// Plan without it where it does not fit.
+    pub ignore: bool,
+}
+
+impl Previous {
+    /// Reads a plan document, which has to be one that verifies. The error includes the file.
+    pub fn read(file: &Path, ignore: bool) -> Result<Self, String> {
+        let name = file.display();
+        let text = read_text(file, PLAN_MEBIBYTES, "a plan document");
+        let text = text.map_err(|error| error.to_string())?;
+        let verified = verify(&text).map_err(|error| format!("{name}: {error}"))?;
+        if let Some(violation) = verified.violations.first() {
+            return Err(format!(
+                "{name}: not a plan that verifies: {}",
+                violation.what
+            ));
+        }
+        let plan = serde_json::from_str(&text).map_err(|error| format!("{name}: {error}"))?;
+        Ok(Self {
+            file: file.to_owned(),
+            plan,
+            ignore,
+        })
+    }
+
+    /// Adds what the plan leaves to a scenario; a note where it does not fit and is ignored.
+    fn remember(&self, scenario: &mut Scenario) -> Result<Option<String>, Fault> {
+        match memory_after(&self.plan, scenario) {
+            Ok(memory) => {
+                scenario.memory = memory;
+                Ok(None)
+            }
+            Err(fault) if self.ignore => {
+                let name = self.file.display();
+                Ok(Some(format!("{name}: ignored: {fault}")))
+            }
+            Err(fault) => Err(fault),
+        }
+    }
+}
+
 /// Reads, plans and evaluates one scene.
-pub fn attempt(scene: &Scene, shared: &Shared, assumed: &Assumed) -> Attempt {
+pub fn attempt(
+    scene: &Scene,
+    shared: &Shared,
+    assumed: &Assumed,
+    previous: Option<&Previous>,
+) -> Attempt {
     let file = &scene.found.file;
     let work = || match scene.scenario(assumed) {
         Ok(Made {
             mut scenario,
-            notes,
-        }) => match shared.apply(&mut scenario) {
-            Ok(()) => Attempt::Run(pipeline::run(scenario), notes),
-            Err(faults) => {
-                let file = file.clone();
-                Attempt::NotApplicable(scenario.title, ScenarioError::Faults { file, faults })
+            mut notes,
+        }) => {
+            let refused = |file: &Path, faults| ScenarioError::Faults {
+                file: file.to_owned(),
+                faults,
+            };
+            if let Err(faults) = shared.apply(&mut scenario) {
+                return Attempt::NotApplicable(scenario.title, refused(file, faults));
             }
-        },
+            if let Some(previous) = previous {
+                match previous.remember(&mut scenario) {
+                    Ok(note) => notes.extend(note),
+                    Err(fault) => {
+                        let error = refused(&previous.file, vec![fault]);
+                        return Attempt::NotApplicable(scenario.title, error);
+                    }
+                }
+            }
+            Attempt::Run(pipeline::run(scenario), notes)
+        }
         Err(error) => Attempt::Unreadable(error),
     };
     match guarded(work) {

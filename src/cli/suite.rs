@@ -129,7 +129,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
     let file = scene.found.file.as_path();
-    match attempt(scene, &args.shared, assumed) {
+    match attempt(scene, &args.shared, assumed, None) {
         Attempt::Run(run, notes) => {
             let plan = PlanDocument::of(&run);
             let name = file.display().to_string();

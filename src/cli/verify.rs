@@ -11,10 +11,7 @@ use searoom::verification::{Verification, verify as check};
 use super::args::VerifyArgs;
 use super::output::Output;
 use super::output::status::ExitStatus;
-use super::runner::guarded_within;
-
-/// Maximum file size in mebibytes; a plan with a hundred targets needs less than 1 MiB.
-const FILE_MEBIBYTES: u64 = 64;
+use super::runner::{PLAN_MEBIBYTES, guarded_within};
 
 /// Checks every file; an unreadable one does not stop the others.
 pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
@@ -71,7 +68,7 @@ fn one(file: &Path) -> anyhow::Result<Verification> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
-        read_text(file, FILE_MEBIBYTES, "a plan document")?
+        read_text(file, PLAN_MEBIBYTES, "a plan document")?
     };
     // the message already includes its field
     check(&text).map_err(|error| anyhow!("{error}"))

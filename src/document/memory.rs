@@ -15,7 +15,7 @@ use crate::frame::{
 use crate::geometry::ConvexPolygon;
 use crate::pipeline::Run;
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
-use crate::scenario::{Memory, Scenario};
+use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{DomainKind, ShipTrack, Uncertainty};
 use crate::tolerance::{self, POSITION_SIGMAS};
 use crate::trajectory::Segment;
@@ -76,44 +76,6 @@ pub struct PlannedManoeuvreDocument {
     pub turn_deg: f64,
 }
 
-/// Why a scenario cannot be planned from a previous plan.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum NotPrevious {
-    /// The plan of another scenario.
-    #[error("a plan of \"{found}\"; allowed: a plan of \"{title}\"")]
-    OtherScenario {
-        /// Title in the plan.
-        found: String,
-        /// Title of the scenario.
-        title: String,
-    },
-    /// A plan without lines and arcs.
-    #[error("a document without a plan of lines and arcs; allowed: one with `trajectory.segments`")]
-    NoMotion,
-    /// A plan of another time.
-    #[error("a plan for time_s {from} to {until}; allowed: one that holds at time_s {now}")]
-    OtherTime {
-        /// Seconds on the clock of the file.
-        from: f64,
-        /// Seconds on the clock of the file.
-        until: f64,
-        /// The scenario's time.
-        now: f64,
-    },
-    /// Own ship is not where the plan has it.
-    #[error(
-        "own ship is {metres:.1} m and {degrees:.1} degrees off the plan; allowed: {most} m and {OFF_PLAN_DEG} degrees"
-    )]
-    OffPlan {
-        /// Metres.
-        metres: f64,
-        /// Degrees.
-        degrees: f64,
-        /// Allowed metres: own length.
-        most: f64,
-    },
-}
-
 impl MemoryDocument {
     /// The memory of a run; `None` where nothing was known.
     pub(super) fn of(run: &Run) -> Option<Self> {
@@ -168,13 +130,12 @@ impl From<&PlannedManoeuvreDocument> for PlannedManoeuvre {
 /// Roles last until the target is past and clear; a role that has begun since is found on the
 /// motion so far. A target whose course has changed by more than 20 degrees gives own ship the role
 /// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)).
-/// O(seconds sailed × targets).
-pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, NotPrevious> {
+/// The fault says why the plan is not one that own ship follows. O(seconds sailed × targets).
+pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, Fault> {
     if previous.scenario != scenario.title {
-        return Err(NotPrevious::OtherScenario {
-            found: previous.scenario.clone(),
-            title: scenario.title.clone(),
-        });
+        let found = format_args!("a plan of \"{}\"", previous.scenario);
+        let allowed = format_args!("a plan of \"{}\"", scenario.title);
+        return Err(Fault::new("scenario", found, allowed));
     }
     let documents = previous
         .trajectory
@@ -182,15 +143,23 @@ pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memo
         .and_then(|t| t.segments.as_ref());
     let planned: Vec<Segment> = (documents.into_iter().flatten()).map(segment).collect();
     let (Some(last), true) = (planned.last(), planned.iter().all(Segment::is_valid)) else {
-        return Err(NotPrevious::NoMotion);
+        return Err(Fault::new(
+            "trajectory.segments",
+            "nothing",
+            "lines and arcs: a plan of the space-time or path-time planner",
+        ));
     };
     let elapsed = scenario.time - previous.time_s;
     if !(elapsed >= 0.0 && elapsed <= last.end_time()) {
-        return Err(NotPrevious::OtherTime {
-            from: previous.time_s,
-            until: previous.time_s + last.end_time(),
-            now: scenario.time,
-        });
+        let until = previous.time_s + last.end_time();
+        return Err(Fault::new(
+            "time_s",
+            format_args!("a plan from {} s to {until} s", previous.time_s),
+            format_args!(
+                "a plan that lasts at the scenario's time, {} s",
+                scenario.time
+            ),
+        ));
     }
     let shifted = |s: Segment| Segment {
         start_time: s.start_time - elapsed,
@@ -206,11 +175,11 @@ pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memo
     let degrees = deg_from_radians(wrap(then.heading - own.pose.heading).abs());
     let most = OFF_PLAN_LENGTHS * own.hull.length;
     if !(metres <= most && degrees <= OFF_PLAN_DEG) {
-        return Err(NotPrevious::OffPlan {
-            metres,
-            degrees,
-            most,
-        });
+        return Err(Fault::new(
+            "trajectory.segments",
+            format_args!("own ship {metres:.1} m and {degrees:.1} degrees away now"),
+            format_args!("at most {most} m, own length, and {OFF_PLAN_DEG} degrees"),
+        ));
     }
     let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
     let mut sailed: Vec<Segment> = before.map(segment).map(shifted).collect();
@@ -244,6 +213,7 @@ pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memo
     let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
     Ok(Memory {
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
+            begins: manoeuvre.begins,
             first_heading: manoeuvre.first_heading,
             turn: manoeuvre.turn,
             heading: steered.end().heading,

@@ -36,7 +36,7 @@ pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use memory::{
-    KnownRoleDocument, MemoryDocument, NotPrevious, PlannedManoeuvreDocument, StateDocument,
+    KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
     TargetMemoryDocument, memory_after,
 };
 pub use parts::*;

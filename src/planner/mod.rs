@@ -276,6 +276,8 @@ impl PlannedManoeuvre {
 /// return.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnderWay {
+    /// Seconds at which the manoeuvre began, not positive.
+    pub begins: f64,
     /// Heading before the manoeuvre, radians.
     pub first_heading: f64,
     /// First turn, radians, to port positive; 0 where own ship reduces speed only.

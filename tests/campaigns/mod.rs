@@ -16,6 +16,7 @@ pub mod mutations;
 pub mod passing;
 pub mod path_grid;
 pub mod path_time;
+pub mod replanning;
 pub mod statistics;
 pub mod wild;
 

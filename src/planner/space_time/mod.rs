@@ -216,7 +216,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
-    if !problem.duty().is_none() && first_conflict.is_some() {
+    let is_under_way = problem.under_way.is_some();
+    if !problem.duty().is_none() && (first_conflict.is_some() || is_under_way) {
         if let Some(kept) = manoeuvre::by_the_rules(&context, &nominal_motion, clock) {
             let plan = Plan::measured(problem, kept.motion, None);
             let outcome = match plan {
@@ -226,6 +227,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
             };
             return Planned {
                 escape: kept.escape,
+                manoeuvres: kept.manoeuvres,
                 ..Planned::of(outcome)
             };
         }

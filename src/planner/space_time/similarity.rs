@@ -13,7 +13,9 @@ use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
-use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
+use crate::planner::{
+    EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, PlannedManoeuvre, Problem, UnderWay,
+};
 use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -98,6 +100,7 @@ pub(crate) struct NormalisedProblem {
     obstacles: Vec<Obstacle>,
     land_obstacle: Option<LandObstacle>,
     encountered: Vec<Encountered>,
+    under_way: Option<UnderWay>,
     horizon: f64,
     time_weight: f64,
 }
@@ -248,6 +251,12 @@ impl Similarity {
                     .mapped(|block| self.places(block, horizon))
             }),
             encountered: problem.encountered.iter().map(ship).collect(),
+            // only beside encountered targets, with which nothing is scaled or mirrored
+            under_way: problem.under_way.map(|begun| UnderWay {
+                first_heading: wrap(begun.first_heading - self.origin.heading),
+                heading: wrap(begun.heading - self.origin.heading),
+                ..begun
+            }),
             horizon: rounded(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
             time_weight: rounded(problem.time_weight / (speed * speed)),
         })
@@ -327,8 +336,13 @@ impl Similarity {
             Outcome::Deadline(plan) => Outcome::Deadline(plan.and_then(|p| self.plan(p))),
             Outcome::Infeasible(reason) => Outcome::Infeasible(self.reason(reason, horizon)),
         };
+        let restored = |manoeuvre: PlannedManoeuvre| PlannedManoeuvre {
+            first_heading: wrap(manoeuvre.first_heading + self.origin.heading),
+            ..manoeuvre
+        };
         Planned {
             outcome,
+            manoeuvres: planned.manoeuvres.into_iter().map(restored).collect(),
             explored: self.explored(planned.explored),
             ..planned
         }
@@ -419,6 +433,7 @@ impl NormalisedProblem {
             obstacles: &self.obstacles,
             land_obstacle: self.land_obstacle.as_ref().unwrap_or(of.land_obstacle),
             encountered: &self.encountered,
+            under_way: self.under_way,
             horizon: self.horizon,
             time_weight: self.time_weight,
             ..*of

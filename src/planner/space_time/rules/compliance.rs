@@ -44,7 +44,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
         return usize::MAX;
     };
     let thresholds = Thresholds::standard();
-    let own = OwnSamples::along(&trajectory, problem.own.hull, problem.own.speed);
+    let own = OwnSamples::along(&[], &trajectory, problem.own.hull, problem.own.speed);
     let samples = problem.encountered.iter().map(|e| {
         let track = ShipTrack {
             pose: e.ship.pose,
@@ -56,7 +56,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
             turn_rate: 0.0,
             domain: DomainKind::Hull,
         };
-        ComplianceReport::samples(&own, &track, thresholds)
+        ComplianceReport::samples(&own, &track, None, thresholds)
     });
     let samples: Vec<_> = samples.collect();
     let reports = ComplianceReport::of_all(samples.iter(), thresholds);
@@ -113,7 +113,10 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
 /// True unless own ship heads to port both of its course before the departure and of the path's
 /// course there, until a time.
 fn keeps_off_port(problem: &Problem, off_route: &[Segment], until: f64) -> bool {
-    let before = off_route.first().map_or(0.0, |s| s.start.heading);
+    let before = match problem.under_way {
+        Some(begun) => begun.first_heading,
+        None => off_route.first().map_or(0.0, |s| s.start.heading),
+    };
     motion_until(off_route, until).iter().all(|s| {
         [s.start, s.end()].iter().all(|pose| {
             let at = problem

@@ -10,7 +10,8 @@
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, Role, SMALL_TURN, Thresholds,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, ON_COURSE, Role, SMALL_TURN,
+    Thresholds,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -24,7 +25,7 @@ use crate::planner::space_time::proxy::{first_contact, first_met};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{broken_rules, complies};
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
-use crate::planner::{Escape, Problem};
+use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::Segment;
 
@@ -107,6 +108,8 @@ enum FirstAlteration {
 struct Found {
     manoeuvre: Manoeuvre,
     motion: Vec<Segment>,
+    /// Seconds at which own ship turns back or changes its speed back.
+    returns: f64,
     /// Seconds at which own ship is on the route again.
     joined: f64,
     /// Cost by which manoeuvres are compared, m².
@@ -114,6 +117,24 @@ struct Found {
 }
 
 impl Found {
+    /// The manoeuvre as a plan names it; `under_way` where it goes on with one that has begun.
+    fn planned(&self, under_way: Option<UnderWay>) -> PlannedManoeuvre {
+        let leave = self.manoeuvre.leave;
+        let before = self.motion.iter().find(|s| s.end_time() > leave);
+        let heading = before.map_or(0.0, |s| s.pose_at(leave).heading);
+        let (begins, first_heading) = match under_way {
+            Some(begun) => (begun.begins, begun.first_heading),
+            None => (leave, heading),
+        };
+        PlannedManoeuvre {
+            begins,
+            returns: self.returns,
+            joins: self.joined,
+            first_heading,
+            turn: self.escape().turn,
+        }
+    }
+
     fn escape(&self) -> Escape {
         let (turn, speed) = match self.manoeuvre.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
@@ -147,6 +168,7 @@ pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
     /// The escape of a ship that stands on.
     pub escape: Option<Escape>,
+    pub manoeuvres: Vec<PlannedManoeuvre>,
 }
 
 /// Targets that are passed in one manoeuvre.
@@ -206,16 +228,21 @@ fn one_by_one(
     let mut kept = RulePlan {
         motion: nominal_motion.to_vec(),
         escape: None,
+        manoeuvres: Vec::new(),
     };
     let mut from = 0.0;
     for step in 0..=encountered.len() {
-        let Some(contact) = first(&kept.motion) else {
-            return Some(kept);
+        let under_way = context.problem.under_way.filter(|_| step == 0);
+        let lasts = |e: &Encountered| under_way.is_some() && e.latched <= 0.0;
+        let contact = match first(&kept.motion) {
+            Some(contact) => contact,
+            None if encountered.iter().any(lasts) => 0.0,
+            None => return Some(kept),
         };
         if contact < from {
             return None;
         }
-        let left = encountered.iter().filter(|e| e.tcpa > from);
+        let left = encountered.iter().filter(|e| e.tcpa > from || lasts(e));
         let mut until = match together {
             Together::All => f64::INFINITY,
             _ => contact,
@@ -227,7 +254,15 @@ fn one_by_one(
                 .copied()
                 .collect();
             let all = group.len() == left.clone().count();
-            let found = resolved(context, &group, all, (&kept.motion, from), contact, clock)?;
+            let found = resolved(
+                context,
+                &group,
+                all,
+                (&kept.motion, from),
+                contact,
+                clock,
+                under_way,
+            )?;
             let begun = |e: &Encountered| e.latched > until && e.latched < found.joined;
             if together != Together::UntilJoined || !left.clone().any(begun) {
                 break (group, found);
@@ -236,15 +271,18 @@ fn one_by_one(
         };
         if step == 0 {
             let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+            let holds = holds && under_way.is_none();
             kept.escape = (stands_on && holds).then(|| found.escape());
         }
         from = found.joined;
+        kept.manoeuvres.push(found.planned(under_way));
         kept.motion = found.motion;
     }
     None
 }
 
-/// A manoeuvre toward some targets, from a motion that is on the route from a time on.
+/// A manoeuvre toward some targets, from a motion that is on the route from a time on. One that is
+/// under way goes on; where that cannot be, another begins.
 fn resolved(
     context: &Context,
     group: &[Encountered],
@@ -252,9 +290,11 @@ fn resolved(
     motion: (&[Segment], f64),
     contact: f64,
     clock: Clock,
+    under_way: Option<UnderWay>,
 ) -> Option<Found> {
     let problem = Problem {
         encountered: group,
+        under_way,
         ..*context.problem
     };
     let context = Context {
@@ -262,6 +302,10 @@ fn resolved(
         ..*context
     };
     let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
+    if under_way.is_some() {
+        let gone_on = manoeuvres.going_on();
+        return gone_on.or_else(|| resolved(&context, group, all, motion, contact, clock, None));
+    }
     match problem.duty().stands_on {
         true => manoeuvres.standing_on(contact),
         false => manoeuvres.giving_way(contact),
@@ -332,6 +376,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     fn problem(&self) -> &'s Problem<'s> {
         self.context.problem
+    }
+
+    /// The cheapest end of the manoeuvre that is under way.
+    fn going_on(&mut self) -> Option<Found> {
+        self.with_a_length_if_possible(|search| {
+            let found = search.cheapest(0.0)?;
+            Some(search.improved(found, 0.0..=0.0))
+        })
     }
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
@@ -517,6 +569,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     fn alterations(&self) -> Vec<FirstAlteration> {
         let problem = self.problem();
         let (own, duty) = (problem.own, problem.duty());
+        if let Some(begun) = problem.under_way {
+            return self.ways_on(&begun);
+        }
         let ordered = ManoeuvreSpeeds::of(problem);
         let overtakes = (problem.encountered.iter()).any(|e| e.role == Role::Overtaking);
         let faster = (overtakes && ordered.fast > ordered.normal).then_some(ordered.fast);
@@ -541,6 +596,21 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
         }
         all
+    }
+
+    /// What is still open in a manoeuvre under way: a turn is completed and kept; the parallel
+    /// course may follow once.
+    fn ways_on(&self, begun: &UnderWay) -> Vec<FirstAlteration> {
+        let (turn, speed) = (begun.turn, begun.speed);
+        if turn == 0.0 {
+            return vec![FirstAlteration::Slow { speed }];
+        }
+        let is_parallel = wrap(begun.heading - begun.first_heading).abs() <= ON_COURSE;
+        let asides = if is_parallel { &ASIDE_S[..1] } else { &ASIDE_S };
+        let at_once = (!is_parallel).then_some(0.0).into_iter();
+        let asides = asides.iter().map(|aside| aside * self.unit).chain(at_once);
+        let turns = asides.map(|aside| FirstAlteration::Turn { turn, aside, speed });
+        turns.collect()
     }
 
     /// The motions until every target is passed that are clear so far, from a departure on.
@@ -625,6 +695,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
             self.is_allowed(out, &motion, joined).then(|| Found {
                 manoeuvre,
+                returns: out.returns(manoeuvre.after),
                 joined,
                 rank,
                 motion,
@@ -682,6 +753,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let rank = self.rank(&manoeuvre.first, &motion, joined);
         let found = Found {
             manoeuvre: *manoeuvre,
+            returns: out.returns(manoeuvre.after),
             motion,
             joined,
             rank,
@@ -703,15 +775,26 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 let along = self.along_at(leave);
                 let (on, _) = route.pose_at(along);
                 let passed = self.passed(on.position, on.ahead() * speed, leave)?;
-                let slow = (passed - leave).max(APPARENT_TIME);
+                let least = match problem.under_way {
+                    Some(begun) => APPARENT_TIME + begun.begins,
+                    None => APPARENT_TIME,
+                };
+                let slow = (passed - leave).max(least).max(LEAST_S);
                 let end = route.run(along, leave, slow * speed, speed, &mut motion);
                 // at the end of the route the reduction may be too short to be apparent
-                if end - along < speed * APPARENT_TIME - tolerance::LENGTH_M {
+                if end - along < speed * least - tolerance::LENGTH_M {
                     return None;
                 }
             }
             FirstAlteration::Turn { turn, aside, speed } => {
                 let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
+                let (turn, back) = match problem.under_way {
+                    Some(begun) => (
+                        wrap(begun.heading - pose.heading),
+                        wrap(begun.first_heading - begun.heading),
+                    ),
+                    None => (turn, -turn),
+                };
                 chain.arc(turn * own.turning_radius);
                 let straight = |chain: &Chain| {
                     let velocity = chain.pose.ahead() * speed;
@@ -719,14 +802,16 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 };
                 if aside.is_finite() {
                     chain.line(speed * aside);
-                    chain.arc(-turn * own.turning_radius);
+                    chain.arc(back * own.turning_radius);
                 }
                 let passed = straight(&chain)?;
                 // a straight part between two turns, also where the target is passed at once
                 chain.line(speed * (passed - chain.time).max(LEAST_S));
                 // a turn along a corner of the route is no alteration
                 let arc = chain.segments.first()?;
-                if self.is_on_route(arc.end(), self.along_at(leave) + arc.length()) {
+                if problem.under_way.is_none()
+                    && self.is_on_route(arc.end(), self.along_at(leave) + arc.length())
+                {
                     return None;
                 }
                 motion.extend(chain.segments);
@@ -779,6 +864,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         // the route has segments of its own, as short as its corners are
         let manoeuvre = motion[out.before..].iter();
         let mut manoeuvre = manoeuvre.take_while(|s| s.start_time < joined);
+        if problem.under_way.is_some() {
+            // what is left of a turn
+            manoeuvre.next();
+        }
         let tidy = manoeuvre.all(|s| s.duration >= LEAST_S);
         let in_time = motion.last()?.end_time() <= problem.horizon;
         (tidy && in_time).then_some((motion, joined))
@@ -889,6 +978,13 @@ struct OutwardLeg {
     leave: f64,
     before: usize,
     motion: Vec<Segment>,
+}
+
+impl OutwardLeg {
+    /// Time of the return, for seconds after passing.
+    fn returns(&self, after: f64) -> f64 {
+        self.motion.last().map_or(self.leave, Segment::end_time) + after
+    }
 }
 
 impl Manoeuvre {

@@ -1,0 +1,201 @@
+//! Plans made again and again from own ship's state on the last one, and the sailed motion judged.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use searoom::colregs::{
+    Thresholds,
+    compliance::{ComplianceReport, EncounterSamples},
+};
+use searoom::document::{PlanDocument, memory_after};
+use searoom::pipeline::{self, Run};
+use searoom::planner::cost::whole_space_time_error;
+use searoom::scenario::{Compliance, Memory, Scenario};
+use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
+use searoom::target::Motion;
+use searoom::trajectory::{Segment, Trajectory};
+
+use super::statistics::{failure_bound, quantile};
+use super::{Report, Seeds};
+
+/// Seconds from one plan to the next.
+const STEP_S: f64 = 20.0;
+
+/// Seconds after which a run ends.
+const LONGEST_S: f64 = 3000.0;
+
+/// What one encounter came to.
+struct Sailed {
+    /// Rules and monitors that the sailed motion breaks.
+    broken: Vec<&'static str>,
+    /// Rules and monitors that the first plan breaks.
+    broken_by_the_first: usize,
+    /// Least distance of the hulls, metres.
+    apart: f64,
+    turns: usize,
+    speed_changes: usize,
+    /// Cost of the sailed motion over that of the first plan.
+    cost: f64,
+    cycles: usize,
+    /// Cycles without a safe plan, and cycles of a plan that is not by the rules.
+    unsafe_plans: usize,
+    relaxed: usize,
+    /// Cycles after which the plan turns back, though a manoeuvre was under way.
+    turned_back: usize,
+    milliseconds: Vec<f64>,
+}
+
+/// The scenario `elapsed` seconds after its beginning, own ship on a plan made `step` before.
+fn later(first: &Scenario, run: &Run, elapsed: f64, step: f64, memory: bool) -> Option<Scenario> {
+    let plan = run.planned.outcome.plan()?;
+    let mut scenario = first.clone();
+    scenario.time = elapsed;
+    scenario.desired = first.desired.remaining(elapsed);
+    scenario.own_ship.pose = plan.trajectory.pose_at(step);
+    for target in &mut scenario.targets {
+        if let Motion::Ship(ship) = &mut target.motion {
+            ship.pose = ship.pose_at(elapsed);
+        }
+    }
+    if memory {
+        scenario.memory = memory_after(&PlanDocument::of(run), &scenario).expect("it fits");
+    }
+    Some(scenario)
+}
+
+fn sail(first: &Scenario, memory: bool) -> Option<Sailed> {
+    let mut run = pipeline::run(first.clone());
+    let plan = run.planned.outcome.plan()?;
+    let first_cost = plan.cost;
+    let broken = |trajectory: &Trajectory| {
+        let ship = first.targets[0].ship().expect("a ship");
+        let own = &first.own_ship;
+        let meeting = EncounterSamples::along(trajectory, own.hull, own.speed, ship);
+        ComplianceReport::judge(&meeting, Thresholds::standard())
+    };
+    let mut sailed = Sailed {
+        broken: Vec::new(),
+        broken_by_the_first: broken(&plan.trajectory).broken().count(),
+        apart: f64::INFINITY,
+        turns: 0,
+        speed_changes: 0,
+        cost: 0.0,
+        cycles: 0,
+        unsafe_plans: 0,
+        relaxed: 0,
+        turned_back: 0,
+        milliseconds: Vec::new(),
+    };
+    let mut motion: Vec<Segment> = Vec::new();
+    let mut elapsed = 0.0;
+    loop {
+        let plan = run.planned.outcome.plan()?;
+        let end = plan.trajectory.end_time();
+        let step = STEP_S.min(end);
+        let done = plan.trajectory.segments().iter();
+        let done = done.filter(|s| s.start_time < step).map(|s| Segment {
+            start_time: s.start_time + elapsed,
+            ..s.between(s.start_time, step)
+        });
+        motion.extend(done);
+        elapsed += step;
+        if end <= STEP_S || elapsed >= LONGEST_S {
+            break;
+        }
+        let scenario = later(first, &run, elapsed, step, memory)?;
+        let begun = scenario.memory.under_way;
+        let next = pipeline::run(scenario);
+        sailed.cycles += 1;
+        sailed.milliseconds.push(next.plan_time.as_secs_f64() * 1e3);
+        sailed.unsafe_plans += usize::from(!next.safe());
+        sailed.relaxed += usize::from(!next.relaxations.is_empty());
+        if let (Some(begun), Some(plan)) = (begun, next.planned.outcome.plan()) {
+            let left = next
+                .planned
+                .manoeuvres
+                .first()
+                .is_some_and(|m| m.begins <= 0.0);
+            let _ = (begun, plan);
+            sailed.turned_back += usize::from(!left);
+        }
+        run = next;
+    }
+    let cost = whole_space_time_error(&first.desired, &motion, first.time_weight);
+    sailed.cost = cost / first_cost;
+    let trajectory = Trajectory::with_corners(motion).ok()?;
+    let report = broken(&trajectory);
+    sailed.broken = report.broken().collect();
+    if let Some(manoeuvre) = report.manoeuvre {
+        sailed.turns = manoeuvre.turns;
+        sailed.speed_changes = manoeuvre.speed_changes;
+    }
+    sailed.apart = report.monitors[0].robustness.unwrap_or(f64::INFINITY);
+    Some(sailed)
+}
+
+/// Encounters with one target: `seeds` of each kind.
+pub fn run(seeds: Seeds, meeting: &Meeting, memory: bool) -> Report {
+    let mut report = Report::default();
+    println!("{seeds:?} of each kind, a plan every {STEP_S} s\n");
+    println!(
+        "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | plan 50/99 %, ms |"
+    );
+    println!("|{}", " --- |".repeat(13));
+    for kind in EncounterKind::ALL {
+        let name = kind.name();
+        let all: Vec<Option<Sailed>> = (seeds.clone().into_par_iter())
+            .map(|seed| {
+                let drawn = random_meeting(kind, seed, Placement::Random, meeting);
+                let mut scenario = drawn.expect("drawn").scenario;
+                scenario.compliance = Compliance::Rules;
+                scenario.memory = Memory::default();
+                sail(&scenario, memory)
+            })
+            .collect();
+        let lost = all.iter().filter(|s| s.is_none()).count();
+        if lost > 0 {
+            report.missed.push(format!("{name}: {lost} without a plan"));
+        }
+        let all: Vec<Sailed> = all.into_iter().flatten().collect();
+        let share = |p: f64, of: &dyn Fn(&Sailed) -> f64| {
+            let values: Vec<f64> = all.iter().map(of).collect();
+            quantile(&values, p)
+        };
+        let sum = |of: &dyn Fn(&Sailed) -> usize| all.iter().map(of).sum::<usize>();
+        let content = all.iter().filter(|s| s.broken.is_empty()).count();
+        let first = all.iter().filter(|s| s.broken_by_the_first == 0).count();
+        let bound = 1.0 - failure_bound(all.len() - content, all.len());
+        let turns = |p| share(p, &|s| s.turns as f64);
+        let speeds = |p| share(p, &|s| s.speed_changes as f64);
+        let times: Vec<f64> = all.iter().flat_map(|s| s.milliseconds.clone()).collect();
+        println!(
+            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {:.1}/{:.1} |",
+            all.len(),
+            100.0 * bound,
+            share(0.0, &|s| s.apart),
+            turns(0.5),
+            turns(0.95),
+            turns(1.0),
+            speeds(0.5),
+            speeds(0.95),
+            speeds(1.0),
+            share(0.5, &|s| s.cost),
+            share(0.95, &|s| s.cost),
+            sum(&|s| s.cycles),
+            sum(&|s| s.unsafe_plans),
+            sum(&|s| s.relaxed),
+            sum(&|s| s.turned_back),
+            quantile(&times, 0.5),
+            quantile(&times, 0.99),
+        );
+        let mut broken: BTreeMap<&str, usize> = BTreeMap::new();
+        for rule in all.iter().flat_map(|s| &s.broken) {
+            *broken.entry(rule).or_default() += 1;
+        }
+        if !broken.is_empty() {
+            println!("{name}: {broken:?}");
+        }
+    }
+    println!();
+    report
+}
