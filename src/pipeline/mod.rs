@@ -138,7 +138,7 @@ pub fn problem<'a>(
         deadline: deadline(scenario),
         first_turn: None,
         encountered: &[],
-        under_way: scenario.memory.under_way,
+        under_way: None,
     }
 }
 

@@ -418,12 +418,11 @@ impl Relaxer<'_> {
         let planner = self.scenario.planner;
         let obstacles = planner.outer_sets(level_sets(&whole, risk));
         let mut problem = self.problem(&obstacles);
-        let encounters = match (level, self.scenario.compliance) {
-            (RelaxationLevel::Compliant | RelaxationLevel::Rules, Compliance::Rules) => {
-                encountered(self.scenario, self.sets)
-            }
-            _ => Vec::new(),
-        };
+        let mut encounters = Vec::new();
+        if level <= RelaxationLevel::Rules && self.scenario.compliance == Compliance::Rules {
+            encounters = encountered(self.scenario, self.sets);
+            problem.under_way = self.scenario.memory.under_way;
+        }
         problem.encountered = &encounters;
         let facts = planner.facts();
         let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::relaxation::Attempt;
 use super::rules;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{Outcome, Plan, Planned, Problem};
+use crate::planner::{Outcome, Plan, Planned, PlannedManoeuvre, Problem};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -15,8 +15,9 @@ const WORTH_A_CHANGE: f64 = 0.98;
 
 /// The remainder, where it is better than the new plan of an attempt: where there is no new plan,
 /// where the new plan breaks rules that the remainder keeps, where a target has left the set that
-/// it was assumed to stay in, and where the new plan is hardly cheaper. Only a remainder that is
-/// clear of the same sets, in time, and starts at own ship's pose.
+/// it was assumed to stay in, where own ship returns to its route after a manoeuvre, and where the
+/// new plan is hardly cheaper. Only a remainder that is clear of the same sets, in time, and starts
+/// at own ship's pose.
 pub(super) fn better_remainder(
     scenario: &Scenario,
     problem: &Problem,
@@ -27,18 +28,20 @@ pub(super) fn better_remainder(
         Compliance::Rules => rules::breaks(scenario, &plan.trajectory),
         _ => 0,
     };
+    let memory = &scenario.memory;
+    let returns = |m: &PlannedManoeuvre| m.returns <= 0.0 && m.joins > 0.0;
+    let settled = !memory.left.is_empty() || memory.manoeuvres.iter().any(returns);
     let keep = match attempt.planned.outcome.plan() {
         None => true,
-        Some(_) if !scenario.memory.left.is_empty() => true,
         Some(new) => match breaks(&plan).cmp(&breaks(new)) {
             Ordering::Less => true,
             Ordering::Greater => false,
-            Ordering::Equal => new.cost >= WORTH_A_CHANGE * plan.cost,
+            Ordering::Equal => settled || new.cost >= WORTH_A_CHANGE * plan.cost,
         },
     };
     keep.then(|| Planned {
-        escape: scenario.memory.escape,
-        manoeuvres: scenario.memory.manoeuvres.clone(),
+        escape: memory.escape,
+        manoeuvres: memory.manoeuvres.clone(),
         ..Planned::of(Outcome::Solved(plan))
     })
 }

@@ -1,7 +1,7 @@
 //! The obstacles of every target, grown by own ship's footprint.
 
 use super::rules::without_domains_of_give_way_targets;
-use crate::colregs::{self, Encounter, Shapes};
+use crate::colregs::{self, Encounter, Role, Shapes};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::scenario::Scenario;
@@ -88,10 +88,12 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
     let own = &scenario.own_ship;
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
     let mut encounter = colregs::encounter(own, desired, target, horizon);
-    // a role lasts, whatever the desired trajectory would make of it now
-    if let Some(known) = scenario.memory.target(index).and_then(|known| known.role) {
-        encounter.role = known.role;
-        encounter.risk = Some(known);
+    if let Some(known) = scenario.memory.target(index) {
+        // a role lasts; another begins where own ship is, not where the desired trajectory has it
+        let from_here = desired.from(own.pose.position);
+        let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon);
+        encounter.risk = known.role.or_else(|| begins(target.ship()?));
+        encounter.role = encounter.risk.map_or(Role::None, |risk| risk.role);
     }
     // explicit sets are used unchanged: own ship is a point
     let explicit = |obstacle: Obstacle| TargetSets {

@@ -180,6 +180,18 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
+    /// The same motion beginning at another place.
+    pub(crate) fn from(&self, start: Vector) -> Self {
+        let moved = start - self.legs[0].start;
+        let legs = self.legs.iter().map(|leg| DesiredLeg {
+            start: leg.start + moved,
+            ..*leg
+        });
+        Self {
+            legs: legs.collect(),
+        }
+    }
+
     /// The motion with fewer legs. O(legs²) at worst.
     ///
     /// Omits waypoints within [`tolerance::LENGTH_M`] of the line between retained ones, if the

@@ -216,8 +216,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
-    let is_under_way = problem.under_way.is_some();
-    if !problem.duty().is_none() && (first_conflict.is_some() || is_under_way) {
+    let has_duty = !problem.duty().is_none() && first_conflict.is_some();
+    if has_duty || problem.under_way.is_some() {
         if let Some(kept) = manoeuvre::by_the_rules(&context, &nominal_motion, clock) {
             let plan = Plan::measured(problem, kept.motion, None);
             let outcome = match plan {

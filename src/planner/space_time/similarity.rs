@@ -120,7 +120,8 @@ impl Similarity {
             within: by_obstacle(proxies).map(|h| h[0].obstacle).collect(),
             all: problem.obstacles.len(),
         };
-        if !problem.land_obstacle.is_empty() || !problem.encountered.is_empty() {
+        let rules = !problem.encountered.is_empty() || problem.under_way.is_some();
+        if !problem.land_obstacle.is_empty() || rules {
             return of;
         }
         (of.length, of.time) = size(problem, proxies);
@@ -251,7 +252,7 @@ impl Similarity {
                     .mapped(|block| self.places(block, horizon))
             }),
             encountered: problem.encountered.iter().map(ship).collect(),
-            // only beside encountered targets, with which nothing is scaled or mirrored
+            // nothing is scaled or mirrored then
             under_way: problem.under_way.map(|begun| UnderWay {
                 first_heading: wrap(begun.first_heading - self.origin.heading),
                 heading: wrap(begun.heading - self.origin.heading),

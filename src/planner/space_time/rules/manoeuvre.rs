@@ -236,7 +236,7 @@ fn one_by_one(
         let lasts = |e: &Encountered| under_way.is_some() && e.latched <= 0.0;
         let contact = match first(&kept.motion) {
             Some(contact) => contact,
-            None if encountered.iter().any(lasts) => 0.0,
+            None if under_way.is_some() => 0.0,
             None => return Some(kept),
         };
         if contact < from {
