@@ -45,7 +45,7 @@ use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
-use rules::manoeuvre;
+use rules::groups;
 use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
@@ -218,7 +218,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let first_conflict = first_conflict.reduce(f64::min);
     let has_duty = !problem.duty().is_none() && first_conflict.is_some();
     if has_duty || problem.under_way.is_some() {
-        if let Some(kept) = manoeuvre::by_the_rules(&context, &nominal_motion, clock) {
+        if let Some(kept) = groups::by_the_rules(&context, &nominal_motion, clock) {
             let plan = Plan::measured(problem, kept.motion, None);
             let outcome = match plan {
                 Some(plan) if clock.is_up() => Outcome::Deadline(Some(plan)),

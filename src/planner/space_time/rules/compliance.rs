@@ -2,7 +2,9 @@
 //! their nominal tracks.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
-use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN, Thresholds};
+use crate::colregs::{
+    Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory, Thresholds,
+};
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
@@ -56,7 +58,17 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
             turn_rate: 0.0,
             domain: DomainKind::Hull,
         };
-        ComplianceReport::samples(&own, &track, None, thresholds)
+        // a role that has begun before the plan is kept
+        let known = (e.latched < 0.0).then(|| TargetMemory {
+            role: Some(Risk {
+                role: e.role,
+                time: e.latched,
+                own: e.own,
+                target: e.ship,
+            }),
+            ..TargetMemory::default()
+        });
+        ComplianceReport::samples(&own, &track, known.as_ref(), thresholds)
     });
     let samples: Vec<_> = samples.collect();
     let reports = ComplianceReport::of_all(samples.iter(), thresholds);

@@ -10,7 +10,7 @@
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, ON_COURSE, Role, SMALL_TURN,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, ON_COURSE, Role, SMALL_TURN,
     Thresholds,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
@@ -21,9 +21,9 @@ use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::{first_contact, first_met};
+use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::{broken_rules, complies};
+use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use crate::tolerance::{self, TOUCH_M};
@@ -105,20 +105,20 @@ enum FirstAlteration {
 
 /// A clear manoeuvre.
 #[derive(Debug, Clone)]
-struct Found {
+pub(super) struct Found {
     manoeuvre: Manoeuvre,
-    motion: Vec<Segment>,
+    pub motion: Vec<Segment>,
     /// Seconds at which own ship turns back or changes its speed back.
     returns: f64,
     /// Seconds at which own ship is on the route again.
-    joined: f64,
+    pub joined: f64,
     /// Cost by which manoeuvres are compared, m².
     rank: f64,
 }
 
 impl Found {
     /// The manoeuvre as a plan names it; `under_way` where it goes on with one that has begun.
-    fn planned(&self, under_way: Option<UnderWay>) -> PlannedManoeuvre {
+    pub(super) fn planned(&self, under_way: Option<UnderWay>) -> PlannedManoeuvre {
         let leave = self.manoeuvre.leave;
         let before = self.motion.iter().find(|s| s.end_time() > leave);
         let heading = before.map_or(0.0, |s| s.pose_at(leave).heading);
@@ -135,7 +135,7 @@ impl Found {
         }
     }
 
-    fn escape(&self) -> Escape {
+    pub(super) fn escape(&self) -> Escape {
         let (turn, speed) = match self.manoeuvre.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
             FirstAlteration::Slow { speed } => (0.0, Some(speed)),
@@ -163,157 +163,8 @@ const FROM_ALL: fn(&Passing) -> bool = |_| true;
 const FROM_KEPT_CLEAR: fn(&Passing) -> bool = |p| p.encountered.role.duties().keeps_clear;
 const FROM_NONE: fn(&Passing) -> bool = |_| false;
 
-/// A plan by the rules.
-pub(crate) struct RulePlan {
-    pub motion: Vec<Segment>,
-    /// The escape of a ship that stands on.
-    pub escape: Option<Escape>,
-    pub manoeuvres: Vec<PlannedManoeuvre>,
-}
-
-/// Targets that are passed in one manoeuvre.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Together {
-    /// Those whose risk has begun when the first set would be met.
-    AtContact,
-    /// Those whose risk has begun when own ship is on the route again.
-    UntilJoined,
-    All,
-}
-
-/// The cheapest motion of this family for each conflict of the nominal motion, one after another:
-/// the next manoeuvre begins when own ship is on the route again. Of several targets those are
-/// taken together that leave the fewest rules broken. `None` where no manoeuvre is found.
-pub(crate) fn by_the_rules(
-    context: &Context,
-    nominal_motion: &[Segment],
-    clock: Clock,
-) -> Option<RulePlan> {
-    let several = context.problem.encountered.len() > 1;
-    let mut best: Option<(usize, RulePlan)> = None;
-    for together in [Together::AtContact, Together::UntilJoined, Together::All] {
-        let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
-            continue;
-        };
-        let broken = match several {
-            true => broken_rules(context.problem, &plan.motion),
-            false => 0,
-        };
-        if best.as_ref().is_none_or(|(least, _)| broken < *least) {
-            best = Some((broken, plan));
-        }
-        if broken == 0 || clock.is_up() {
-            break;
-        }
-    }
-    best.map(|(_, plan)| plan)
-}
-
-fn one_by_one(
-    context: &Context,
-    nominal_motion: &[Segment],
-    together: Together,
-    clock: Clock,
-) -> Option<RulePlan> {
-    let encountered = context.problem.encountered;
-    // a speed that is mixed from others is not held
-    let speed = context.problem.desired.legs()[0].speed;
-    let listed = |u: &f64| (u - speed).abs() <= tolerance::FIGURE * speed;
-    let holds = context.problem.own.speeds.iter().any(listed);
-    let first = |motion: &[Segment]| {
-        let contact = first_contact(context.proxies, motion).map(|c| c.1);
-        let grounding = land::first_contact(context.problem.land_obstacle, motion);
-        contact.into_iter().chain(grounding).reduce(f64::min)
-    };
-    let mut kept = RulePlan {
-        motion: nominal_motion.to_vec(),
-        escape: None,
-        manoeuvres: Vec::new(),
-    };
-    let mut from = 0.0;
-    for step in 0..=encountered.len() {
-        let under_way = context.problem.under_way.filter(|_| step == 0);
-        let lasts = |e: &Encountered| under_way.is_some() && e.latched <= 0.0;
-        let contact = match first(&kept.motion) {
-            Some(contact) => contact,
-            None if under_way.is_some() => 0.0,
-            None => return Some(kept),
-        };
-        if contact < from {
-            return None;
-        }
-        let left = encountered.iter().filter(|e| e.tcpa > from || lasts(e));
-        let mut until = match together {
-            Together::All => f64::INFINITY,
-            _ => contact,
-        };
-        let (group, found) = loop {
-            let group: Vec<_> = left
-                .clone()
-                .filter(|e| e.latched <= until)
-                .copied()
-                .collect();
-            let all = group.len() == left.clone().count();
-            let found = resolved(
-                context,
-                &group,
-                all,
-                (&kept.motion, from),
-                contact,
-                clock,
-                under_way,
-            )?;
-            let begun = |e: &Encountered| e.latched > until && e.latched < found.joined;
-            if together != Together::UntilJoined || !left.clone().any(begun) {
-                break (group, found);
-            }
-            until = found.joined;
-        };
-        if step == 0 {
-            let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-            let holds = holds && under_way.is_none();
-            kept.escape = (stands_on && holds).then(|| found.escape());
-        }
-        from = found.joined;
-        kept.manoeuvres.push(found.planned(under_way));
-        kept.motion = found.motion;
-    }
-    None
-}
-
-/// A manoeuvre toward some targets, from a motion that is on the route from a time on. One that is
-/// under way goes on; where that cannot be, another begins.
-fn resolved(
-    context: &Context,
-    group: &[Encountered],
-    all: bool,
-    motion: (&[Segment], f64),
-    contact: f64,
-    clock: Clock,
-    under_way: Option<UnderWay>,
-) -> Option<Found> {
-    let problem = Problem {
-        encountered: group,
-        under_way,
-        ..*context.problem
-    };
-    let context = Context {
-        problem: &problem,
-        ..*context
-    };
-    let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
-    if under_way.is_some() {
-        let gone_on = manoeuvres.going_on();
-        return gone_on.or_else(|| resolved(&context, group, all, motion, contact, clock, None));
-    }
-    match problem.duty().stands_on {
-        true => manoeuvres.standing_on(contact),
-        false => manoeuvres.giving_way(contact),
-    }
-}
-
 /// The manoeuvres of one problem.
-struct Manoeuvres<'s, 'a> {
+pub(super) struct Manoeuvres<'s, 'a> {
     context: &'s Context<'a>,
     nominal_motion: &'s [Segment],
     /// Seconds from which on the nominal motion follows the route.
@@ -330,7 +181,7 @@ struct Manoeuvres<'s, 'a> {
 }
 
 impl<'s, 'a> Manoeuvres<'s, 'a> {
-    fn new(
+    pub(super) fn new(
         context: &'s Context<'a>,
         (nominal_motion, from): (&'s [Segment], f64),
         all: bool,
@@ -379,7 +230,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// The cheapest end of the manoeuvre that is under way.
-    fn going_on(&mut self) -> Option<Found> {
+    pub(super) fn going_on(&mut self) -> Option<Found> {
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(0.0)?;
             Some(search.improved(found, 0.0..=0.0))
@@ -388,7 +239,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
     /// motion meets an obstacle after `contact` seconds.
-    fn giving_way(&mut self, contact: f64) -> Option<Found> {
+    pub(super) fn giving_way(&mut self, contact: f64) -> Option<Found> {
         let latest = self.ample().min(contact);
         self.with_a_length_if_possible(|search| {
             let from = search.from;
@@ -403,7 +254,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
     /// there is an escape.
-    fn standing_on(&mut self, contact: f64) -> Option<Found> {
+    pub(super) fn standing_on(&mut self, contact: f64) -> Option<Found> {
         if self.hurries() {
             return None;
         }
@@ -693,7 +544,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         candidates.into_iter().find_map(|(rank, out, manoeuvre)| {
             let out = &outs[out];
             let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
-            self.is_allowed(out, &motion, joined).then(|| Found {
+            self.is_allowed(out, &motion, joined).then_some(Found {
                 manoeuvre,
                 returns: out.returns(manoeuvre.after),
                 joined,

@@ -1,4 +1,6 @@
-//! Manoeuvres by the collision regulations: the family, and what else a motion has to comply with.
+//! Manoeuvres by the collision regulations: the family, its manoeuvres one after another, and what
+//! else a motion has to comply with.
 
 mod compliance;
-pub(crate) mod manoeuvre;
+pub(crate) mod groups;
+mod manoeuvre;

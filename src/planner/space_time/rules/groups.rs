@@ -1,0 +1,154 @@
+//! Several targets: those that are passed in one manoeuvre, and the manoeuvres one after another.
+
+use crate::colregs::{Duty, Encountered};
+use crate::planner::clock::Clock;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::first_contact;
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::rules::compliance::broken_rules;
+use crate::planner::space_time::rules::manoeuvre::{Found, Manoeuvres};
+use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// A plan by the rules.
+pub(crate) struct RulePlan {
+    pub motion: Vec<Segment>,
+    /// The escape of a ship that stands on.
+    pub escape: Option<Escape>,
+    pub manoeuvres: Vec<PlannedManoeuvre>,
+}
+
+/// Targets that are passed in one manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Together {
+    /// Those whose risk has begun when the first set would be met.
+    AtContact,
+    /// Those whose risk has begun when own ship is on the route again.
+    UntilJoined,
+    All,
+}
+
+/// The cheapest motion of this family for each conflict of the nominal motion, one after another:
+/// the next manoeuvre begins when own ship is on the route again. Of several targets those are
+/// taken together that leave the fewest rules broken. `None` where no manoeuvre is found.
+pub(crate) fn by_the_rules(
+    context: &Context,
+    nominal_motion: &[Segment],
+    clock: Clock,
+) -> Option<RulePlan> {
+    let contact = first_conflict(context, nominal_motion).unwrap_or(f64::INFINITY);
+    let mut encountered = context.problem.encountered.iter();
+    if encountered.all(|e| e.latched <= contact) {
+        return one_by_one(context, nominal_motion, Together::All, clock);
+    }
+    let mut best: Option<(usize, RulePlan)> = None;
+    for together in [Together::AtContact, Together::UntilJoined, Together::All] {
+        let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
+            continue;
+        };
+        let broken = broken_rules(context.problem, &plan.motion);
+        if best.as_ref().is_none_or(|(least, _)| broken < *least) {
+            best = Some((broken, plan));
+        }
+        if broken == 0 || clock.is_up() {
+            break;
+        }
+    }
+    best.map(|(_, plan)| plan)
+}
+
+/// Seconds at which a motion first meets a set or land.
+fn first_conflict(context: &Context, motion: &[Segment]) -> Option<f64> {
+    let contact = first_contact(context.proxies, motion).map(|c| c.1);
+    let grounding = land::first_contact(context.problem.land_obstacle, motion);
+    contact.into_iter().chain(grounding).reduce(f64::min)
+}
+
+fn one_by_one(
+    context: &Context,
+    nominal_motion: &[Segment],
+    together: Together,
+    clock: Clock,
+) -> Option<RulePlan> {
+    let encountered = context.problem.encountered;
+    // a speed that is mixed from others is not held
+    let speed = context.problem.desired.legs()[0].speed;
+    let listed = |u: &f64| (u - speed).abs() <= tolerance::FIGURE * speed;
+    let holds = context.problem.own.speeds.iter().any(listed);
+    let mut kept = RulePlan {
+        motion: nominal_motion.to_vec(),
+        escape: None,
+        manoeuvres: Vec::new(),
+    };
+    let mut from = 0.0;
+    for step in 0..=encountered.len() {
+        let under_way = context.problem.under_way.filter(|_| step == 0);
+        let contact = match first_conflict(context, &kept.motion) {
+            Some(contact) => contact,
+            None if under_way.is_some() => 0.0,
+            None => return Some(kept),
+        };
+        if contact < from {
+            return None;
+        }
+        let lasts = |e: &Encountered| under_way.is_some() && e.latched <= 0.0;
+        let left = encountered.iter().filter(|e| e.tcpa > from || lasts(e));
+        let mut until = match together {
+            Together::All => f64::INFINITY,
+            _ => contact,
+        };
+        let (group, found) = loop {
+            let begun = left.clone().filter(|e| e.latched <= until);
+            let group: Vec<_> = begun.copied().collect();
+            let all = group.len() == left.clone().count();
+            let motion = (&kept.motion[..], from);
+            let found = resolved(context, &group, all, motion, contact, clock, under_way)?;
+            let begins = |e: &Encountered| e.latched > until && e.latched < found.joined;
+            if together != Together::UntilJoined || !left.clone().any(begins) {
+                break (group, found);
+            }
+            until = found.joined;
+        };
+        if step == 0 {
+            let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+            let holds = holds && under_way.is_none();
+            kept.escape = (stands_on && holds).then(|| found.escape());
+        }
+        from = found.joined;
+        kept.manoeuvres.push(found.planned(under_way));
+        kept.motion = found.motion;
+    }
+    None
+}
+
+/// A manoeuvre toward some targets, from a motion that is on the route from a time on. One that is
+/// under way goes on; where that cannot be, another begins.
+fn resolved(
+    context: &Context,
+    group: &[Encountered],
+    all: bool,
+    motion: (&[Segment], f64),
+    contact: f64,
+    clock: Clock,
+    under_way: Option<UnderWay>,
+) -> Option<Found> {
+    let problem = Problem {
+        encountered: group,
+        under_way,
+        ..*context.problem
+    };
+    let context = Context {
+        problem: &problem,
+        ..*context
+    };
+    let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
+    if under_way.is_some() {
+        let gone_on = manoeuvres.going_on();
+        return gone_on.or_else(|| resolved(&context, group, all, motion, contact, clock, None));
+    }
+    match problem.duty().stands_on {
+        true => manoeuvres.standing_on(contact),
+        false => manoeuvres.giving_way(contact),
+    }
+}
