@@ -190,27 +190,30 @@ pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memo
         pose: own.pose,
         speed: remainder.first().map_or(own.speed, |s| s.speed),
     };
+    let manoeuvres = previous.manoeuvres.iter();
+    let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
+        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
+        .filter(|m| m.joins > 0.0)
+        .collect();
+    let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S;
+    let is_off_route = manoeuvres.iter().any(|m| begun(&m));
     let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
     let known = scenario.targets.iter().enumerate().map(|(index, target)| {
         let mut memory = target_memory(previous, &target.name, elapsed);
         let Some(ship) = target.ship() else {
             return TargetMemory::default();
         };
-        memory.role = match scenario.memory.target(index).and_then(|known| known.role) {
-            Some(given) => Some(given),
-            None => role_now(&samples, now, ship, &memory),
-        };
+        // the domain stays as it is until own ship is on its route again
+        let lasting = memory.role.filter(|_| is_off_route);
+        let given = scenario.memory.target(index).and_then(|known| known.role);
+        let now = || role_now(&samples, now, ship, &memory);
+        memory.role = given.or_else(now).or(lasting);
         memory
     });
     let mut targets: Vec<TargetMemory> = known.collect();
     forget(&mut sailed, &mut targets);
-    let manoeuvres = previous.manoeuvres.iter();
-    let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
-        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
-        .filter(|m| m.joins > 0.0)
-        .collect();
-    let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S && m.returns > 0.0;
-    let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
+    let goes_on = |m: &&PlannedManoeuvre| begun(m) && m.returns > 0.0;
+    let under_way = manoeuvres.iter().find(goes_on).zip(remainder.first());
     Ok(Memory {
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
             begins: manoeuvre.begins,

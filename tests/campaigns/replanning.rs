@@ -9,6 +9,7 @@ use searoom::colregs::{
 };
 use searoom::document::{PlanDocument, memory_after};
 use searoom::pipeline::{self, Run};
+use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
 use searoom::scenario::{Compliance, Memory, Scenario};
 use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
@@ -26,6 +27,7 @@ const LONGEST_S: f64 = 3000.0;
 
 /// What one encounter came to.
 struct Sailed {
+    seed: u64,
     /// Rules and monitors that the sailed motion breaks.
     broken: Vec<&'static str>,
     /// Rules and monitors that the first plan breaks.
@@ -63,7 +65,7 @@ fn later(first: &Scenario, run: &Run, elapsed: f64, step: f64, memory: bool) -> 
     Some(scenario)
 }
 
-fn sail(first: &Scenario, memory: bool) -> Option<Sailed> {
+fn sail(first: &Scenario, seed: u64, memory: bool) -> Option<Sailed> {
     let mut run = pipeline::run(first.clone());
     let plan = run.planned.outcome.plan()?;
     let first_cost = plan.cost;
@@ -74,6 +76,7 @@ fn sail(first: &Scenario, memory: bool) -> Option<Sailed> {
         ComplianceReport::judge(&meeting, Thresholds::standard())
     };
     let mut sailed = Sailed {
+        seed,
         broken: Vec::new(),
         broken_by_the_first: broken(&plan.trajectory).broken().count(),
         apart: f64::INFINITY,
@@ -109,15 +112,9 @@ fn sail(first: &Scenario, memory: bool) -> Option<Sailed> {
         sailed.milliseconds.push(next.plan_time.as_secs_f64() * 1e3);
         sailed.unsafe_plans += usize::from(!next.safe());
         sailed.relaxed += usize::from(!next.relaxations.is_empty());
-        if let (Some(begun), Some(plan)) = (begun, next.planned.outcome.plan()) {
-            let left = next
-                .planned
-                .manoeuvres
-                .first()
-                .is_some_and(|m| m.begins <= 0.0);
-            let _ = (begun, plan);
-            sailed.turned_back += usize::from(!left);
-        }
+        let goes_on = |m: &PlannedManoeuvre| begun.is_none_or(|b| b.begins == m.begins);
+        let goes_on = next.planned.manoeuvres.first().is_some_and(goes_on);
+        sailed.turned_back += usize::from(begun.is_some() && !goes_on);
         run = next;
     }
     let cost = whole_space_time_error(&first.desired, &motion, first.time_weight);
@@ -149,7 +146,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, memory: bool) -> Report {
                 let mut scenario = drawn.expect("drawn").scenario;
                 scenario.compliance = Compliance::Rules;
                 scenario.memory = Memory::default();
-                sail(&scenario, memory)
+                sail(&scenario, seed, memory)
             })
             .collect();
         let lost = all.iter().filter(|s| s.is_none()).count();
@@ -188,12 +185,26 @@ pub fn run(seeds: Seeds, meeting: &Meeting, memory: bool) -> Report {
             quantile(&times, 0.5),
             quantile(&times, 0.99),
         );
-        let mut broken: BTreeMap<&str, usize> = BTreeMap::new();
-        for rule in all.iter().flat_map(|s| &s.broken) {
-            *broken.entry(rule).or_default() += 1;
+        let mut broken: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+        for s in &all {
+            let turned_back = (s.turned_back > 0).then_some("turned back");
+            let unsafe_plan = (s.unsafe_plans > 0).then_some("unsafe");
+            for what in s
+                .broken
+                .iter()
+                .copied()
+                .chain(turned_back)
+                .chain(unsafe_plan)
+            {
+                broken.entry(what).or_default().push(s.seed);
+            }
         }
-        if !broken.is_empty() {
-            println!("{name}: {broken:?}");
+        for (what, seeds) in broken {
+            println!(
+                "  {name}: {what}: {}, seeds {:?}",
+                seeds.len(),
+                &seeds[..seeds.len().min(8)]
+            );
         }
     }
     println!();
