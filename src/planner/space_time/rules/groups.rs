@@ -37,7 +37,8 @@ pub(crate) fn by_the_rules(
     nominal_motion: &[Segment],
     clock: Clock,
 ) -> Option<RulePlan> {
-    let contact = first_conflict(context, nominal_motion).unwrap_or(f64::INFINITY);
+    // a manoeuvre under way is for the present risks, also where nothing would be met
+    let contact = first_conflict(context, nominal_motion).unwrap_or(0.0);
     let mut encountered = context.problem.encountered.iter();
     if encountered.all(|e| e.latched <= contact) {
         return one_by_one(context, nominal_motion, Together::All, clock);
