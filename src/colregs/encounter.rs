@@ -64,6 +64,8 @@ impl Risk {
 pub struct TargetMemory {
     /// The role that own ship has had since some time, and both ships then.
     pub role: Option<Risk>,
+    /// True where the last role has ended: the target is past and clear.
+    pub passed: bool,
     /// The target's states at earlier times, in order of time, seconds.
     pub track: Vec<(f64, SteadyShip)>,
 }

@@ -47,6 +47,8 @@ pub struct TargetMemoryDocument {
     pub name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub role: Option<KnownRoleDocument>,
+    #[serde(default)]
+    pub passed: bool,
     pub track: Vec<StateDocument>,
 }
 
@@ -92,6 +94,7 @@ impl MemoryDocument {
                         own_ship: state_document(risk.time, &risk.own),
                         target: state_document(risk.time, &risk.target),
                     }),
+                    passed: known.passed,
                     track: (known.track.iter())
                         .map(|(time, ship)| state_document(*time, ship))
                         .collect(),
@@ -207,7 +210,9 @@ pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memo
         let lasting = memory.role.filter(|_| is_off_route);
         let given = scenario.memory.target(index).and_then(|known| known.role);
         let now = || role_now(&samples, now, ship, &memory);
-        memory.role = given.or_else(now).or(lasting);
+        let role = given.or_else(now).or(lasting);
+        memory.passed = role.is_none() && (memory.passed || memory.role.is_some());
+        memory.role = role;
         memory
     });
     let mut targets: Vec<TargetMemory> = known.collect();
@@ -289,6 +294,7 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
     let mut memory = TargetMemory::default();
     if let Some(before) = before {
         memory.role = before.role.as_ref().and_then(|known| risk(known, elapsed));
+        memory.passed = before.passed;
         memory.track = (before.track.iter())
             .map(|state| steady(state, elapsed))
             .collect();

@@ -80,7 +80,17 @@ impl TargetSets {
 /// The obstacles and the encounter of every target, in the scenario's order.
 pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
     let targets = scenario.targets.iter().enumerate();
-    let sets = targets.map(|(index, target)| target_sets(scenario, index, target));
+    let sets = targets.map(|(index, target)| {
+        let mut sets = target_sets(scenario, index, target);
+        if scenario
+            .memory
+            .target(index)
+            .is_some_and(|known| known.passed)
+        {
+            sets.remove_domain();
+        }
+        sets
+    });
     without_domains_of_give_way_targets(scenario, sets.collect())
 }
 
