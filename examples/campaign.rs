@@ -50,6 +50,9 @@ enum Campaign {
         /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
         #[arg(long)]
         far: bool,
+        /// What the targets do
+        #[arg(long, value_enum, default_value = "constant")]
+        targets: replanning::Behaviour,
         /// Every plan begins anew
         #[arg(long)]
         no_memory: bool,
@@ -117,10 +120,11 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Replanning {
             scenes,
             far,
+            targets,
             no_memory,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
-            replanning::run(scenes.of_each(5), &meeting, !no_memory)
+            replanning::run(scenes.of_each(5), &meeting, targets, !no_memory)
         }
         Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),

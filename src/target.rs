@@ -59,6 +59,9 @@ pub struct ShipTrack {
     /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
     /// within `course_spread + turn_rate t`.
     pub turn_rate: f64,
+    /// Velocities that the ship is known to keep to, from before t = 0; `None` for any. Not used
+    /// for a ship that may turn.
+    pub kept_velocities: Option<ConvexPolygon>,
     /// The requested ship domain.
     pub domain: DomainKind,
 }
@@ -194,7 +197,11 @@ impl ShipTrack {
             }
         }
         // finite by the contract of the type; should a number overflow, every velocity is possible
-        ConvexPolygon::hull(&points).unwrap_or_else(|_| everything())
+        let all = ConvexPolygon::hull(&points).unwrap_or_else(|_| everything());
+        match &self.kept_velocities {
+            Some(kept) if self.turn_rate == 0.0 => all.outer_intersection(kept).unwrap_or(all),
+            _ => all,
+        }
     }
 }
 

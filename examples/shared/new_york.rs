@@ -58,6 +58,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },
             turn_rate: 0.0,
+            kept_velocities: None,
             // a moored vessel needs no ship domain
             domain: if at_rest {
                 DomainKind::Hull

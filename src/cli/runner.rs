@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use searoom::document::{PlanDocument, memory_after};
+use searoom::document::{PlanDocument, remember};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::scenario::import::Assumed;
@@ -122,11 +122,8 @@ impl Previous {
 
     /// Adds what the plan leaves to a scenario; a note where it does not fit and is ignored.
     fn remember(&self, scenario: &mut Scenario) -> Result<Option<String>, Fault> {
-        match memory_after(&self.plan, scenario) {
-            Ok(memory) => {
-                scenario.memory = memory;
-                Ok(None)
-            }
+        match remember(&self.plan, scenario) {
+            Ok(()) => Ok(None),
             Err(fault) if self.ignore => {
                 let name = self.file.display();
                 Ok(Some(format!("{name}: ignored: {fault}")))

@@ -78,14 +78,20 @@ impl TargetMemory {
 
     /// The target at a time before t = 0, from the last state before; `None` from then on.
     pub fn at(&self, time: f64) -> Option<SteadyShip> {
-        let known = self.track.partition_point(|(t, _)| *t <= time);
-        let (then, ship) = self.track.get(known.checked_sub(1)?)?;
-        let moved = ship.velocity() * (time - then);
-        (time < 0.0).then(|| SteadyShip {
-            pose: Pose::new(ship.pose.position + moved, ship.pose.heading),
-            ..*ship
-        })
+        (time < 0.0).then(|| state_at(&self.track, time))?
     }
+}
+
+/// A ship at a time that keeps course and speed from each state to the next; `None` before the
+/// first.
+pub(super) fn state_at(track: &[(f64, SteadyShip)], time: f64) -> Option<SteadyShip> {
+    let known = track.partition_point(|(t, _)| *t <= time);
+    let (then, ship) = track.get(known.checked_sub(1)?)?;
+    let moved = ship.velocity() * (time - then);
+    Some(SteadyShip {
+        pose: Pose::new(ship.pose.position + moved, ship.pose.heading),
+        ..*ship
+    })
 }
 
 /// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
@@ -278,6 +284,7 @@ mod tests {
             speed_spread: 0.0,
             course_spread: 0.0,
             turn_rate: 0.0,
+            kept_velocities: None,
             domain: DomainKind::Colregs,
         }
     }

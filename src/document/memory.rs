@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{SegmentDocument, StartDocument};
+use super::parts::{SegmentDocument, StartDocument, VelocitySetDocument};
 use super::plan::{PlanDocument, segment_document, start};
 use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
@@ -16,7 +16,7 @@ use crate::geometry::ConvexPolygon;
 use crate::pipeline::Run;
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
-use crate::target::{DomainKind, ShipTrack, Uncertainty};
+use crate::target::{DomainKind, Motion, ShipTrack, Uncertainty};
 use crate::tolerance::{self, POSITION_SIGMAS};
 use crate::trajectory::Segment;
 use crate::vessel::Hull;
@@ -30,6 +30,9 @@ const NEW_COURSE_DEG: f64 = 20.0;
 
 /// Metres per second, and metres: rounding of a target's state in a file.
 const ASSUMED: f64 = 1e-6;
+
+/// A velocity set with more vertices is not narrowed further.
+const MOST_VERTICES: usize = 40;
 
 /// Seconds of motion that are kept before the first role.
 const BEFORE_S: f64 = 2.0;
@@ -128,13 +131,43 @@ impl From<&PlannedManoeuvreDocument> for PlannedManoeuvre {
     }
 }
 
-/// What a plan leaves to its scenario at a later time.
+/// Adds to a scenario what a plan of an earlier time leaves to it.
 ///
 /// Roles last until the target is past and clear; a role that has begun since is found on the
 /// motion so far. A target whose course has changed by more than 20 degrees gives own ship the role
-/// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)).
-/// The fault says why the plan is not one that own ship follows. O(seconds sailed × targets).
-pub fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, Fault> {
+/// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)). A target
+/// that does not turn keeps to the velocities of both plans; one that has left them is named, and
+/// its set begins anew. The fault says why the plan is not one that own ship follows.
+/// O(seconds sailed × targets).
+pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), Fault> {
+    let memory = memory_after(previous, scenario)?;
+    for target in &mut scenario.targets {
+        let then = previous
+            .targets
+            .iter()
+            .find(|then| then.name == target.name);
+        let then = then.and_then(|then| then.ship.as_ref()).map(track);
+        if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
+            && then.turn_rate == 0.0
+            && ship.turn_rate == 0.0
+            && !memory.left.contains(&target.name)
+        {
+            let kept = then.outer_velocity_set();
+            ship.kept_velocities = Some(match kept.vertices().len() <= MOST_VERTICES {
+                true => kept,
+                false => ShipTrack {
+                    kept_velocities: None,
+                    ..then
+                }
+                .outer_velocity_set(),
+            });
+        }
+    }
+    scenario.memory = memory;
+    Ok(())
+}
+
+fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, Fault> {
     if previous.scenario != scenario.title {
         let found = format_args!("a plan of \"{}\"", previous.scenario);
         let allowed = format_args!("a plan of \"{}\"", scenario.title);
@@ -283,6 +316,16 @@ fn track(ship: &ShipDocument) -> ShipTrack {
         speed_spread: ship.speed_spread_mps,
         course_spread: radians_from_deg(ship.course_spread_deg),
         turn_rate: radians_from_deg(ship.turn_rate_deg_per_s),
+        kept_velocities: match &ship.kept_velocities {
+            Some(VelocitySetDocument::Polygon { vertices_mps }) => {
+                let points: Vec<Vector> = vertices_mps
+                    .iter()
+                    .map(|[x, y]| Vector::new(*x, *y))
+                    .collect();
+                ConvexPolygon::hull(&points).ok()
+            }
+            _ => None,
+        },
         domain: DomainKind::Hull,
     }
 }

@@ -37,7 +37,7 @@ pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
-    TargetMemoryDocument, memory_after,
+    TargetMemoryDocument, remember,
 };
 pub use parts::*;
 pub(crate) use path_time::paths;

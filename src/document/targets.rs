@@ -33,6 +33,8 @@ pub struct ShipDocument {
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
     pub turn_rate_deg_per_s: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept_velocities: Option<VelocitySetDocument>,
 }
 
 /// Velocity set with the end of its time interval.
@@ -76,6 +78,8 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         speed_spread_mps: track.speed_spread,
         course_spread_deg: deg_from_radians(track.course_spread),
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
+        kept_velocities: (track.kept_velocities.as_ref())
+            .map(|set| velocity_set(&ConvexSet::from(set.clone()))),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Convex polygons, including points (one vertex) and segments (two).
 
+use super::boxes::clipped;
 use super::{Window, rounded};
 use crate::frame::{Vector, cross, to_starboard};
 use crate::tolerance;
@@ -371,6 +372,32 @@ impl ConvexPolygon {
             nearest = nearest.min((p - a - e * t).norm());
         }
         if outside { nearest } else { -nearest }
+    }
+
+    /// An outer polygon of the intersection, larger by rounding. `None` where the two do not meet,
+    /// and where one without an interior is in part outside the other. O(vertices²).
+    pub fn outer_intersection(&self, other: &Self) -> Option<Self> {
+        let slack = tolerance::DUPLICATE * self.reach().max(other.reach());
+        let within = |a: &Self, b: &Self| {
+            let mut vertices = a.vertices.iter();
+            vertices.all(|p| b.signed_distance(*p) <= slack)
+        };
+        if within(self, other) {
+            return Some(self.clone());
+        }
+        if within(other, self) {
+            return Some(other.clone());
+        }
+        let n = other.vertices.len();
+        if n < 3 || self.vertices.len() < 3 {
+            return None;
+        }
+        let edges = (0..n).map(|i| (other.vertices[i], other.vertices[(i + 1) % n]));
+        let kept = edges.fold(self.vertices.clone(), |kept, (a, b)| {
+            let outward = crate::frame::to_starboard(b - a).normalize();
+            clipped(&kept, |p| outward.dot(&(p - a)) - slack)
+        });
+        Self::hull(&kept).ok()
     }
 
     /// True when `p` is in the closed set. NaN is inside.

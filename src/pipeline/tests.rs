@@ -78,6 +78,7 @@ fn track(x: f64, y: f64, heading: f64, speed: f64) -> ShipTrack {
         speed_spread: 0.5,
         course_spread: 0.08,
         turn_rate: 0.0,
+        kept_velocities: None,
         domain: DomainKind::Colregs,
     }
 }

@@ -368,6 +368,7 @@ fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<
         speed_spread,
         course_spread,
         turn_rate: 0.0,
+        kept_velocities: None,
         domain: DomainKind::Colregs,
     };
     let own = |time: f64| Pose::new(Vector::new(OWN_SPEED * time, 0.0), 0.0);

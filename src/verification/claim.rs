@@ -382,6 +382,12 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
                     ship.turn_rate_deg_per_s,
                 )?),
                 // The ship domain is no part of the proof.
+                kept_velocities: match &ship.kept_velocities {
+                    Some(set) => plane_set(&at("kept_velocities"), set)?
+                        .as_polygon()
+                        .cloned(),
+                    None => None,
+                },
                 domain: DomainKind::Hull,
             })
         }

@@ -86,6 +86,7 @@ pub(super) struct ShipFile {
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
     pub turn_rate_deg_per_s: f64,
+    pub kept_velocities: Option<SetFile>,
 }
 
 /// Set of positions or of velocities. The two have different keys, and one of them is present.

@@ -125,6 +125,7 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
                     speed_spread: 0.2,
                     course_spread: 0.03,
                     turn_rate: 0.0,
+                    kept_velocities: None,
                     domain: DomainKind::Hull,
                 }),
                 representation: Representation::Polytope,

@@ -194,6 +194,7 @@ pub fn scene(seed: u64) -> Scenario {
             speed_spread: rng.random_range(0.0..0.2),
             course_spread: rng.random_range(0.0..0.07),
             turn_rate: 0.0,
+            kept_velocities: None,
             domain: DomainKind::Hull,
         };
         if start.norm() > 1000.0 {

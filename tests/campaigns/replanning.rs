@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::colregs::{
-    Thresholds,
+    SteadyShip, Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
 };
-use searoom::document::{PlanDocument, memory_after};
+use searoom::document::{PlanDocument, remember};
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
 use searoom::scenario::{Compliance, Memory, Scenario};
 use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
-use searoom::target::Motion;
+use searoom::target::{Motion, ShipTrack};
 use searoom::trajectory::{Segment, Trajectory};
 
 use super::statistics::{failure_bound, quantile};
@@ -24,6 +26,41 @@ const STEP_S: f64 = 20.0;
 
 /// Seconds after which a run ends.
 const LONGEST_S: f64 = 3000.0;
+
+/// What a target does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Behaviour {
+    /// Keeps course and speed
+    Constant,
+    /// Takes another extreme course and speed within its spreads in each cycle
+    Extreme,
+    /// Turns 40 degrees to starboard, out of its spread, 120 s after the start
+    Turns,
+}
+
+impl Behaviour {
+    /// Course and speed of a target in the cycle that begins at a time.
+    fn moved(self, ship: &ShipTrack, time: f64, rng: &mut ChaCha8Rng) -> (f64, f64) {
+        let mut extreme = |spread: f64| {
+            if rng.random_bool(0.5) {
+                spread
+            } else {
+                -spread
+            }
+        };
+        let (heading, speed) = (ship.pose.heading, ship.speed);
+        match self {
+            _ if time == 0.0 => (heading, speed),
+            Self::Constant => (heading, speed),
+            Self::Extreme => (
+                heading + extreme(ship.course_spread),
+                (speed + extreme(ship.speed_spread)).max(0.0),
+            ),
+            Self::Turns if time >= 120.0 => (heading - 40_f64.to_radians(), speed),
+            Self::Turns => (heading, speed),
+        }
+    }
+}
 
 /// What one encounter came to.
 struct Sailed {
@@ -47,38 +84,50 @@ struct Sailed {
     milliseconds: Vec<f64>,
 }
 
-/// The scenario `elapsed` seconds after its beginning, own ship on a plan made `step` before.
-fn later(first: &Scenario, run: &Run, elapsed: f64, step: f64, memory: bool) -> Option<Scenario> {
+/// The scenario `elapsed` seconds after its beginning, own ship on a plan made `step` before, the
+/// target as it is then.
+fn later(
+    first: &Scenario,
+    run: &Run,
+    (elapsed, step): (f64, f64),
+    now: SteadyShip,
+    memory: bool,
+) -> Option<Scenario> {
     let plan = run.planned.outcome.plan()?;
     let mut scenario = first.clone();
     scenario.time = elapsed;
     scenario.desired = first.desired.remaining(elapsed);
     scenario.own_ship.pose = plan.trajectory.pose_at(step);
-    for target in &mut scenario.targets {
-        if let Motion::Ship(ship) = &mut target.motion {
-            ship.pose = ship.pose_at(elapsed);
-        }
+    if let Motion::Ship(ship) = &mut scenario.targets[0].motion {
+        (ship.pose, ship.speed) = (now.pose, now.speed);
     }
     if memory {
-        scenario.memory = memory_after(&PlanDocument::of(run), &scenario).expect("it fits");
+        remember(&PlanDocument::of(run), &mut scenario).expect("it fits");
     }
     Some(scenario)
 }
 
-fn sail(first: &Scenario, seed: u64, memory: bool) -> Option<Sailed> {
+fn sail(first: &Scenario, seed: u64, behaviour: Behaviour, memory: bool) -> Option<Sailed> {
     let mut run = pipeline::run(first.clone());
     let plan = run.planned.outcome.plan()?;
     let first_cost = plan.cost;
-    let broken = |trajectory: &Trajectory| {
-        let ship = first.targets[0].ship().expect("a ship");
-        let own = &first.own_ship;
-        let meeting = EncounterSamples::along(trajectory, own.hull, own.speed, ship);
+    let (own, ship) = (&first.own_ship, first.targets[0].ship().expect("a ship"));
+    let judged = |trajectory: &Trajectory, track: &[(f64, SteadyShip)]| {
+        let meeting =
+            EncounterSamples::of_tracks(trajectory, (own.hull, own.speed), track, ship.hull);
         ComplianceReport::judge(&meeting, Thresholds::standard())
     };
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut now = SteadyShip {
+        pose: ship.pose,
+        speed: ship.speed,
+    };
+    let alone = [(0.0, now)];
+    let mut track: Vec<(f64, SteadyShip)> = Vec::new();
     let mut sailed = Sailed {
         seed,
         broken: Vec::new(),
-        broken_by_the_first: broken(&plan.trajectory).broken().count(),
+        broken_by_the_first: judged(&plan.trajectory, &alone).broken().count(),
         apart: f64::INFINITY,
         turns: 0,
         speed_changes: 0,
@@ -101,11 +150,17 @@ fn sail(first: &Scenario, seed: u64, memory: bool) -> Option<Sailed> {
             ..s.between(s.start_time, step)
         });
         motion.extend(done);
+        // the target alters course and speed where a plan is made
+        let (heading, speed) = behaviour.moved(ship, elapsed, &mut rng);
+        now.pose.heading = heading;
+        now.speed = speed;
+        track.push((elapsed, now));
+        now.pose.position += now.velocity() * step;
         elapsed += step;
         if end <= STEP_S || elapsed >= LONGEST_S {
             break;
         }
-        let scenario = later(first, &run, elapsed, step, memory)?;
+        let scenario = later(first, &run, (elapsed, step), now, memory)?;
         let begun = scenario.memory.under_way;
         let next = pipeline::run(scenario);
         sailed.cycles += 1;
@@ -120,7 +175,7 @@ fn sail(first: &Scenario, seed: u64, memory: bool) -> Option<Sailed> {
     let cost = whole_space_time_error(&first.desired, &motion, first.time_weight);
     sailed.cost = cost / first_cost;
     let trajectory = Trajectory::with_corners(motion).ok()?;
-    let report = broken(&trajectory);
+    let report = judged(&trajectory, &track);
     sailed.broken = report.broken().collect();
     if let Some(manoeuvre) = report.manoeuvre {
         sailed.turns = manoeuvre.turns;
@@ -131,9 +186,9 @@ fn sail(first: &Scenario, seed: u64, memory: bool) -> Option<Sailed> {
 }
 
 /// Encounters with one target: `seeds` of each kind.
-pub fn run(seeds: Seeds, meeting: &Meeting, memory: bool) -> Report {
+pub fn run(seeds: Seeds, meeting: &Meeting, behaviour: Behaviour, memory: bool) -> Report {
     let mut report = Report::default();
-    println!("{seeds:?} of each kind, a plan every {STEP_S} s\n");
+    println!("{seeds:?} of each kind, a plan every {STEP_S} s, targets: {behaviour:?}\n");
     println!(
         "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | plan 50/99 %, ms |"
     );
@@ -146,7 +201,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, memory: bool) -> Report {
                 let mut scenario = drawn.expect("drawn").scenario;
                 scenario.compliance = Compliance::Rules;
                 scenario.memory = Memory::default();
-                sail(&scenario, seed, memory)
+                sail(&scenario, seed, behaviour, memory)
             })
             .collect();
         let lost = all.iter().filter(|s| s.is_none()).count();

@@ -1,5 +1,6 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
+use crate::colregs::encounter::state_at;
 use crate::colregs::{Risk, SteadyShip, TargetMemory};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
@@ -129,6 +130,28 @@ impl EncounterSamples {
             None,
             f64::INFINITY,
         )
+    }
+
+    /// Samples of a motion that was sailed, and of a target that kept course and speed from each of
+    /// these states to the next; times in seconds, the first not after the trajectory's start.
+    pub fn of_tracks(
+        trajectory: &Trajectory,
+        (own, ordered_speed): (Hull, f64),
+        target: &[(f64, SteadyShip)],
+        hull: Hull,
+    ) -> Self {
+        let own = OwnSamples::along(&[], trajectory, own, ordered_speed);
+        let sample = |index: usize| {
+            let there = state_at(target, own.ships[index].0)?;
+            Some(own.sample(index, &hull, there))
+        };
+        Self {
+            samples: (0..own.ships.len()).filter_map(sample).collect(),
+            known_role: None,
+            own: own.hull,
+            ordered_speed,
+            target: hull,
+        }
     }
 
     /// The samples in order of time, at least one.
@@ -563,6 +586,7 @@ mod tests {
                 speed_spread: 0.0,
                 course_spread: 0.0,
                 turn_rate: 0.0,
+                kept_velocities: None,
                 domain: DomainKind::Hull,
             };
             let whole = EncounterSamples::along(&own, hull, 6.0, &target);

@@ -48,6 +48,7 @@ fn track(position: Vector, heading: f64, speed: f64) -> ShipTrack {
         speed_spread: 0.5,
         course_spread: 0.1,
         turn_rate: 0.0,
+        kept_velocities: None,
         domain: DomainKind::Colregs,
     }
 }

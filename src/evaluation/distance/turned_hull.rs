@@ -127,6 +127,7 @@ mod tests {
                     _ => rng.random_range(0.0..0.4),
                 },
                 turn_rate: [0.0, 0.01, 0.2][case % 3],
+                kept_velocities: None,
                 domain: DomainKind::Hull,
             };
             let time = rng.random_range(0.0..30.0);

@@ -56,6 +56,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
             speed_spread: 0.0,
             course_spread: 0.0,
             turn_rate: 0.0,
+            kept_velocities: None,
             domain: DomainKind::Hull,
         };
         // a role that has begun before the plan is kept
