@@ -3,7 +3,7 @@
 
 use super::{
     ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
-    PlanDocument, RelaxationDocument,
+    MemoryDocument, PlanDocument, RelaxationDocument,
 };
 use crate::evaluation::facts;
 use crate::text::{printable, signed, square_metres, tenths};
@@ -35,6 +35,9 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
         let (name, text) = relaxed(plan, relaxation);
         add(name, text);
     }
+    if let Some(memory) = &plan.memory {
+        memory_lines(plan, memory, &mut add);
+    }
     if let Some(escape) = &plan.escape {
         add("stands on", stand_on(escape));
     }
@@ -59,6 +62,27 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     }
     add(TIME_LINE, format!("{:.2} ms", 1e3 * plan.timing.plan_s));
     lines
+}
+
+/// What the plan goes on with, and the targets that did not stay in their sets.
+fn memory_lines(
+    plan: &PlanDocument,
+    memory: &MemoryDocument,
+    add: &mut impl FnMut(&'static str, String),
+) {
+    let begun = plan.manoeuvres.iter().find(|m| m.begins_s < 0.0);
+    let begun = begun.map(|m| format!("the manoeuvre that began {:.0} s ago", -m.begins_s));
+    let kept = memory
+        .keeps_plan
+        .then(|| "the previous plan, unchanged".to_owned());
+    let goes_on: Vec<String> = kept.into_iter().chain(begun).collect();
+    if !goes_on.is_empty() {
+        add("goes on", goes_on.join("; "));
+    }
+    for name in &memory.left {
+        let left = format!("'{name}' has left the set that the previous plan assumed; a new set");
+        add("assumption", left);
+    }
 }
 
 /// Relaxation as a sentence, and the name of its line.

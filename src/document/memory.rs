@@ -40,6 +40,10 @@ const BEFORE_S: f64 = 2.0;
 /// What is known from before the plan. Times are negative.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MemoryDocument {
+    /// True where the plan is the remainder of the previous one.
+    pub keeps_plan: bool,
+    /// Names of the targets that have left the sets which the previous plan assumed.
+    pub left: Vec<String>,
     pub sailed: Vec<SegmentDocument>,
     pub targets: Vec<TargetMemoryDocument>,
 }
@@ -88,6 +92,8 @@ impl MemoryDocument {
         let known = !memory.sailed.is_empty() || !memory.targets.is_empty();
         let targets = run.scenario.targets.iter().zip(&memory.targets);
         known.then(|| Self {
+            keeps_plan: run.planned.is_remainder,
+            left: memory.left.clone(),
             sailed: memory.sailed.iter().map(segment_document).collect(),
             targets: targets
                 .map(|(target, known)| TargetMemoryDocument {
@@ -279,8 +285,9 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
 /// velocity that they would not take, or a place that they would not reach.
 fn left(previous: &PlanDocument, scenario: &Scenario, elapsed: f64) -> Vec<String> {
     let left = |name: &str, ship: &ShipTrack| {
-        let mut then = previous.targets.iter().filter(|target| target.name == name);
-        let then = then.next_back()?.ship.as_ref().map(track)?;
+        let mut targets = previous.targets.iter();
+        let then = targets.find(|target| target.name == name)?;
+        let then = then.ship.as_ref().map(track)?;
         let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
         let set = Uncertainty::new(ConvexPolygon::point(then.pose.position), velocities);
         let now = set.outer_velocities_after(elapsed);
@@ -332,8 +339,14 @@ fn track(ship: &ShipDocument) -> ShipTrack {
 
 /// What the previous plan knows of a target.
 fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMemory {
-    let before = previous.memory.iter().flat_map(|memory| &memory.targets);
-    let before = before.filter(|target| target.name == name).next_back();
+    let before = previous
+        .memory
+        .as_ref()
+        .map(|memory| memory.targets.as_slice());
+    let before = before
+        .into_iter()
+        .flatten()
+        .find(|target| target.name == name);
     let mut memory = TargetMemory::default();
     if let Some(before) = before {
         memory.role = before.role.as_ref().and_then(|known| risk(known, elapsed));

@@ -42,6 +42,7 @@ pub(super) fn better_remainder(
     keep.then(|| Planned {
         escape: memory.escape,
         manoeuvres: memory.manoeuvres.clone(),
+        is_remainder: true,
         ..Planned::of(Outcome::Solved(plan))
     })
 }

@@ -343,6 +343,8 @@ pub struct Planned {
     pub escape: Option<Escape>,
     /// The manoeuvres of a plan by the rules, in order of time.
     pub manoeuvres: Vec<PlannedManoeuvre>,
+    /// True for the remainder of the plan that own ship follows.
+    pub is_remainder: bool,
 }
 
 impl Planned {
@@ -356,6 +358,7 @@ impl Planned {
             control: None,
             escape: None,
             manoeuvres: Vec::new(),
+            is_remainder: false,
         }
     }
 }
