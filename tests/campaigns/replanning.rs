@@ -10,12 +10,14 @@ use searoom::colregs::{
     compliance::{ComplianceReport, EncounterSamples},
 };
 use searoom::document::{PlanDocument, remember};
+use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
 use searoom::scenario::{Compliance, Memory, Scenario};
 use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
 use searoom::target::{Motion, ShipTrack};
+use searoom::tolerance::TOUCH_M;
 use searoom::trajectory::{Segment, Trajectory};
 
 use super::statistics::{failure_bound, quantile};
@@ -23,6 +25,10 @@ use super::{Report, Seeds};
 
 /// Seconds from one plan to the next.
 const STEP_S: f64 = 20.0;
+
+/// Least share of sailed motions with which both judges are content, of targets that keep course
+/// and speed.
+const CONTENT: f64 = 0.98;
 
 /// Seconds after which a run ends.
 const LONGEST_S: f64 = 3000.0;
@@ -81,6 +87,8 @@ struct Sailed {
     relaxed: usize,
     /// Cycles after which the plan turns back, though a manoeuvre was under way.
     turned_back: usize,
+    /// Cycles whose plan is dearer than the remainder of the last one, which is clear.
+    dearer: usize,
     milliseconds: Vec<f64>,
 }
 
@@ -105,6 +113,21 @@ fn later(
         remember(&PlanDocument::of(run), &mut scenario).expect("it fits");
     }
     Some(scenario)
+}
+
+/// True for a plan that costs more than the remainder of the last plan, though that is clear of the
+/// same sets.
+fn is_dearer(run: &Run) -> bool {
+    let (scenario, remainder) = (&run.scenario, &run.scenario.memory.remainder);
+    let enters = |s: &Segment| {
+        run.obstacles()
+            .any(|o| o.first_contact(s, TOUCH_M).is_some())
+    };
+    let Some(plan) = run.planned.outcome.plan() else {
+        return false;
+    };
+    let cost = whole_space_time_error(&scenario.desired, remainder, scenario.time_weight);
+    !remainder.is_empty() && !remainder.iter().any(enters) && plan.cost > cost * (1.0 + 1e-9) + 1e-6
 }
 
 fn sail(first: &Scenario, seed: u64, behaviour: Behaviour, memory: bool) -> Option<Sailed> {
@@ -136,6 +159,7 @@ fn sail(first: &Scenario, seed: u64, behaviour: Behaviour, memory: bool) -> Opti
         unsafe_plans: 0,
         relaxed: 0,
         turned_back: 0,
+        dearer: 0,
         milliseconds: Vec::new(),
     };
     let mut motion: Vec<Segment> = Vec::new();
@@ -170,6 +194,7 @@ fn sail(first: &Scenario, seed: u64, behaviour: Behaviour, memory: bool) -> Opti
         let goes_on = |m: &PlannedManoeuvre| begun.is_none_or(|b| b.begins == m.begins);
         let goes_on = next.planned.manoeuvres.first().is_some_and(goes_on);
         sailed.turned_back += usize::from(begun.is_some() && !goes_on);
+        sailed.dearer += usize::from(is_dearer(&next));
         run = next;
     }
     let cost = whole_space_time_error(&first.desired, &motion, first.time_weight);
@@ -190,9 +215,9 @@ pub fn run(seeds: Seeds, meeting: &Meeting, behaviour: Behaviour, memory: bool) 
     let mut report = Report::default();
     println!("{seeds:?} of each kind, a plan every {STEP_S} s, targets: {behaviour:?}\n");
     println!(
-        "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | plan 50/99 %, ms |"
+        "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | dearer | plan 50/99 %, ms |"
     );
-    println!("|{}", " --- |".repeat(13));
+    println!("|{}", " --- |".repeat(14));
     for kind in EncounterKind::ALL {
         let name = kind.name();
         let all: Vec<Option<Sailed>> = (seeds.clone().into_par_iter())
@@ -221,7 +246,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, behaviour: Behaviour, memory: bool) 
         let speeds = |p| share(p, &|s| s.speed_changes as f64);
         let times: Vec<f64> = all.iter().flat_map(|s| s.milliseconds.clone()).collect();
         println!(
-            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {:.1}/{:.1} |",
+            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {} | {:.1}/{:.1} |",
             all.len(),
             100.0 * bound,
             share(0.0, &|s| s.apart),
@@ -237,9 +262,29 @@ pub fn run(seeds: Seeds, meeting: &Meeting, behaviour: Behaviour, memory: bool) 
             sum(&|s| s.unsafe_plans),
             sum(&|s| s.relaxed),
             sum(&|s| s.turned_back),
+            sum(&|s| s.dearer),
             quantile(&times, 0.5),
             quantile(&times, 0.99),
         );
+        if behaviour == Behaviour::Constant {
+            report.require(content as f64 >= CONTENT * all.len() as f64, || {
+                format!(
+                    "{name}: both judges content with {content} of {}",
+                    all.len()
+                )
+            });
+        }
+        if behaviour != Behaviour::Turns {
+            let (unsafe_plans, dearer) = (sum(&|s| s.unsafe_plans), sum(&|s| s.dearer));
+            report.require(unsafe_plans == 0, || {
+                format!("{name}: {unsafe_plans} unsafe plans")
+            });
+            let back = sum(&|s| s.turned_back);
+            report.require(
+                behaviour != Behaviour::Constant || back + dearer == 0,
+                || format!("{name}: {back} plans turn back, {dearer} are dearer"),
+            );
+        }
         let mut broken: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
         for s in &all {
             let turned_back = (s.turned_back > 0).then_some("turned back");

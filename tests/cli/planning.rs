@@ -614,3 +614,128 @@ fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
         assert_eq!(plan["cost"]["max_risk"], 0.0);
     }
 }
+
+/// The head-on scene 60 s later, own ship in the middle of its manoeuvre by the plan.
+fn a_minute_later(scenario: &str, plan: &Value) -> String {
+    let samples = plan["trajectory"]["samples"].as_array().expect("samples");
+    let now = samples.iter().find(|s| s["t_s"] == 60.0).expect("a sample");
+    let place = "position = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0";
+    let there = format!(
+        "position = {{ east_m = {}, north_m = {} }}\ncourse_deg = {}",
+        now["east_m"], now["north_m"], now["course_deg"]
+    );
+    let later = scenario
+        .replace("horizon_s", "time_s = 60.0\nhorizon_s")
+        .replace(place, &there)
+        .replace("[mission]", "[mission]\nstart_s = 0.0")
+        .replace(
+            "position = { east_m = 1500.0, north_m = 0.0 }",
+            "position = { east_m = 1200.0, north_m = 0.0 }",
+        );
+    assert!(later.contains(&there) && later.contains("east_m = 1200.0"));
+    later
+}
+
+#[test]
+fn a_plan_goes_on_from_the_previous_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
+    let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
+    let previous = write(folder.path(), "first.json", first.to_string());
+    let later = a_minute_later(&scenario, &first);
+    let file = write(folder.path(), "later.toml", later.clone());
+    let go_on = |file: &str| searoom(&["plan", file, "--previous", &previous, "--json"]);
+    let second = document(&go_on(&file).success());
+    // the same manoeuvre, not a turn back
+    let begins = |plan: &Value| plan["manoeuvres"][0]["begins_s"].as_f64().expect("a time");
+    assert!((begins(&first) - 60.0 - begins(&second)).abs() < 1e-9);
+    assert_eq!(second["encounters"][0]["roles"][0]["from_s"], -60.0);
+    assert_eq!(second["encounters"][0]["breaches"], Value::Array(vec![]));
+    // without the previous plan own ship turns back at once
+    let anew = document(&searoom(&["plan", &file, "--json"]).success());
+    let side = |plan: &Value| plan["cost"]["first_turn"]["side"].clone();
+    assert_eq!(side(&anew), "port");
+    assert_ne!(anew["encounters"][0]["breaches"], Value::Array(vec![]));
+    let verified = write(folder.path(), "second.json", second.to_string());
+    searoom(&["verify", &verified]).success();
+
+    let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
+    let turned = write(folder.path(), "turned.toml", turned);
+    let turned = document(&go_on(&turned).success());
+    assert_eq!(turned["memory"]["left"], Value::from(vec!["target"]));
+    assert_eq!(turned["targets"][0]["ship"]["kept_velocities"], Value::Null);
+}
+
+#[test]
+fn a_previous_plan_that_does_not_fit_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
+    let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
+    let previous = write(folder.path(), "first.json", first.to_string());
+    let mut altered = first.clone();
+    altered["own_ship"]["length_m"] = 31.0.into();
+    let altered = write(folder.path(), "altered.json", altered.to_string());
+    let later = a_minute_later(&scenario, &first);
+    for (old, new, message) in [
+        (
+            "time_s = 60.0",
+            "time_s = 600.0",
+            "time_s: found a plan from 0 s to",
+        ),
+        (
+            "title = \"Head-on\"",
+            "title = \"Other\"",
+            "allowed: a plan of \"Other\"",
+        ),
+        (
+            "course_deg = 1",
+            "course_deg = 2",
+            "allowed: at most 30 m, own length, and 20 degrees",
+        ),
+    ] {
+        let changed = later.replace(old, new);
+        assert_ne!(changed, later);
+        let file = write(folder.path(), "changed.toml", changed);
+        let refused = searoom(&["plan", &file, "--previous", &previous]).code(2);
+        refused.stdout(is_empty()).stderr(contains(message));
+        let ignored = ["plan", &file, "--previous", &previous, "--ignore-previous"];
+        searoom(&ignored).stderr(contains("ignored"));
+    }
+    let file = write(folder.path(), "later.toml", later);
+    let refused = searoom(&["plan", &file, "--previous", &altered]).code(2);
+    refused.stderr(contains("not a plan that verifies"));
+    searoom(&["plan", &file, "--previous", "none.json"]).code(2);
+}
+
+#[test]
+fn roles_of_a_file_last() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
+    let with = |keys: &str| {
+        let text = scenario.replace("name = \"target\"", &format!("name = \"target\"\n{keys}"));
+        write(
+            folder.path(),
+            "roles.toml",
+            text.replace("horizon_s", "time_s = 90.0\nhorizon_s"),
+        )
+    };
+    // head-on by geometry
+    let file = with("role = \"stand-on\"\nrole_since_s = 30.0\nfirst_course_deg = 85.0");
+    let plan = document(&searoom(&["plan", &file, "--json"]));
+    assert_eq!(plan["encounters"][0]["role"], "stand-on");
+    assert_eq!(plan["encounters"][0]["roles"][0]["from_s"], -60.0);
+    for (keys, message) in [
+        (
+            "role = \"captain\"",
+            "targets[0].role: found the text \"captain\"",
+        ),
+        (
+            "role = \"stand-on\"\nrole_since_s = 91.0",
+            "a number from 0 to 90",
+        ),
+        ("role_since_s = 5.0", "targets[0].role_since_s: found 5"),
+    ] {
+        let file = with(keys);
+        searoom(&["check", &file]).code(2).stderr(contains(message));
+    }
+}

@@ -2,6 +2,7 @@
 
 use searoom::simulation::Meeting;
 
+use crate::campaigns::replanning::{self, Behaviour};
 use crate::campaigns::{
     compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time, wild,
 };
@@ -24,6 +25,12 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
 #[test]
 fn plans_keep_to_the_rules() {
     compliance::run(0..60, &Meeting::NEAR).assert_met();
+}
+
+#[test]
+fn plans_made_again_and_again_keep_to_the_rules() {
+    replanning::run(0..12, &Meeting::NEAR, Behaviour::Constant, true).assert_met();
+    replanning::run(0..8, &Meeting::NEAR, Behaviour::Extreme, true).assert_met();
 }
 
 #[test]
