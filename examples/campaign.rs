@@ -53,6 +53,9 @@ enum Campaign {
         /// What the targets do
         #[arg(long, value_enum, default_value = "constant")]
         targets: replanning::Behaviour,
+        /// Own ship is up to this far from its plan when the next is made, metres each way
+        #[arg(long, default_value_t = 0.0)]
+        off: f64,
         /// Every plan begins anew
         #[arg(long)]
         no_memory: bool,
@@ -121,10 +124,16 @@ fn run(campaign: Campaign) -> Report {
             scenes,
             far,
             targets,
+            off,
             no_memory,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
-            replanning::run(scenes.of_each(5), &meeting, targets, !no_memory)
+            let how = replanning::How {
+                behaviour: targets,
+                off,
+                memory: !no_memory,
+            };
+            replanning::run(scenes.of_each(5), &meeting, &how)
         }
         Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),

@@ -151,7 +151,7 @@ pub struct Encountered {
     /// Own ship when the risk began: its first course and speed.
     pub own: SteadyShip,
     /// Seconds at which the risk began.
-    pub latched: f64,
+    pub risk_since: f64,
     /// Seconds at which the centres are closest if both ships hold course and speed.
     pub tcpa: f64,
 }

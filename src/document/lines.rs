@@ -79,8 +79,8 @@ fn memory_lines(
     if !goes_on.is_empty() {
         add("goes on", goes_on.join("; "));
     }
-    for name in &memory.left {
-        let left = format!("'{name}' has left the set that the previous plan assumed; a new set");
+    for name in &memory.outside_sets {
+        let left = format!("'{name}' is outside the set that the previous plan assumed; a new set");
         add("assumption", left);
     }
 }

@@ -31,19 +31,19 @@ const NEW_COURSE_DEG: f64 = 20.0;
 /// Metres per second, and metres: rounding of a target's state in a file.
 const ASSUMED: f64 = 1e-6;
 
-/// A velocity set with more vertices is not narrowed further.
+/// Where the velocities of all plans have more vertices, those of the last plan alone are used.
 const MOST_VERTICES: usize = 40;
 
 /// Seconds of motion that are kept before the first role.
 const BEFORE_S: f64 = 2.0;
 
-/// What is known from before the plan. Times are negative.
+/// What is known from before the plan. Times count from the plan, and are negative.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MemoryDocument {
     /// True where the plan is the remainder of the previous one.
     pub keeps_plan: bool,
-    /// Names of the targets that have left the sets which the previous plan assumed.
-    pub left: Vec<String>,
+    /// Names of the targets that are outside the sets which the previous plan assumed.
+    pub outside_sets: Vec<String>,
     pub sailed: Vec<SegmentDocument>,
     pub targets: Vec<TargetMemoryDocument>,
 }
@@ -93,7 +93,7 @@ impl MemoryDocument {
         let targets = run.scenario.targets.iter().zip(&memory.targets);
         known.then(|| Self {
             keeps_plan: run.planned.is_remainder,
-            left: memory.left.clone(),
+            outside_sets: memory.outside_sets.clone(),
             sailed: memory.sailed.iter().map(segment_document).collect(),
             targets: targets
                 .map(|(target, known)| TargetMemoryDocument {
@@ -148,15 +148,11 @@ impl From<&PlannedManoeuvreDocument> for PlannedManoeuvre {
 pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), Fault> {
     let memory = memory_after(previous, scenario)?;
     for target in &mut scenario.targets {
-        let then = previous
-            .targets
-            .iter()
-            .find(|then| then.name == target.name);
-        let then = then.and_then(|then| then.ship.as_ref()).map(track);
+        let then = ship_then(previous, &target.name);
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
-            && !memory.left.contains(&target.name)
+            && !memory.outside_sets.contains(&target.name)
         {
             let kept = then.outer_velocity_set();
             ship.kept_velocities = Some(match kept.vertices().len() <= MOST_VERTICES {
@@ -198,7 +194,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             "time_s",
             format_args!("a plan from {} s to {until} s", previous.time_s),
             format_args!(
-                "a plan that lasts at the scenario's time, {} s",
+                "a plan that covers {} s, the scenario's time",
                 scenario.time
             ),
         ));
@@ -240,16 +236,28 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
     let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S;
     let is_off_route = manoeuvres.iter().any(|m| begun(&m));
     let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
+    let mut outside_sets = Vec::new();
     let known = scenario.targets.iter().enumerate().map(|(index, target)| {
-        let mut memory = target_memory(previous, &target.name, elapsed);
         let Some(ship) = target.ship() else {
             return TargetMemory::default();
         };
+        let mut memory = target_memory(previous, &target.name, elapsed);
+        match assumed(previous, &target.name, ship, elapsed) {
+            None | Some(Assumed::Inside) => {}
+            Some(outside) => {
+                outside_sets.push(target.name.clone());
+                if outside == Assumed::OutsidePlaces {
+                    memory = TargetMemory::default();
+                }
+            }
+        }
         // the domain stays as it is until own ship is on its route again
         let lasting = memory.role.filter(|_| is_off_route);
         let given = scenario.memory.target(index).and_then(|known| known.role);
-        let now = || role_now(&samples, now, ship, &memory);
-        let role = given.or_else(now).or(lasting);
+        let role = lasting.or_else(|| role_now(&samples, now, ship, &memory));
+        // the same role goes on, with the course at its beginning
+        let same = |given: Risk| role.filter(|role| role.role == given.role).unwrap_or(given);
+        let role = given.map(same).or(role);
         memory.passed = role.is_none() && (memory.passed || memory.role.is_some());
         memory.role = role;
         memory
@@ -273,7 +281,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
                 turn: -radians_from_deg(escape.turn_deg),
                 speed: escape.speed_mps,
             }),
-        left: left(previous, scenario, elapsed),
+        outside_sets,
         sailed,
         remainder,
         manoeuvres,
@@ -281,30 +289,44 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
     })
 }
 
-/// Names of the targets whose present state is outside the sets that the previous plan assumed: a
-/// velocity that they would not take, or a place that they would not reach.
-fn left(previous: &PlanDocument, scenario: &Scenario, elapsed: f64) -> Vec<String> {
-    let left = |name: &str, ship: &ShipTrack| {
-        let mut targets = previous.targets.iter();
-        let then = targets.find(|target| target.name == name)?;
-        let then = then.ship.as_ref().map(track)?;
-        let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
-        let set = Uncertainty::new(ConvexPolygon::point(then.pose.position), velocities);
-        let now = set.outer_velocities_after(elapsed);
-        let reached = set.outer_section(elapsed);
-        let known = POSITION_SIGMAS * (then.position_std + ship.position_std);
-        let stays = now.signed_distance(ship.velocity()) <= ASSUMED
-            && reached.signed_distance(ship.pose.position) <= known + ASSUMED * (1.0 + elapsed);
-        Some(!stays)
-    };
-    let ships = scenario
-        .targets
-        .iter()
-        .filter_map(|target| Some((target, target.ship()?)));
-    ships
-        .filter(|(target, ship)| left(&target.name, ship).unwrap_or(false))
-        .map(|(target, _)| target.name.clone())
-        .collect()
+/// Where a target is, as the previous plan assumed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Assumed {
+    /// At a place that it could reach, with a velocity that it could have.
+    Inside,
+    /// With another velocity.
+    OutsideVelocities,
+    /// At a place that it could not reach: its role and its track are those of another ship.
+    OutsidePlaces,
+}
+
+/// Where a target is; `None` for one that the previous plan does not have.
+fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) -> Option<Assumed> {
+    let then = ship_then(previous, name)?;
+    let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
+    let set = Uncertainty::new(ConvexPolygon::point(then.pose.position), velocities);
+    let mut sets = set.velocities.iter();
+    let now = sets.find(|timed| timed.until > elapsed)?;
+    let now = now.velocities.as_polygon()?;
+    let reached = set.outer_section(elapsed);
+    let known = POSITION_SIGMAS * (then.position_std + ship.position_std);
+    let off = reached.signed_distance(ship.pose.position);
+    // negated on purpose: a NaN is outside
+    if !(off <= known + ASSUMED * (1.0 + elapsed)) {
+        return Some(Assumed::OutsidePlaces);
+    }
+    let inside = now.signed_distance(ship.velocity()) <= ASSUMED;
+    Some(match inside {
+        true => Assumed::Inside,
+        false => Assumed::OutsideVelocities,
+    })
+}
+
+/// A target of the previous plan, then.
+fn ship_then(previous: &PlanDocument, name: &str) -> Option<ShipTrack> {
+    let mut targets = previous.targets.iter();
+    let then = targets.find(|target| target.name == name)?;
+    then.ship.as_ref().map(track)
 }
 
 /// The tracked ship of a document; its domain is unknown.
@@ -339,14 +361,8 @@ fn track(ship: &ShipDocument) -> ShipTrack {
 
 /// What the previous plan knows of a target.
 fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMemory {
-    let before = previous
-        .memory
-        .as_ref()
-        .map(|memory| memory.targets.as_slice());
-    let before = before
-        .into_iter()
-        .flatten()
-        .find(|target| target.name == name);
+    let mut before = previous.memory.iter().flat_map(|memory| &memory.targets);
+    let before = before.find(|target| target.name == name);
     let mut memory = TargetMemory::default();
     if let Some(before) = before {
         memory.role = before.role.as_ref().and_then(|known| risk(known, elapsed));
@@ -355,9 +371,8 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
             .map(|state| steady(state, elapsed))
             .collect();
     }
-    let then = previous.targets.iter().find(|target| target.name == name);
-    if let Some(ship) = then.and_then(|target| target.ship.as_ref()) {
-        memory.track.push((-elapsed, steady_ship(&track(ship))));
+    if let Some(ship) = ship_then(previous, name) {
+        memory.track.push((-elapsed, steady_ship(&ship)));
     }
     memory
 }
@@ -391,7 +406,7 @@ fn role_now(
     match lasting {
         Some(risk)
             if turned(&risk) > radians_from_deg(NEW_COURSE_DEG)
-                && risk.role != Role::Overtaking =>
+                && !matches!(risk.role, Role::Overtaking | Role::Overtaken) =>
         {
             let present = OwnSamples::of_past(&[], now, samples.hull(), samples.ordered_speed());
             let present = ComplianceReport::samples(&present, ship, None, thresholds);

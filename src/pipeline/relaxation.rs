@@ -118,7 +118,11 @@ impl Relaxer<'_> {
         );
         let problem = self.problem(&first.obstacles);
         if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
-            first.planned = kept;
+            if let (Outcome::Infeasible(why), 1..) = (&first.planned.outcome, kept.broken) {
+                first.why = Some(why.clone());
+                first.level = RelaxationLevel::Domains;
+            }
+            first.planned = kept.planned;
         }
         if self.scenario.planner.facts().relaxes_domains_only {
             return self.without_domains(first, with_domain);

@@ -13,16 +13,22 @@ use crate::trajectory::Segment;
 /// A new plan replaces the remainder where it costs less than this fraction of it.
 const WORTH_A_CHANGE: f64 = 0.98;
 
-/// The remainder, where it is better than the new plan of an attempt: where there is no new plan,
-/// where the new plan breaks rules that the remainder keeps, where a target has left the set that
-/// it was assumed to stay in, where own ship returns to its route after a manoeuvre, and where the
-/// new plan is hardly cheaper. Only a remainder that is clear of the same sets, in time, and starts
-/// at own ship's pose.
+/// A remainder that is kept.
+pub(super) struct Remainder {
+    pub planned: Planned,
+    /// Number of rules that it breaks.
+    pub broken: usize,
+}
+
+/// Returns the remainder where it is better than the new plan of an attempt: where there is none,
+/// where that breaks more rules, where a target that matters is outside the sets that were assumed,
+/// where own ship returns to its route after a manoeuvre, and where the new plan is hardly cheaper.
+/// The remainder has to be clear of the same sets, to arrive in time, and to start at own pose.
 pub(super) fn better_remainder(
     scenario: &Scenario,
     problem: &Problem,
     attempt: &Attempt,
-) -> Option<Planned> {
+) -> Option<Remainder> {
     let plan = remainder(scenario, problem, &attempt.obstacles)?;
     let breaks = |plan: &Plan| match scenario.compliance {
         Compliance::Rules => rules::breaks(scenario, &plan.trajectory),
@@ -30,21 +36,25 @@ pub(super) fn better_remainder(
     };
     let memory = &scenario.memory;
     let returns = |m: &PlannedManoeuvre| m.returns <= 0.0 && m.joins > 0.0;
-    let settled = !memory.left.is_empty() || memory.manoeuvres.iter().any(returns);
+    let outside = (scenario.targets.iter().zip(&memory.targets))
+        .any(|(target, known)| known.role.is_some() && memory.outside_sets.contains(&target.name));
+    let settled = outside || memory.manoeuvres.iter().any(returns);
+    let broken = breaks(&plan);
     let keep = match attempt.planned.outcome.plan() {
         None => true,
-        Some(new) => match breaks(&plan).cmp(&breaks(new)) {
+        Some(new) => match broken.cmp(&breaks(new)) {
             Ordering::Less => true,
             Ordering::Greater => false,
             Ordering::Equal => settled || new.cost >= WORTH_A_CHANGE * plan.cost,
         },
     };
-    keep.then(|| Planned {
+    let planned = Planned {
         escape: memory.escape,
         manoeuvres: memory.manoeuvres.clone(),
         is_remainder: true,
         ..Planned::of(Outcome::Solved(plan))
-    })
+    };
+    keep.then_some(Remainder { planned, broken })
 }
 
 fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> Option<Plan> {

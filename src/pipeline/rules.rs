@@ -72,7 +72,7 @@ fn asking<'a>(
             ship,
             hull: track.hull,
             own: risk.own,
-            latched: risk.time,
+            risk_since: risk.time,
             tcpa,
         };
         let asks = !Duty::of(std::iter::once(role)).is_none();

@@ -1,7 +1,7 @@
 //! The obstacles of every target, grown by own ship's footprint.
 
 use super::rules::without_domains_of_give_way_targets;
-use crate::colregs::{self, Encounter, Role, Shapes};
+use crate::colregs::{self, Encounter, Role, Shapes, TargetMemory};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::scenario::Scenario;
@@ -82,11 +82,8 @@ pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
     let targets = scenario.targets.iter().enumerate();
     let sets = targets.map(|(index, target)| {
         let mut sets = target_sets(scenario, index, target);
-        if scenario
-            .memory
-            .target(index)
-            .is_some_and(|known| known.passed)
-        {
+        let passed = |known: &TargetMemory| known.passed && sets.encounter.risk.is_none();
+        if scenario.memory.target(index).is_some_and(passed) {
             sets.remove_domain();
         }
         sets
@@ -102,7 +99,11 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
         // a role lasts; another begins where own ship is, not where the desired trajectory has it
         let from_here = desired.from(own.pose.position);
         let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon);
-        encounter.risk = known.role.or_else(|| begins(target.ship()?));
+        let begins = || match known.track.is_empty() {
+            true => encounter.risk,
+            false => begins(target.ship()?),
+        };
+        encounter.risk = known.role.or_else(begins);
         encounter.role = encounter.risk.map_or(Role::None, |risk| risk.role);
     }
     // explicit sets are used unchanged: own ship is a point

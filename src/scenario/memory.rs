@@ -20,14 +20,14 @@ pub struct Memory {
     pub escape: Option<Escape>,
     /// The manoeuvre that own ship carries out.
     pub under_way: Option<UnderWay>,
-    /// Names of the targets that have left the sets which the last plan assumed.
-    pub left: Vec<String>,
+    /// Names of the targets that are outside the sets which the last plan assumed.
+    pub outside_sets: Vec<String>,
     /// One per target in the scenario's order, or none at all.
     pub targets: Vec<TargetMemory>,
 }
 
 impl Memory {
-    /// What is known of a target; nothing where no memory is.
+    /// Returns the memory of a target; `None` without one.
     pub fn target(&self, index: usize) -> Option<&TargetMemory> {
         self.targets.get(index)
     }

@@ -662,7 +662,10 @@ fn a_plan_goes_on_from_the_previous_one() {
     let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
     let turned = write(folder.path(), "turned.toml", turned);
     let turned = document(&go_on(&turned).success());
-    assert_eq!(turned["memory"]["left"], Value::from(vec!["target"]));
+    assert_eq!(
+        turned["memory"]["outside_sets"],
+        Value::from(vec!["target"])
+    );
     assert_eq!(turned["targets"][0]["ship"]["kept_velocities"], Value::Null);
 }
 

@@ -2,7 +2,7 @@
 
 use searoom::simulation::Meeting;
 
-use crate::campaigns::replanning::{self, Behaviour};
+use crate::campaigns::replanning::{self, Behaviour, How};
 use crate::campaigns::{
     compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time, wild,
 };
@@ -29,8 +29,18 @@ fn plans_keep_to_the_rules() {
 
 #[test]
 fn plans_made_again_and_again_keep_to_the_rules() {
-    replanning::run(0..12, &Meeting::NEAR, Behaviour::Constant, true).assert_met();
-    replanning::run(0..8, &Meeting::NEAR, Behaviour::Extreme, true).assert_met();
+    for (behaviour, off) in [
+        (Behaviour::Constant, 0.0),
+        (Behaviour::Extreme, 0.0),
+        (Behaviour::Constant, 1.0),
+    ] {
+        let how = How {
+            behaviour,
+            off,
+            memory: true,
+        };
+        replanning::run(0..10, &Meeting::NEAR, &how).assert_met();
+    }
 }
 
 #[test]

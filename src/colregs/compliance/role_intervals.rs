@@ -53,7 +53,7 @@ pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> 
     for (index, sample) in encounter.samples().iter().enumerate() {
         // before a change of speed at the very beginning
         let sample = &match index {
-            0 => sample.at_speed(encounter.ordered_speed()),
+            0 if sample.time >= 0.0 => sample.at_speed(encounter.ordered_speed()),
             _ => *sample,
         };
         if let Some(risk) = known {
@@ -80,7 +80,8 @@ pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> 
         } else {
             asking = 0;
         }
-        if asking >= t.risk.evaluations || change && index == 0 {
+        let begins_at_once = change && index == 0 && active.is_none();
+        if asking >= t.risk.evaluations || begins_at_once {
             asking = 0;
             if active.take().is_some() {
                 if let Some(interval) = intervals.last_mut() {

@@ -133,14 +133,20 @@ impl EncounterSamples {
     }
 
     /// Samples of a motion that was sailed, and of a target that kept course and speed from each of
-    /// these states to the next; times in seconds, the first not after the trajectory's start.
+    /// these states to the next; times in seconds, the first not after the motion's start. Segments
+    /// need not begin exactly where the one before ends.
     pub fn of_tracks(
-        trajectory: &Trajectory,
+        sailed: &[Segment],
         (own, ordered_speed): (Hull, f64),
         target: &[(f64, SteadyShip)],
         hull: Hull,
     ) -> Self {
-        let own = OwnSamples::along(&[], trajectory, own, ordered_speed);
+        let own = OwnSamples {
+            ships: sampled(sailed),
+            hull: own,
+            ordered_speed,
+            greatest_speed: f64::INFINITY,
+        };
         let sample = |index: usize| {
             let there = state_at(target, own.ships[index].0)?;
             Some(own.sample(index, &hull, there))
@@ -366,7 +372,7 @@ fn sampled(sailed: &[Segment]) -> Vec<(f64, SteadyShip)> {
             (time, ship)
         })
     });
-    samples.filter(|(time, _)| *time < 0.0).collect()
+    samples.collect()
 }
 
 /// Minkowski sum of two hulls about the offset of their centres: the intersection of four strips.

@@ -231,10 +231,12 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
                 ..Planned::of(outcome)
             };
         }
-        return match clock.is_up() {
-            true => Planned::of(Outcome::Deadline(None)),
-            false => refuse(no_candidate(problem, contact, grounding)),
-        };
+        if clock.is_up() {
+            return Planned::of(Outcome::Deadline(None));
+        }
+        if first_conflict.is_some() {
+            return refuse(no_candidate(problem, contact, grounding));
+        }
     }
     let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
     let mut search = Search::new(graph.root());

@@ -60,10 +60,10 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
             domain: DomainKind::Hull,
         };
         // a role that has begun before the plan is kept
-        let known = (e.latched < 0.0).then(|| TargetMemory {
+        let known = (e.risk_since <= 0.0).then(|| TargetMemory {
             role: Some(Risk {
                 role: e.role,
-                time: e.latched,
+                time: e.risk_since,
                 own: e.own,
                 target: e.ship,
             }),

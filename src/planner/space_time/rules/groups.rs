@@ -40,7 +40,7 @@ pub(crate) fn by_the_rules(
     // a manoeuvre under way is for the present risks, also where nothing would be met
     let contact = first_conflict(context, nominal_motion).unwrap_or(0.0);
     let mut encountered = context.problem.encountered.iter();
-    if encountered.all(|e| e.latched <= contact) {
+    if encountered.all(|e| e.risk_since <= contact) {
         return one_by_one(context, nominal_motion, Together::All, clock);
     }
     let mut best: Option<(usize, RulePlan)> = None;
@@ -83,7 +83,8 @@ fn one_by_one(
         manoeuvres: Vec::new(),
     };
     let mut from = 0.0;
-    for step in 0..=encountered.len() {
+    let most = encountered.len() + usize::from(context.problem.under_way.is_some());
+    for step in 0..=most {
         let under_way = context.problem.under_way.filter(|_| step == 0);
         let contact = match first_conflict(context, &kept.motion) {
             Some(contact) => contact,
@@ -93,31 +94,32 @@ fn one_by_one(
         if contact < from {
             return None;
         }
-        let lasts = |e: &Encountered| under_way.is_some() && e.latched <= 0.0;
-        let left = encountered.iter().filter(|e| e.tcpa > from || lasts(e));
+        let lasts = |e: &Encountered| under_way.is_some() && e.risk_since <= 0.0;
+        // negated on purpose: a NaN is not past
+        let remaining = encountered.iter().filter(|e| !(e.tcpa <= from) || lasts(e));
         let mut until = match together {
             Together::All => f64::INFINITY,
             _ => contact,
         };
         let (group, found) = loop {
-            let begun = left.clone().filter(|e| e.latched <= until);
+            let begun = remaining.clone().filter(|e| e.risk_since <= until);
             let group: Vec<_> = begun.copied().collect();
-            let all = group.len() == left.clone().count();
+            let all = group.len() == remaining.clone().count();
             let motion = (&kept.motion[..], from);
             let found = resolved(context, &group, all, motion, contact, clock, under_way)?;
-            let begins = |e: &Encountered| e.latched > until && e.latched < found.joined;
-            if together != Together::UntilJoined || !left.clone().any(begins) {
+            let begins = |e: &Encountered| e.risk_since > until && e.risk_since < found.joined;
+            if together != Together::UntilJoined || !remaining.clone().any(begins) {
                 break (group, found);
             }
             until = found.joined;
         };
         if step == 0 {
             let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-            let holds = holds && under_way.is_none();
+            let holds = holds && found.begun.is_none();
             kept.escape = (stands_on && holds).then(|| found.escape());
         }
         from = found.joined;
-        kept.manoeuvres.push(found.planned(under_way));
+        kept.manoeuvres.push(found.planned());
         kept.motion = found.motion;
     }
     None

@@ -106,6 +106,8 @@ enum FirstAlteration {
 /// A clear manoeuvre.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
+    /// The manoeuvre that it goes on with.
+    pub begun: Option<UnderWay>,
     manoeuvre: Manoeuvre,
     pub motion: Vec<Segment>,
     /// Seconds at which own ship turns back or changes its speed back.
@@ -117,12 +119,12 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// The manoeuvre as a plan names it; `under_way` where it goes on with one that has begun.
-    pub(super) fn planned(&self, under_way: Option<UnderWay>) -> PlannedManoeuvre {
+    /// The manoeuvre as a plan names it.
+    pub(super) fn planned(&self) -> PlannedManoeuvre {
         let leave = self.manoeuvre.leave;
         let before = self.motion.iter().find(|s| s.end_time() > leave);
         let heading = before.map_or(0.0, |s| s.pose_at(leave).heading);
-        let (begins, first_heading) = match under_way {
+        let (begins, first_heading) = match self.begun {
             Some(begun) => (begun.begins, begun.first_heading),
             None => (leave, heading),
         };
@@ -338,8 +340,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
         let latest = self.passing.iter().filter(keeps_clear).map(|p| {
             let e = p.encountered;
-            let seen = e.latched + (soon - turning - SAMPLE_S).max(REACT_S);
-            (e.tcpa - ample).max(e.latched + REACT_S).min(seen)
+            let seen = e.risk_since + (soon - turning - SAMPLE_S).max(REACT_S);
+            (e.tcpa - ample).max(e.risk_since + REACT_S).min(seen)
         });
         latest.fold(f64::INFINITY, f64::min).max(0.0)
     }
@@ -545,6 +547,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let out = &outs[out];
             let (motion, joined) = self.completed(out, (manoeuvre.after, manoeuvre.back))?;
             self.is_allowed(out, &motion, joined).then_some(Found {
+                begun: self.problem().under_way,
                 manoeuvre,
                 returns: out.returns(manoeuvre.after),
                 joined,
@@ -603,6 +606,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let (motion, joined) = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
         let rank = self.rank(&manoeuvre.first, &motion, joined);
         let found = Found {
+            begun: self.problem().under_way,
             manoeuvre: *manoeuvre,
             returns: out.returns(manoeuvre.after),
             motion,
