@@ -59,8 +59,8 @@ pub struct ShipTrack {
     /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
     /// within `course_spread + turn_rate t`.
     pub turn_rate: f64,
-    /// Velocities that the ship is known to keep to, from before t = 0; `None` for any. Not used
-    /// for a ship that may turn.
+    /// Velocities that the ship is known to keep to, from before t = 0; `None` for any, and for a
+    /// ship that may turn.
     pub kept_velocities: Option<ConvexPolygon>,
     /// The requested ship domain.
     pub domain: DomainKind,

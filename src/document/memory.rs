@@ -86,6 +86,25 @@ pub struct PlannedManoeuvreDocument {
 }
 
 impl MemoryDocument {
+    /// True where all that is remembered lies before the plan, in order of time.
+    fn is_past(&self) -> bool {
+        let sailed: Vec<Segment> = self.sailed.iter().map(segment).collect();
+        let times = sailed.iter().flat_map(|s| [s.start_time, s.end_time()]);
+        let in_order = |times: &[f64]| {
+            let before = |time: &f64| *time <= tolerance::TIME_S && time.is_finite();
+            let order = times.windows(2).all(|t| t[0] <= t[1] + tolerance::TIME_S);
+            order && times.iter().all(before)
+        };
+        let targets = self.targets.iter().all(|target| {
+            let track: Vec<f64> = target.track.iter().map(|state| state.at.t_s).collect();
+            let role = target.role.as_ref();
+            let role = role
+                .is_none_or(|role| risk(role, 0.0).is_some() && in_order(&[role.own_ship.at.t_s]));
+            in_order(&track) && role
+        });
+        targets && sailed.iter().all(Segment::is_valid) && in_order(&times.collect::<Vec<_>>())
+    }
+
     /// The memory of a run; `None` where nothing was known.
     pub(super) fn of(run: &Run) -> Option<Self> {
         let memory = &run.scenario.memory;
@@ -152,6 +171,9 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
+            // a wider spread says that less is known
+            && ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
+            && ship.course_spread <= then.course_spread * (1.0 + ASSUMED)
             && !memory.outside_sets.contains(&target.name)
         {
             let kept = then.outer_velocity_set();
@@ -219,11 +241,22 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             format_args!("at most {most} m, own length, and {OFF_PLAN_DEG} degrees"),
         ));
     }
+    if !previous.memory.iter().all(MemoryDocument::is_past) {
+        return Err(Fault::new(
+            "memory",
+            "a motion, a track or a role that is not before the plan",
+            "times that increase up to 0, and a known role",
+        ));
+    }
     let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
     let mut sailed: Vec<Segment> = before.map(segment).map(shifted).collect();
-    let since = planned.iter().filter(|s| s.start_time < elapsed);
-    sailed.extend(since.map(|s| shifted(s.between(s.start_time, elapsed))));
-
+    for s in planned.iter().filter(|s| s.start_time < elapsed) {
+        let s = shifted(s.between(s.start_time, elapsed));
+        match sailed.last_mut().filter(|last| continues(last, &s)) {
+            Some(last) => last.duration += s.duration,
+            None => sailed.push(s),
+        }
+    }
     let now = SteadyShip {
         pose: own.pose,
         speed: remainder.first().map_or(own.speed, |s| s.speed),
@@ -273,6 +306,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             turn: manoeuvre.turn,
             heading: steered.end().heading,
             speed: steered.speed,
+            aside: aside(&remainder, manoeuvre),
         }),
         escape: (previous.escape.as_ref())
             .filter(|escape| escape.held_until_s > elapsed)
@@ -287,6 +321,26 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
         manoeuvres,
         targets,
     })
+}
+
+/// Seconds on the course that own ship steers or turns to, until it turns again before its return;
+/// infinite if it does not.
+fn aside(remainder: &[Segment], manoeuvre: &PlannedManoeuvre) -> f64 {
+    let straight = remainder.iter().position(|s| !s.is_arc());
+    let turns = straight.and_then(|first| remainder[first..].iter().find(|s| s.is_arc()));
+    let before = |s: &&Segment| s.start_time < manoeuvre.returns - tolerance::TIME_S;
+    turns.filter(before).map_or(f64::INFINITY, |turn| {
+        turn.start_time - straight.map_or(0.0, |first| remainder[first].start_time)
+    })
+}
+
+/// True for a segment that continues another one.
+fn continues(last: &Segment, next: &Segment) -> bool {
+    let gap = (last.end().position - next.start.position).norm();
+    gap <= tolerance::JOINT_M
+        && (last.end_time() - next.start_time).abs() <= tolerance::TIME_S
+        && wrap(last.end().heading - next.start.heading).abs() <= tolerance::JOINT_RAD
+        && (last.speed, last.turn_rate) == (next.speed, next.turn_rate)
 }
 
 /// Where a target is, as the previous plan assumed.
@@ -371,8 +425,17 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
             .map(|state| steady(state, elapsed))
             .collect();
     }
-    if let Some(ship) = ship_then(previous, name) {
-        memory.track.push((-elapsed, steady_ship(&ship)));
+    if let Some(ship) = ship_then(previous, name).map(|ship| steady_ship(&ship)) {
+        // a target that keeps course and speed is where it was thought to be
+        let thought = memory.at(-elapsed).filter(|_| elapsed > 0.0);
+        let is_there = thought.is_some_and(|thought| {
+            let off = (thought.pose.position - ship.pose.position).norm();
+            off <= ASSUMED * (1.0 + elapsed)
+                && (thought.velocity() - ship.velocity()).norm() <= ASSUMED
+        });
+        if !is_there {
+            memory.track.push((-elapsed, ship));
+        }
     }
     memory
 }

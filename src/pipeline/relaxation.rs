@@ -97,9 +97,11 @@ impl Relaxer<'_> {
     /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
     /// without a plan says that the time ran out. The flag is true where ship domains are asked
     /// for. When all fail, [`Self::leaving_sets`] answers.
-    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 7] = [
+    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 9] = [
+        Self::remainder_by_the_rules,
         Self::by_the_rules,
         Self::clear_of_domains,
+        Self::remainder,
         Self::clear_of_hard_sets,
         Self::around_hard_sets,
         Self::clear_of_half_domains,
@@ -156,6 +158,50 @@ impl Relaxer<'_> {
             Some(out_of_time) => self.leaving_sets(out_of_time),
             None => self.leaving_sets(first),
         }
+    }
+
+    /// [`RelaxationLevel::Rules`]: the remainder of the last plan, if it is clear of the hard sets
+    /// and breaks no rule.
+    fn remainder_by_the_rules(&self, with_domain: bool) -> Option<Attempt> {
+        let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
+        (self.are_rules_asked() && found.1 == 0).then_some(found.0)
+    }
+
+    /// [`RelaxationLevel::ReducedDomains`]: the remainder of the last plan, if it is clear of the
+    /// hard sets.
+    fn remainder(&self, with_domain: bool) -> Option<Attempt> {
+        let level = RelaxationLevel::ReducedDomains;
+        self.remainder_clear_of_hard_sets(with_domain, level)
+            .map(|found| found.0)
+    }
+
+    /// The remainder against the hard sets and as much of the domains as it is clear of, and the
+    /// number of rules that it breaks.
+    fn remainder_clear_of_hard_sets(
+        &self,
+        with_domain: bool,
+        level: RelaxationLevel,
+    ) -> Option<(Attempt, usize)> {
+        if !with_domain || self.scenario.memory.remainder.is_empty() {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let (whole, reductions) = self.scaled(&self.scales(0.0));
+        let obstacles = level_sets(&whole, risk);
+        let mut found = Attempt {
+            level,
+            released: vec![None; whole.len()],
+            whole,
+            reductions,
+            obstacles,
+            risk,
+            planned: Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory)),
+            why: None,
+        };
+        let kept = better_remainder(self.scenario, &self.problem(&found.obstacles), &found)?;
+        found.planned = kept.planned;
+        let retained = self.retained_along(found.trajectory()?, risk);
+        Some((self.clear_of(&found, &retained, level), kept.broken))
     }
 
     /// [`RelaxationLevel::Rules`]: a plan by the rules that is clear of the hard sets, and of the

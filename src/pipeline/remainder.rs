@@ -38,7 +38,12 @@ pub(super) fn better_remainder(
     let returns = |m: &PlannedManoeuvre| m.returns <= 0.0 && m.joins > 0.0;
     let outside = (scenario.targets.iter().zip(&memory.targets))
         .any(|(target, known)| known.role.is_some() && memory.outside_sets.contains(&target.name));
-    let settled = outside || memory.manoeuvres.iter().any(returns);
+    // another manoeuvre would begin before the last one is finished
+    let another = memory.under_way.is_some_and(|begun| {
+        let goes_on = |m: &PlannedManoeuvre| m.begins == begun.begins;
+        !attempt.planned.manoeuvres.first().is_some_and(goes_on)
+    });
+    let settled = outside || another || memory.manoeuvres.iter().any(returns);
     let broken = breaks(&plan);
     let keep = match attempt.planned.outcome.plan() {
         None => true,
@@ -49,7 +54,11 @@ pub(super) fn better_remainder(
         },
     };
     let planned = Planned {
-        escape: memory.escape,
+        // an escape is named where it is needed
+        escape: match attempt.planned.outcome {
+            Outcome::Infeasible(_) => memory.escape,
+            _ => memory.escape.filter(|_| attempt.planned.escape.is_some()),
+        },
         manoeuvres: memory.manoeuvres.clone(),
         is_remainder: true,
         ..Planned::of(Outcome::Solved(plan))
@@ -74,7 +83,13 @@ fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> 
         motion.iter().any(enters)
     };
     let land = |s: &Segment| problem.land_obstacle.meets(s, tolerance::TOUCH_M);
+    let is_own = |s: &Segment| {
+        let listed = |u: &f64| (u - s.speed).abs() <= tolerance::FIGURE * s.speed;
+        let turns = s.turn_rate.abs() * own.turning_radius <= s.speed * (1.0 + tolerance::FIGURE);
+        own.speeds.iter().any(listed) && turns
+    };
     let fits = arrives
+        && motion.iter().all(is_own)
         && last.end_time() <= problem.horizon
         && !obstacles.iter().any(enters)
         && !motion.iter().any(land);

@@ -286,6 +286,8 @@ pub struct UnderWay {
     pub heading: f64,
     /// Speed, m/s.
     pub speed: f64,
+    /// Seconds until own ship turns to a parallel course by the last plan; infinite for none.
+    pub aside: f64,
 }
 
 /// Result of a planner. None of these is an error.

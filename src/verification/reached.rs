@@ -94,7 +94,9 @@ impl<'a> Known<'a> {
             Motion::Sets(sets) => supports(&sets.initial),
         };
         let motion = match &target.motion {
-            Motion::Ship(ship) if scale == 1.0 => Moving::Ship(ship.clone()),
+            Motion::Ship(ship) if scale == 1.0 && ship.kept_velocities.is_none() => {
+                Moving::Ship(ship.clone())
+            }
             _ => {
                 let sets = at_level(target, scale, claim.file.horizon_s);
                 let timed = |set: &TimedVelocitySet| {
@@ -232,6 +234,9 @@ fn speeds(ship: &ShipTrack) -> (f64, f64) {
 /// Points whose convex hull contains every velocity that a ship may have until a time. All are
 /// possible velocities, except the intersections of tangents to the outer arc.
 pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
+    if ship.kept_velocities.is_some() {
+        return ship.outer_velocity_set().vertices().to_vec();
+    }
     let (slow, fast) = speeds(ship);
     let heading = ship.pose.heading;
     let spread = (ship.course_spread + ship.turn_rate * until).min(PI);

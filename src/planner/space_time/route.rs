@@ -1,6 +1,7 @@
 //! Route: the desired path as own ship can sail it, from its own pose to the last waypoint, with a
 //! schedule and the policy that follows it.
 
+use crate::colregs::{ON_COURSE, SMALL_TURN};
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
@@ -28,6 +29,13 @@ const ALTERNATION_M: f64 = 400.0;
 /// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
 /// mixed from thousands of parts.
 const LEAST_ALTERNATION_M: f64 = 50.0;
+
+/// Seconds of the least change of speed where the rules ask for plain manoeuvres.
+pub(crate) const LEAST_CHANGE_S: f64 = 3.0;
+
+/// Factor of the cost of a route that joins the path by turns that are seen, but small, where the
+/// rules ask for plain manoeuvres.
+const SMALL_TURNS_PRICE: f64 = 1e3;
 
 /// Line or arc of the route.
 #[derive(Debug, Clone, Copy)]
@@ -88,6 +96,8 @@ pub(crate) struct Route {
     pieces: Vec<RoutePiece>,
     /// Own ship's speeds, increasing.
     speeds: Vec<f64>,
+    /// Seconds: no change of speed for the schedule's sake is shorter.
+    least_change: f64,
 }
 
 impl Route {
@@ -106,7 +116,11 @@ impl Route {
                 let Some(mut route) = Self::joining(problem, leg, along, speed) else {
                     continue;
                 };
-                let arrival = route.arrival(0.0, 0.0);
+                let mut arrival = route.arrival(0.0, 0.0);
+                if arrival > problem.horizon {
+                    route.least_change = 0.0;
+                    arrival = route.arrival(0.0, 0.0);
+                }
                 if arrival > problem.horizon {
                     let factor = problem.horizon * (1.0 - 1e-6) / arrival.max(desired.duration());
                     for piece in &mut route.pieces {
@@ -119,7 +133,12 @@ impl Route {
                 }
                 let cost = problem.error_of(&route.follow(0.0, 0.0));
                 let late = route.arrival(0.0, 0.0) > problem.horizon;
-                let rank = if late { cost + 1e12 } else { cost };
+                let unplain = route.joins_by_small_turns() || !route.joins_at(desired, leg);
+                let price = match asks_for_plain(problem) && unplain {
+                    true => SMALL_TURNS_PRICE,
+                    false => 1.0,
+                };
+                let rank = if late { cost + 1e12 } else { cost * price };
                 if rank.is_finite()
                     && best
                         .as_ref()
@@ -137,6 +156,23 @@ impl Route {
         best.map(|(_, route)| route)
     }
 
+    /// True where own ship joins the path by a turn that is seen, but not readily apparent.
+    fn joins_by_small_turns(&self) -> bool {
+        let joining = self.pieces.iter().take_while(|p| p.leg.is_none());
+        let mut turns = joining.map(|p| (p.curvature * p.length).abs());
+        turns.any(|turn| turn > ON_COURSE && turn < SMALL_TURN)
+    }
+
+    /// True where own ship joins a leg at its speed, or by a turn that is seen.
+    fn joins_at(&self, desired: &DesiredTrajectory, leg: usize) -> bool {
+        let wanted = desired.legs()[leg].speed;
+        let joining = self.pieces.iter().take_while(|p| p.leg.is_none());
+        let mut turns = joining.clone().map(|p| (p.curvature * p.length).abs());
+        let mut speeds = joining.filter_map(|p| p.speed);
+        let nearest = self.nearest_speed(wanted);
+        turns.any(|turn| turn > ON_COURSE) || speeds.all(|speed| speed == nearest)
+    }
+
     fn joining(problem: &Problem, leg: usize, along: f64, speed: f64) -> Option<Self> {
         let (own, desired) = (problem.own, problem.desired);
         let legs = desired.legs();
@@ -146,6 +182,11 @@ impl Route {
         let mut route = Self {
             pieces: Vec::new(),
             speeds: own.speeds.clone(),
+            least_change: if asks_for_plain(problem) {
+                LEAST_CHANGE_S
+            } else {
+                0.0
+            },
         };
         let join = Pose::new(first.start + first.direction * along, heading(leg));
         let due = first.start_time + along / first.speed;
@@ -393,8 +434,8 @@ impl Route {
         if let Some(speed) = piece.speed {
             return (speed, left);
         }
-        let late = time - self.due_at(at);
         let slowness = piece.slowness;
+        let late = self.worth_a_change(time - self.due_at(at), slowness);
         let (slowest, fastest) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
         // on an arc own ship keeps its speed unless it is far off schedule
         if piece.curvature != 0.0 && late.abs() < 0.5 * slowness * piece.length {
@@ -448,6 +489,21 @@ impl Route {
         }
     }
 
+    /// Seconds behind schedule, or none where to make them good takes too little time for a change
+    /// of speed.
+    fn worth_a_change(&self, late: f64, slowness: f64) -> f64 {
+        let (slowest, fastest) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
+        // the time at another speed in which a second is gained or lost
+        let takes = match late > 0.0 {
+            true => 1.0 / (fastest * slowness - 1.0),
+            false => 1.0 / (1.0 - slowest * slowness),
+        };
+        if takes > 0.0 && late.abs() * takes < self.least_change {
+            return 0.0;
+        }
+        late
+    }
+
     fn nearest_speed(&self, speed: f64) -> f64 {
         self.speeds
             .iter()
@@ -461,6 +517,11 @@ impl Route {
 /// Distance after a step, which may be smaller than a rounding; always greater than before.
 fn past(at: f64, step: f64) -> f64 {
     (at + step).max(at.next_up())
+}
+
+/// True where the rules ask for plain manoeuvres.
+fn asks_for_plain(problem: &Problem) -> bool {
+    !problem.encountered.is_empty() || problem.under_way.is_some()
 }
 
 /// Candidate joining points on the path: `(leg, metres along it)`.

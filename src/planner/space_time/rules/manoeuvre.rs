@@ -460,8 +460,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         let is_parallel = wrap(begun.heading - begun.first_heading).abs() <= ON_COURSE;
         let asides = if is_parallel { &ASIDE_S[..1] } else { &ASIDE_S };
-        let at_once = (!is_parallel).then_some(0.0).into_iter();
-        let asides = asides.iter().map(|aside| aside * self.unit).chain(at_once);
+        let asides = asides.iter().map(|aside| aside * self.unit);
+        let last: &[f64] = if is_parallel {
+            &[]
+        } else {
+            &[0.0, begun.aside]
+        };
+        let asides = asides.chain(last.iter().copied());
         let turns = asides.map(|aside| FirstAlteration::Turn { turn, aside, speed });
         turns.collect()
     }
