@@ -297,8 +297,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
     });
     let mut targets: Vec<TargetMemory> = known.collect();
     forget(&mut sailed, &mut targets);
-    let goes_on = |m: &&PlannedManoeuvre| begun(m) && m.returns > 0.0;
-    let under_way = manoeuvres.iter().find(goes_on).zip(remainder.first());
+    let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
     Ok(Memory {
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
             begins: manoeuvre.begins,
@@ -307,6 +306,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             heading: steered.end().heading,
             speed: steered.speed,
             aside: aside(&remainder, manoeuvre),
+            is_returning: manoeuvre.returns <= 0.0,
         }),
         escape: (previous.escape.as_ref())
             .filter(|escape| escape.held_until_s > elapsed)

@@ -272,11 +272,10 @@ impl PlannedManoeuvre {
     }
 }
 
-/// The manoeuvre that own ship carries out at t = 0: it has left the route and has not begun to
-/// return.
+/// The manoeuvre that own ship carries out at t = 0: it has left the route and is not back on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnderWay {
-    /// Seconds at which the manoeuvre began, not positive.
+    /// Seconds at which the manoeuvre began, negative.
     pub begins: f64,
     /// Heading before the manoeuvre, radians.
     pub first_heading: f64,
@@ -288,6 +287,8 @@ pub struct UnderWay {
     pub speed: f64,
     /// Seconds until own ship turns to a parallel course by the last plan; infinite for none.
     pub aside: f64,
+    /// True where own ship has begun to return to its route.
+    pub is_returning: bool,
 }
 
 /// Result of a planner. None of these is an error.

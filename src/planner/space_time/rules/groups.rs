@@ -37,6 +37,24 @@ pub(crate) fn by_the_rules(
     nominal_motion: &[Segment],
     clock: Clock,
 ) -> Option<RulePlan> {
+    let plan = in_groups(context, nominal_motion, clock);
+    let begun = context.problem.under_way;
+    if plan.is_some() || !begun.is_some_and(|begun| begun.is_returning) {
+        return plan;
+    }
+    // too near the route for another line back to it: along the route
+    let problem = Problem {
+        under_way: None,
+        ..*context.problem
+    };
+    let context = Context {
+        problem: &problem,
+        ..*context
+    };
+    in_groups(&context, nominal_motion, clock)
+}
+
+fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Option<RulePlan> {
     // a manoeuvre under way is for the present risks, also where nothing would be met
     let contact = first_conflict(context, nominal_motion).unwrap_or(0.0);
     let mut encountered = context.problem.encountered.iter();
@@ -146,8 +164,11 @@ fn resolved(
         ..*context
     };
     let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
-    if under_way.is_some() {
+    if let Some(begun) = under_way {
         let gone_on = manoeuvres.going_on();
+        if begun.is_returning {
+            return gone_on;
+        }
         return gone_on.or_else(|| resolved(&context, group, all, motion, contact, clock, None));
     }
     match problem.duty().stands_on {

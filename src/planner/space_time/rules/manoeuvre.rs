@@ -133,7 +133,7 @@ impl Found {
             returns: self.returns,
             joins: self.joined,
             first_heading,
-            turn: self.escape().turn,
+            turn: self.begun.map_or(self.escape().turn, |begun| begun.turn),
         }
     }
 
@@ -455,6 +455,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     /// course may follow once.
     fn ways_on(&self, begun: &UnderWay) -> Vec<FirstAlteration> {
         let (turn, speed) = (begun.turn, begun.speed);
+        let aside = f64::INFINITY;
+        if begun.is_returning {
+            return vec![FirstAlteration::Turn {
+                turn: 0.0,
+                aside,
+                speed,
+            }];
+        }
         if turn == 0.0 {
             return vec![FirstAlteration::Slow { speed }];
         }
@@ -483,7 +491,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     fn has_clear(&self, leave: f64) -> bool {
         self.clear_outward_legs(leave).any(|out| {
-            let few = self.endings(&out).step_by(ENDING_STRIDE);
+            let few = self.endings(&out).into_iter().step_by(ENDING_STRIDE);
             few.into_iter().any(|ending| {
                 self.completed(&out, ending)
                     .is_some_and(|(m, joined)| self.is_allowed(&out, &m, joined))
@@ -510,15 +518,17 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// Seconds from passing to the return, and the angle of the return.
-    fn endings(&self, out: &OutwardLeg) -> impl Iterator<Item = (f64, f64)> + use<> {
-        let angles = match out.first {
-            FirstAlteration::Turn { .. } => &BACK[..],
-            FirstAlteration::Slow { .. } => &BACK[..1],
+    fn endings(&self, out: &OutwardLeg) -> Vec<(f64, f64)> {
+        let mut angles = match out.first {
+            FirstAlteration::Turn { .. } => BACK.to_vec(),
+            FirstAlteration::Slow { .. } => BACK[..1].to_vec(),
         };
-        AFTER_S
-            .map(|after| after * self.unit)
-            .into_iter()
-            .flat_map(|after| angles.iter().map(move |back| (after, *back)))
+        // a return goes on as it is
+        let begun = self.problem().under_way.filter(|begun| begun.is_returning);
+        angles.extend(begun.map(|begun| wrap(begun.heading - begun.first_heading).abs()));
+        let after = AFTER_S.map(|after| after * self.unit).into_iter();
+        let endings = after.flat_map(|after| angles.iter().map(move |back| (after, *back)));
+        endings.collect()
     }
 
     /// The cheapest clear manoeuvre that begins at a time.
