@@ -4,6 +4,7 @@
 //! valid.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 #[derive(Debug, Deserialize)]
 pub(super) struct PlanFile {
@@ -29,9 +30,8 @@ pub(super) struct PlanFile {
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
     pub trajectory: Option<TrajectoryFile>,
-    pub escape: Option<EscapeFile>,
     pub encounters: Vec<EncounterFile>,
-    pub path_time: Option<PathTimeFile>,
+    pub path_time: Option<IgnoredAny>,
     pub optimal_control: Option<ControlFile>,
 }
 
@@ -135,19 +135,11 @@ pub(super) struct CostFile {
     pub duration_s: f64,
     pub length_m: f64,
     pub delay_s: Option<f64>,
-    pub first_turn: Option<TurnFile>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
     pub hold_clearance_m: Option<f64>,
     pub arrival_hold_s: Option<f64>,
     pub min_land_distance_m: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct TurnFile {
-    pub side: String,
-    pub turn_deg: f64,
-    pub t_s: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -192,30 +184,9 @@ pub(super) struct SampleFile {
 #[derive(Debug, Deserialize)]
 pub(super) struct EncounterFile {
     pub target: String,
-    pub role: Option<String>,
     pub dcpa_m: Option<f64>,
-    pub tcpa_s: Option<f64>,
-    pub undisturbed_dcpa_m: Option<f64>,
-    pub undisturbed_tcpa_s: Option<f64>,
-    pub passing_side: Option<String>,
-    pub crosses_astern: Option<bool>,
     pub max_risk: Option<f64>,
     pub max_risk_t_s: Option<f64>,
-}
-
-/// Escape of a stand-on ship after the hold.
-#[derive(Debug, Deserialize)]
-pub(super) struct EscapeFile {
-    pub policy: String,
-    pub held_until_s: f64,
-    pub first_segment: usize,
-    pub turn_deg: f64,
-    pub speed_mps: f64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct PathTimeFile {
-    pub profile: Vec<[f64; 2]>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,8 +10,8 @@
 //!   continuous time, with certified distances ([`crate::evaluation`]);
 //! - that the sets are large enough: each contains the target's hull, the margin and the
 //!   uncertainty, and every velocity that the target may take;
-//! - that the reported properties are those of the motion: safety, costs, risks, samples,
-//!   encounters, path-time profile, and the hold and escape of a stand-on ship.
+//! - that the reported properties are those of the motion: safety, costs, risks, samples and least
+//!   distances.
 //!
 //! It uses no planner, obstacle or contact test, and parses the document by its own schema. It
 //! shares with the planners only geometry, segments, and the hull and velocity sets of a tracked
@@ -19,8 +19,6 @@
 
 mod claim;
 mod coverage;
-mod encounters;
-mod escape;
 mod figures;
 mod file;
 mod motion;
@@ -29,7 +27,6 @@ mod reached;
 mod risk;
 mod samples;
 mod sets;
-mod undisturbed;
 
 pub use claim::{ClaimError, ClaimFault};
 
@@ -146,11 +143,8 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         if motion.is_sound() {
             violations.extend(figures::check(&claim, evaluation));
             violations.extend(risk::check(&claim, &request));
-            violations.extend(escape::check(&claim, evaluation, &request));
             violations.extend(samples::check(&claim, motion));
-            violations.extend(encounters::check(&claim, motion, evaluation));
         }
-        violations.extend(undisturbed::check(&claim));
     }
     let claimed_from = |name: &str| {
         let own = claim.sets.iter().filter(|set| set.name == name);

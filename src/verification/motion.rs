@@ -4,7 +4,7 @@ use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
 use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
-use crate::trajectory::{ForceNode, Segment, Steered, Trajectory};
+use crate::trajectory::{ForceNode, Segment, Steered};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
@@ -31,14 +31,6 @@ impl ClaimedMotion {
         match self {
             Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
             Self::Steered { motion, .. } => motion.nodes()[motion.nodes().len() - 1].time,
-        }
-    }
-
-    /// The motion as a trajectory; `None` where it has gaps.
-    pub fn trajectory(&self) -> Option<Trajectory> {
-        match self {
-            Self::Segments(segments) => Trajectory::with_corners(segments.clone()).ok(),
-            Self::Steered { motion, .. } => Some(motion.clone().into()),
         }
     }
 

@@ -5,8 +5,7 @@ use searoom::scenario::Scenario;
 use serde_json::{Value, json};
 
 use crate::alter::at;
-use crate::documents::{checked, document, scenario};
-use crate::unsound::said;
+use crate::documents::{checked, document};
 
 /// Plan document of a scenario, which the check accepts.
 fn verified(text: &str) -> Value {
@@ -272,42 +271,4 @@ fn a_ship_in_a_hurry_holds_no_speed() {
             course_spread_deg = 5 }]"#,
     );
     assert_eq!(plan["escape"], Value::Null);
-}
-
-/// Altered first turns, crossings and speeds are rejected.
-#[test]
-fn the_first_turn_and_the_crossing_are_those_of_the_motion() {
-    let plan = document(scenario("colregs/give-way.toml"));
-    let turn = plan["cost"]["first_turn"].clone();
-    let astern = plan["encounters"][0]["crosses_astern"].as_bool();
-    let side = if turn["side"] == "port" {
-        "starboard"
-    } else {
-        "port"
-    };
-    for (path, value, expected) in [
-        ("/cost/first_turn/side", json!(side), "cost.first_turn"),
-        ("/cost/first_turn/turn_deg", json!(1.0), "cost.first_turn"),
-        ("/cost/first_turn/t_s", json!(299.0), "cost.first_turn"),
-        ("/cost/first_turn", Value::Null, "cost.first_turn"),
-        (
-            "/encounters/0/crosses_astern",
-            json!(!astern.expect("a crossing")),
-            "crosses_astern",
-        ),
-        (
-            "/encounters/0/crosses_astern",
-            Value::Null,
-            "crosses_astern",
-        ),
-        ("/encounters/0/role", json!("none"), "crosses_astern"),
-    ] {
-        let mut altered = plan.clone();
-        *at(&mut altered, path) = value;
-        said(&altered, expected);
-    }
-    let mut fast = plan;
-    *at(&mut fast, "/own_ship/speed_mps") = json!(101.0);
-    let error = searoom::verification::verify(&fast.to_string()).expect_err("too fast");
-    assert!(error.to_string().contains("own_ship.speed_mps"), "{error}");
 }

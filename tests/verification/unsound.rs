@@ -3,14 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use searoom::document::{PlanDocument, VerifiedPlanDocument};
 use searoom::evaluation::{Freedom, Request, evaluate};
 use searoom::frame::Vector;
-use searoom::pipeline;
 use searoom::planner::Planner;
 use searoom::planner::path_time::PathTimePlanner;
 use searoom::planner::space_time::SpaceTimePlanner;
-use searoom::report::verification_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Segment;
 use searoom::verification::verify;
@@ -314,63 +311,6 @@ fn what_is_entered_after_a_release_is_found() {
             "{found:#?}"
         );
     }
-}
-
-/// Three ships pass on parallel courses: every view says of each what is hers.
-#[test]
-fn each_target_has_its_own_clearance_in_every_view() {
-    let ship = |name: &str, north: f64| {
-        format!(
-            "[[targets]]\nname = \"{name}\"\nposition = {{ east_m = 1000, north_m = {north} }}\ncourse_deg = 270\nspeed_mps = 5\nlength_m = 60\nbeam_m = 12\n"
-        )
-    };
-    let text = format!(
-        "title = \"three\"\nhorizon_s = 400.0\n{}{}{}{}{}",
-        "own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }\n",
-        "mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }] }\nplanner = { compliance = \"none\" }\n",
-        ship("far", 410.0),
-        ship("near", 210.0),
-        ship("middle", -310.0),
-    );
-    let scenario = Scenario::parse(&text).expect("a scenario");
-    let run = pipeline::run(scenario);
-    let plan = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
-    let found = verify(&plan).expect("a plan document");
-    assert!(found.verified(), "{:?}", found.violations);
-    let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &found);
-    let text = verification_text(&found, false);
-    for (index, (name, clearance)) in [("far", 400.0), ("near", 200.0), ("middle", 300.0)]
-        .into_iter()
-        .enumerate()
-    {
-        let close = |value: f64| (value - clearance).abs() < 1e-6;
-        assert_eq!(found.targets[index], name);
-        let passages = &found.evaluation.as_ref().expect("a motion").passages;
-        assert!(
-            close(passages[index].min_clearance),
-            "{:?}",
-            passages[index]
-        );
-        let margin = &entry.targets[index];
-        assert_eq!(margin.target, name);
-        assert!(
-            margin.min_clearance_m.is_some_and(close) && margin.dcpa_m.is_some_and(close),
-            "{margin:?}"
-        );
-        let row = text
-            .lines()
-            .find(|line| line.trim_start().starts_with(name));
-        let row: Vec<&str> = row.expect("a row").split_whitespace().collect();
-        assert_eq!(
-            row[3..5],
-            [format!("{clearance:.1}"), format!("{clearance:.1}")],
-            "{text}"
-        );
-    }
-    assert_eq!(
-        found.evaluation.expect("a motion").min_clearance,
-        entry.targets[1].min_clearance_m.expect("one")
-    );
 }
 
 /// Plans that are what they say: something given up when the time was out, a node at a rounding
