@@ -136,7 +136,7 @@ impl Evaluation {
 /// # Examples
 ///
 /// ```
-/// use searoom::evaluation::{Evaluation, Freedom, Request, evaluate};
+/// use searoom::evaluation::{Evaluation, Request, evaluate};
 /// use searoom::scenario::Scenario;
 /// use searoom::trajectory::Segment;
 ///
@@ -145,18 +145,8 @@ impl Evaluation {
 /// let start = scenario.own_ship.pose;
 /// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
 /// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
 ///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
+///     ..Request::new(&held, &scenario.own_ship, &scenario.desired, scenario.horizon)
 /// };
 /// let found: Evaluation = evaluate(&request);
 /// assert!(!found.verified() && !found.safe() && found.min_clearance < 0.0);

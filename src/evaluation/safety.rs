@@ -190,13 +190,7 @@ mod tests {
                 length_m = 60, beam_m = 12, position_std_m = {spread_m} }}]"#
         );
         let scenario = Scenario::parse(&text).expect("valid");
-        let held = Segment {
-            start: scenario.own_ship.pose,
-            start_time: 0.0,
-            duration: 300.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let held = Segment::straight(scenario.own_ship.pose, 0.0, 300.0, 5.0);
         Scene { scenario, held }
     }
 
@@ -216,18 +210,18 @@ mod tests {
     ) -> Evaluation {
         let Scene { scenario, held } = scene;
         evaluate(&Request {
-            segments: std::slice::from_ref(held),
-            own: &scenario.own_ship,
             freedom: Freedom::Any,
-            desired: &scenario.desired,
             targets: &scenario.targets,
             sets,
             land,
             land_margin,
-            horizon: scenario.horizon,
-            time_weight: 25.0,
             max_risk,
-            arrival_hold: scenario.arrival_hold,
+            ..Request::new(
+                std::slice::from_ref(held),
+                &scenario.own_ship,
+                &scenario.desired,
+                scenario.horizon,
+            )
         })
     }
 

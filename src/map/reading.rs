@@ -185,10 +185,7 @@ impl Reading<'_> {
             return Ok(point);
         }
         let written = format!("[{lon_deg:?}, {lat_deg:?}]");
-        let exchanged = Geographic {
-            lat_deg: lon_deg,
-            lon_deg: lat_deg,
-        };
+        let exchanged = Geographic::new(lon_deg, lat_deg);
         if self.earth.to_near_plane(exchanged).is_some() {
             let found = format!("{written}{EXCHANGED},");
             let allowed = format!("{POSITION}; or an origin that is not exchanged itself");
@@ -238,10 +235,7 @@ mod tests {
     use super::*;
 
     fn earth() -> Georeference {
-        let origin = Geographic {
-            lat_deg: 63.44,
-            lon_deg: 10.4,
-        };
+        let origin = Geographic::new(63.44, 10.4);
         Georeference::new(origin).expect("valid")
     }
 

@@ -216,19 +216,19 @@ mod tests {
         for _ in 0..200 {
             let (_, _, land) = random_land(&mut rng);
             for _ in 0..20 {
-                let segment = Segment {
-                    start: Pose::new(
+                let segment = Segment::new(
+                    Pose::new(
                         Vector::new(
                             rng.random_range(-400.0..400.0),
                             rng.random_range(-400.0..400.0),
                         ),
                         rng.random_range(-3.0..3.0),
                     ),
-                    start_time: 7.0,
-                    duration: rng.random_range(0.0..90.0),
-                    speed: 5.0,
-                    turn_rate: [0.0, 0.05, -0.1][rng.random_range(0..3)],
-                };
+                    7.0,
+                    rng.random_range(0.0..90.0),
+                    5.0,
+                    [0.0, 0.05, -0.1][rng.random_range(0..3)],
+                );
                 let first = land
                     .blocks()
                     .iter()
@@ -241,13 +241,7 @@ mod tests {
             }
         }
         assert!(met > 500 && clear > 500, "{met} {clear}");
-        let lost = Segment {
-            start: Pose::new(Vector::new(f64::NAN, 0.0), 0.0),
-            start_time: 0.0,
-            duration: 1.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let lost = Segment::straight(Pose::new(Vector::new(f64::NAN, 0.0), 0.0), 0.0, 1.0, 5.0);
         let (_, _, land) = random_land(&mut rng);
         assert!(land.meets(&lost, 1e-7));
     }

@@ -315,10 +315,10 @@ fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
     Ok(OwnShip {
         pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
         speed: within("own_ship.speed_mps", own.speed_mps, 0.0, FASTEST_MPS)?,
-        hull: Hull {
-            length: not_negative("own_ship.length_m", own.length_m)?,
-            beam: not_negative("own_ship.beam_m", own.beam_m)?,
-        },
+        hull: Hull::new(
+            not_negative("own_ship.length_m", own.length_m)?,
+            not_negative("own_ship.beam_m", own.beam_m)?,
+        ),
         turning_radius: positive("own_ship.turning_radius_m", own.turning_radius_m)?,
         speeds: own.speeds_mps.clone(),
         safety_margin: not_negative("own_ship.safety_margin_m", own.safety_margin_m)?,
@@ -365,10 +365,10 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
                     heading_from_course_deg(ship.course_deg),
                 ),
                 speed: not_negative(&at("speed_mps"), ship.speed_mps)?,
-                hull: Hull {
-                    length: not_negative(&at("length_m"), ship.length_m)?,
-                    beam: not_negative(&at("beam_m"), ship.beam_m)?,
-                },
+                hull: Hull::new(
+                    not_negative(&at("length_m"), ship.length_m)?,
+                    not_negative(&at("beam_m"), ship.beam_m)?,
+                ),
                 position_std: not_negative(&at("position_std_m"), ship.position_std_m)?,
                 speed_spread: not_negative(&at("speed_spread_mps"), ship.speed_spread_mps)?,
                 course_spread: radians_from_deg(within(

@@ -128,13 +128,13 @@ fn pose(start: &StartFile) -> Pose {
 }
 
 fn segment(segment: &SegmentFile) -> Segment {
-    Segment {
-        start: pose(&segment.start),
-        start_time: segment.start.t_s,
-        duration: segment.duration_s,
-        speed: segment.speed_mps,
-        turn_rate: radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
-    }
+    Segment::new(
+        pose(&segment.start),
+        segment.start.t_s,
+        segment.duration_s,
+        segment.speed_mps,
+        radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
+    )
 }
 
 /// Converts the samples that are nodes. A course has no full circles, so the heading is continued

@@ -146,13 +146,13 @@ mod tests {
 
     fn end(from: Pose, path: &DubinsPath, radius: f64) -> Pose {
         path.pieces.iter().fold(from, |pose, piece| {
-            Segment {
-                start: pose,
-                start_time: 0.0,
-                duration: piece.length,
-                speed: 1.0,
-                turn_rate: piece.turn.map_or(0.0, |s| s.turn_sign() / radius),
-            }
+            Segment::new(
+                pose,
+                0.0,
+                piece.length,
+                1.0,
+                piece.turn.map_or(0.0, |s| s.turn_sign() / radius),
+            )
             .end()
         })
     }

@@ -51,10 +51,7 @@ impl Declared {
     /// Converts to a DNV file; the inverse projection gives degrees.
     fn document(&self) -> String {
         let mut document = dnv_01();
-        let origin = searoom::frame::Geographic {
-            lat_deg: 58.763449,
-            lon_deg: 10.490654,
-        };
+        let origin = searoom::frame::Geographic::new(58.763449, 10.490654);
         let earth = searoom::frame::Georeference::new(origin).expect("on earth");
         let waypoints: Vec<Value> = self
             .points

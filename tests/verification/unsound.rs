@@ -103,31 +103,15 @@ fn a_path_is_sailed_to_its_end() {
     "#;
     let mut scenario = Scenario::parse(text).expect("a scenario");
     let own = &scenario.own_ship;
-    let wait = |duration: f64| Segment {
-        start: own.pose,
-        start_time: 0.0,
-        duration,
-        speed: 0.0,
-        turn_rate: 0.0,
-    };
+    let wait = |duration: f64| Segment::straight(own.pose, 0.0, duration, 0.0);
     let waypoints = [scenario.desired.waypoints()];
     for freedom in [Freedom::Limits, Freedom::Paths(&waypoints)] {
         for duration in [0.0, 100.0] {
-            let request = Request {
-                segments: &[wait(duration)],
-                own,
+            let found = evaluate(&Request {
                 freedom,
-                desired: &scenario.desired,
-                targets: &[],
-                sets: &[],
-                land: &[],
-                land_margin: 0.0,
-                horizon: 900.0,
-                time_weight: 25.0,
-                max_risk: 0.0,
-                arrival_hold: 60.0,
-            };
-            let found = evaluate(&request).violations;
+                ..Request::new(&[wait(duration)], own, &scenario.desired, 900.0)
+            });
+            let found = found.violations;
             assert!(
                 found.iter().any(|v| v.what.starts_with("arrival: ")),
                 "{found:?}"
@@ -156,13 +140,12 @@ fn a_path_is_sailed_to_its_end() {
 fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
     let mut scenario = scenario("colregs/head-on.toml");
     scenario.own_ship.speeds = vec![1e6];
-    let run = [Segment {
-        start: scenario.own_ship.pose,
-        start_time: 0.0,
-        duration: 1500.0 / 1e6,
-        speed: 1e6,
-        turn_rate: 0.0,
-    }];
+    let run = [Segment::straight(
+        scenario.own_ship.pose,
+        0.0,
+        1500.0 / 1e6,
+        1e6,
+    )];
     let place = scenario.own_ship.pose.position + Vector::new(700.123_456, 0.0);
     let corners = [(0.0, -1.0), (1e-3, 0.0), (0.0, 1.0)].map(|(x, y)| place + Vector::new(x, y));
     let [wall, still] = [&corners[..], &[Vector::zeros()]]
@@ -171,18 +154,9 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
         "wall", wall, still,
     )];
     let found = evaluate(&Request {
-        segments: &run,
-        own: &scenario.own_ship,
         freedom: Freedom::Any,
-        desired: &scenario.desired,
-        targets: &[],
         sets: &sets,
-        land: &[],
-        land_margin: 0.0,
-        horizon: 900.0,
-        time_weight: 25.0,
-        max_risk: 0.0,
-        arrival_hold: 60.0,
+        ..Request::new(&run, &scenario.own_ship, &scenario.desired, 900.0)
     });
     let through = |v: &searoom::evaluation::Violation| v.what.contains("'wall': distance");
     assert!(

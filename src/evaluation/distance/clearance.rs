@@ -307,22 +307,19 @@ mod tests {
         } else {
             0.0
         };
-        Segment {
-            start: Pose::new(position, rng.random_range(-3.0..3.0)),
-            start_time: rng.random_range(0.0..5.0),
-            duration: rng.random_range(0.0..15.0),
-            speed: rng.random_range(0.0..8.0),
+        Segment::new(
+            Pose::new(position, rng.random_range(-3.0..3.0)),
+            rng.random_range(0.0..5.0),
+            rng.random_range(0.0..15.0),
+            rng.random_range(0.0..8.0),
             turn_rate,
-        }
+        )
     }
 
     #[test]
     fn least_distances_match_a_dense_scan() {
         let mut rng = ChaCha8Rng::seed_from_u64(21);
-        let hull = Hull {
-            length: 12.0,
-            beam: 4.0,
-        };
+        let hull = Hull::new(12.0, 4.0);
         for case in 0..400 {
             let (initial, velocity) = (polygon(&mut rng, 15.0), polygon(&mut rng, 2.0));
             let set = MovingSet::new(&initial, &velocity);
@@ -366,13 +363,12 @@ mod tests {
         };
         let set = MovingSet::new(&square(10.0), &square(0.5));
         // First along the growing upper face, then around a corner of a fixed set.
-        let slide = Segment {
-            start: Pose::new(Vector::new(-8.0, 10.0), 0.5),
-            start_time: 0.0,
-            duration: 60.0,
-            speed: 0.5 / 0.5_f64.sin(),
-            turn_rate: 0.0,
-        };
+        let slide = Segment::straight(
+            Pose::new(Vector::new(-8.0, 10.0), 0.5),
+            0.0,
+            60.0,
+            0.5 / 0.5_f64.sin(),
+        );
         let found = least_distance(&[slide], Body::POINT, &set);
         assert!(
             found.certified && found.value.abs() < 1e-9 && found.probes < 10,
@@ -408,22 +404,19 @@ mod tests {
         // The nearest point is inside own ship's side, which turns; a fixed line bounds it badly.
         let buoy = ConvexPolygon::point(Vector::new(0.0, 40.0));
         let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::zeros()));
-        let hull = Hull {
-            length: 30.0,
-            beam: 8.0,
-        };
+        let hull = Hull::new(30.0, 8.0);
         // On a circle of 100 m about (0, 100), lowest after 10 s.
         let (half_turn, rate) = (0.6_f64, 0.06);
-        let s = Segment {
-            start: Pose::new(
+        let s = Segment::new(
+            Pose::new(
                 Vector::new(-100.0 * half_turn.sin(), 100.0 - 100.0 * half_turn.cos()),
                 -half_turn,
             ),
-            start_time: 0.0,
-            duration: 20.0,
-            speed: 6.0,
-            turn_rate: rate,
-        };
+            0.0,
+            20.0,
+            6.0,
+            rate,
+        );
         let found = least_distance(&[s], Body::hull(&hull), &set);
         assert!(found.certified && found.probes < 300, "{found:?}");
         assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);

@@ -143,17 +143,17 @@ fn contacts_in_space_time_are_those_of_parry() {
             rng.random_range(-300.0..300.0),
         );
         let toward = heading_of(initial.centroid() - at);
-        let own = Segment {
-            start: Place::new(at, toward + rng.random_range(-0.6..0.6)),
-            start_time: 0.0,
-            duration: 120.0,
-            speed: rng.random_range(0.0..8.0),
-            turn_rate: if case % 3 == 0 {
+        let own = Segment::new(
+            Place::new(at, toward + rng.random_range(-0.6..0.6)),
+            0.0,
+            120.0,
+            rng.random_range(0.0..8.0),
+            if case % 3 == 0 {
                 rng.random_range(-0.03..0.03)
             } else {
                 0.0
             },
-        };
+        );
         let body = PolytopeObstacle::new("set", initial.clone(), velocity.clone());
         let inside = if own.is_arc() {
             arc_contacts(&body, &own, 0.0)

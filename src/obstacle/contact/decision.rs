@@ -167,13 +167,13 @@ mod tests {
             };
             let speed = rng.random_range(0.5..8.0);
             let radius = rng.random_range(20.0..150.0);
-            let mut arc = Segment {
-                start: Pose::new(position, rng.random_range(-3.2..3.2)),
-                start_time: time,
-                duration: rng.random_range(0.01..2.0) * radius / speed,
+            let mut arc = Segment::new(
+                Pose::new(position, rng.random_range(-3.2..3.2)),
+                time,
+                rng.random_range(0.01..2.0) * radius / speed,
                 speed,
-                turn_rate: [1.0, -1.0][rng.random_range(0..2)] * speed / radius,
-            };
+                [1.0, -1.0][rng.random_range(0..2)] * speed / radius,
+            );
             if rng.random_bool(0.5) {
                 // the same arc, ending there
                 arc.start = arc.pose_after(-arc.duration);
