@@ -1,10 +1,10 @@
 //! Parses and validates a plan document; the result has no invalid state.
 
 use super::FORMAT;
-use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
+use super::file::{PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
-use crate::document::planner_names;
+use crate::document::{OwnShipDocument, PositionDocument, planner_names};
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
@@ -285,7 +285,7 @@ pub(super) fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
     within(path, value, 0.0, f64::INFINITY)
 }
 
-pub(super) fn point(place: PlaceFile) -> Vector {
+pub(super) fn point(place: PositionDocument) -> Vector {
     Vector::new(place.east_m, place.north_m)
 }
 
@@ -293,7 +293,7 @@ pub(super) fn vector([x, y]: [f64; 2]) -> Vector {
     Vector::new(x, y)
 }
 
-fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
+fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     let mut least = 0.0;
     for (index, speed) in own.speeds_mps.iter().enumerate() {
         within(

@@ -1,7 +1,8 @@
 //! Motion of a document: segments, or nodes with forces.
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
-use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
+use super::file::{ControlFile, PlanFile, SampleFile};
+use crate::document::{SegmentDocument, StartDocument};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{ForceNode, Segment, Steered};
@@ -120,14 +121,14 @@ fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
     })
 }
 
-fn pose(start: &StartFile) -> Pose {
+fn pose(start: &StartDocument) -> Pose {
     Pose::new(
         Vector::new(start.east_m, start.north_m),
         heading_from_course_deg(start.course_deg),
     )
 }
 
-fn segment(segment: &SegmentFile) -> Segment {
+fn segment(segment: &SegmentDocument) -> Segment {
     Segment::new(
         pose(&segment.start),
         segment.start.t_s,

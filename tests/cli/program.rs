@@ -81,3 +81,13 @@ pub fn assert_values(document: &Value, lines: &str) {
         }
     }
 }
+
+/// Rows of a table of texts, with `|` between the cells and `\\n` for a new line.
+pub fn rows<const N: usize>(table: &'static str) -> impl Iterator<Item = [String; N]> {
+    let rows = table.lines().filter(|row| !row.is_empty());
+    rows.map(|row| {
+        let cells = row.split('|').map(|cell| cell.trim().replace("\\n", "\n"));
+        let cells: Vec<String> = cells.collect();
+        cells.try_into().unwrap_or_else(|_| panic!("{row}"))
+    })
+}
