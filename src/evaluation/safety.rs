@@ -195,9 +195,7 @@ mod tests {
     }
 
     fn box_around(half: f64) -> ConvexPolygon {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.map(|(x, y)| Vector::new(750.0 + half * x, 60.0 + half * y));
-        ConvexPolygon::hull(&corners).expect("finite")
+        ConvexPolygon::rectangle(Vector::new(750.0, 60.0), half, half)
     }
 
     /// Evaluates the motion with these sets, risk, land and land margin.

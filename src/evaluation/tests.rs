@@ -268,13 +268,7 @@ fn a_set_crossed_between_any_two_samples_is_found() {
     // A needle that own ship crosses in a hundredth of a second.
     let at = plan()[0].pose_at(17.0).position;
     let thin = |half: f64| {
-        let initial = ConvexPolygon::hull(&[
-            at + Vector::new(-half, 30.0),
-            at + Vector::new(half, 30.0),
-            at + Vector::new(half, -30.0),
-            at + Vector::new(-half, -30.0),
-        ])
-        .expect("finite");
+        let initial = ConvexPolygon::rectangle(at, half, 30.0);
         SpaceTimeSet::constant("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
@@ -423,13 +417,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
 #[test]
 fn slabs_are_judged_within_their_time() {
     // At rest for 60 s, then north at 5 m/s.
-    let square = ConvexPolygon::hull(&[
-        Vector::new(280.0, -10.0),
-        Vector::new(320.0, -10.0),
-        Vector::new(320.0, 10.0),
-        Vector::new(280.0, 10.0),
-    ])
-    .expect("finite");
+    let square = ConvexPolygon::rectangle(Vector::new(300.0, 0.0), 20.0, 10.0);
     let timed =
         |until, north| TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, north)));
     let judged = |until: f64| {

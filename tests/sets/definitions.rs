@@ -94,10 +94,7 @@ fn the_largest_risk_where_the_velocities_lie_along_a_face() {
 
 #[test]
 fn of_a_flat_minimum_the_earliest_instant_is_told() {
-    let square = hull(
-        &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)]
-            .map(|(x, y)| Vector::new(x, y)),
-    );
+    let square = ConvexPolygon::rectangle(Vector::zeros(), 10.0, 10.0);
     let o = PolytopeObstacle::new("x", square, ConvexPolygon::point(Vector::zeros()));
     let past = o.closest_approach(
         Vector::new(-100.0, 15.0),

@@ -352,15 +352,7 @@ mod tests {
 
     #[test]
     fn sliding_along_a_face_costs_few_probes() {
-        let square = |r: f64| {
-            ConvexPolygon::hull(&[
-                Vector::new(-r, -r),
-                Vector::new(r, -r),
-                Vector::new(r, r),
-                Vector::new(-r, r),
-            ])
-            .expect("finite")
-        };
+        let square = |r: f64| ConvexPolygon::rectangle(Vector::zeros(), r, r);
         let set = MovingSet::new(&square(10.0), &square(0.5));
         // First along the growing upper face, then around a corner of a fixed set.
         let slide = Segment::straight(

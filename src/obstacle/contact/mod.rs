@@ -245,13 +245,7 @@ mod tests {
 
     #[test]
     fn an_arc_that_leaves_and_enters_again_has_two_contacts() {
-        let wall = ConvexPolygon::hull(&[
-            Vector::new(-300.0, -10.0),
-            Vector::new(300.0, -10.0),
-            Vector::new(300.0, 10.0),
-            Vector::new(-300.0, 10.0),
-        ])
-        .expect("finite");
+        let wall = ConvexPolygon::rectangle(Vector::zeros(), 300.0, 10.0);
         let o = PolytopeObstacle::new("wall", wall, ConvexPolygon::point(Vector::zeros()));
         let arc = Segment::new(Pose::new(Vector::new(0.0, 0.0), 0.2), 0.0, 130.0, 5.0, 0.05);
         assert_eq!(arc_contacts(&o, &arc, 0.0).len(), 2);
