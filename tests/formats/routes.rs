@@ -136,7 +136,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let declared = Declared::random(&mut rng);
         let situation =
             match Contents::parse(&declared.document(), &Assumed::default()).expect("JSON") {
-                Contents::Situations { mut situations, .. } => match situations.remove(0) {
+                Contents::Situations(mut situations) => match situations.remove(0) {
                     Ok(situation) => situation,
                     // a turn that does not fit is refused
                     Err(faults) => {
