@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use searoom::pipeline::{Relaxation, Run};
 
 /// Exit status; the highest of a run is reported.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExitStatus {
     /// All plans are found and verified.
+    #[default]
     Good,
     /// A scenario has no plan that is clear of all sets and arrives.
     NoPlan,
