@@ -50,6 +50,13 @@ pub struct Violation {
     pub time: f64,
 }
 
+impl Violation {
+    /// A violation at a time, seconds.
+    pub fn new(what: String, time: f64) -> Self {
+        Self { what, time }
+    }
+}
+
 /// Encounter of own ship with one target along the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {

@@ -50,10 +50,7 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     } else {
         return None;
     };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
+    Some(Violation::new(what, least.time))
 }
 
 /// Violation of a set by a motion with this least distance, if any. While the sections are too
@@ -83,10 +80,7 @@ pub(super) fn collision(label: &str, least: &Least, depth: f64) -> Option<Violat
     } else {
         return None;
     };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
+    Some(Violation::new(what, least.time))
 }
 
 /// Result of the checks against the sets of one target.

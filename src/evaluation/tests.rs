@@ -424,10 +424,10 @@ fn slabs_are_judged_within_their_time() {
         let set = SpaceTimeSet {
             from: 0.0,
             name: "slabs".to_owned(),
-            sets: Uncertainty {
-                initial: square.clone().into(),
-                velocities: vec![timed(until, 0.0), timed(f64::INFINITY, 5.0)],
-            },
+            sets: Uncertainty::new(
+                square.clone(),
+                vec![timed(until, 0.0), timed(f64::INFINITY, 5.0)],
+            ),
         };
         let found = judge(&[line(Vector::zeros(), 0.0, 300.0)], &[set], &[]);
         words(&found).contains(&"set".to_owned())

@@ -132,16 +132,10 @@ fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
 pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_valid() {
         let all = Vector::repeat(f64::MAX);
-        return Window {
-            low: -all,
-            high: all,
-        };
+        return Window::new(-all, all);
     }
     let (start, end) = (segment.start.position, segment.end().position);
-    let ends = Window {
-        low: start.inf(&end),
-        high: start.sup(&end),
-    };
+    let ends = Window::new(start.inf(&end), start.sup(&end));
     if !segment.is_arc() {
         return ends;
     }

@@ -439,8 +439,5 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             "one set after another",
         ));
     }
-    Ok(Motion::Sets(Uncertainty {
-        initial,
-        velocities,
-    }))
+    Ok(Motion::Sets(Uncertainty::new(initial, velocities)))
 }

@@ -203,8 +203,5 @@ fn request(claim: &Claim) -> Request<'_> {
 /// Violation for a false statement in the document: the quantity, the reported value and the true
 /// value.
 fn mismatch(what: &str, said: impl std::fmt::Display, so: impl std::fmt::Display) -> Violation {
-    Violation {
-        what: format!("{what}: the document says {said}, it is {so}"),
-        time: 0.0,
-    }
+    Violation::new(format!("{what}: the document says {said}, it is {so}"), 0.0)
 }

@@ -85,10 +85,10 @@ pub(super) fn read(
                     weights: weights(control)?,
                 })),
                 Err(error) => {
-                    faults.push(Violation {
-                        what: format!("nodes among trajectory.samples: {error}"),
-                        time: 0.0,
-                    });
+                    faults.push(Violation::new(
+                        format!("nodes among trajectory.samples: {error}"),
+                        0.0,
+                    ));
                     // A chain without segments is judged as no motion.
                     Ok(Some(ClaimedMotion::Segments(Vec::new())))
                 }

@@ -109,10 +109,7 @@ impl Body {
         let pose = piece.pose_at(time);
         // Minima and maxima below lose a NaN, so it is caught here.
         if !(pose.position.x.is_finite() && pose.position.y.is_finite() && time.is_finite()) {
-            return Probe {
-                value: f64::NAN,
-                lower: f64::NAN,
-            };
+            return Probe::new(f64::NAN, f64::NAN);
         }
         let reach = self.half_length.hypot(self.half_beam);
         let apart = set
@@ -140,10 +137,7 @@ impl Body {
                 + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration) * reach);
         // Distance of the body from a face now, and its lower bound within `half` seconds.
         let beyond = |face: &Face| {
-            let mut gap = Probe {
-                value: f64::INFINITY,
-                lower: f64::INFINITY,
-            };
+            let mut gap = Probe::new(f64::INFINITY, f64::INFINITY);
             for corner in corners {
                 let value = face.normal.dot(&corner.position) - face.support(time);
                 let rate = face.normal.dot(&corner.velocity) - face.rate;
@@ -152,10 +146,7 @@ impl Body {
             }
             gap
         };
-        let mut best = Probe {
-            value: f64::NEG_INFINITY,
-            lower: f64::NEG_INFINITY,
-        };
+        let mut best = Probe::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
         // Direction from the set to the body across the widest gap.
         let mut across = Vector::zeros();
         let mut keep = |gap: Probe, toward: Vector| {
@@ -208,10 +199,7 @@ impl Body {
                 }
                 best
             }
-            _ => Probe {
-                value: f64::NAN,
-                lower: f64::NAN,
-            },
+            _ => Probe::new(f64::NAN, f64::NAN),
         }
     }
 
@@ -256,10 +244,7 @@ fn beyond_side(
         bounds.yaw_rate,
         bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration,
     );
-    let mut gap = Probe {
-        value: f64::INFINITY,
-        lower: f64::INFINITY,
-    };
+    let mut gap = Probe::new(f64::INFINITY, f64::INFINITY);
     for vertex in &set.vertices {
         let offset = vertex.at(time) - pose.position;
         let relative = vertex.velocity - moving.velocity;

@@ -271,10 +271,10 @@ mod tests {
                 TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, -v)))
             };
             let begins = end * (1.0 - 3.0 * f64::EPSILON);
-            let sets = Uncertainty {
-                initial: ConvexPolygon::point(Vector::new(0.0, 90.0)).into(),
-                velocities: vec![timed(begins, 0.0), timed(f64::INFINITY, velocity)],
-            };
+            let sets = Uncertainty::new(
+                ConvexPolygon::point(Vector::new(0.0, 90.0)),
+                vec![timed(begins, 0.0), timed(f64::INFINITY, velocity)],
+            );
             MovingSlabs::new(&sets).least_distance(&[wait], Body::POINT)
         };
         assert_eq!(least(50.0).value, 90.0);

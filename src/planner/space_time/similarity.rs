@@ -298,19 +298,12 @@ impl Similarity {
                 }
             }
         });
-        let initial = match &sets.initial {
+        let initial: ConvexSet = match &sets.initial {
             ConvexSet::Polygon(set) => self.places(set, horizon).into(),
             ConvexSet::Ellipse(set) => ellipse(set, self.place(set.center()), self.length).into(),
         };
         let velocities = velocities.collect();
-        Obstacle::new(
-            obstacle.name(),
-            Uncertainty {
-                initial,
-                velocities,
-            },
-        )
-        .ok()
+        Obstacle::new(obstacle.name(), Uncertainty::new(initial, velocities)).ok()
     }
 
     /// Motion in the normalised problem, rounded: an initial guess, not a plan.
