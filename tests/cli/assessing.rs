@@ -27,15 +27,6 @@ const ASSESSMENT: &str = r#"
 /velocities/0/targets/0/in_velocity_obstacle false
 /velocities/1/north_mps 6.0
 /velocities/2/targets/0/in_velocity_obstacle true
-/targets/0/sections/0/vertices_m/0/1 number
-/points/1/targets/0/alpha number
-/hold_course/targets/0/tcpa_s number
-/hold_course/targets/0/max_risk number
-/alteration/starboard_deg number
-/alteration/port_deg number
-/alteration/speed_mps number
-/velocities/0/targets/0/dcpa_m number
-/velocities/0/targets/0/tcpa_s number
 "#;
 
 #[test]

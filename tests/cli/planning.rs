@@ -253,42 +253,6 @@ const PLAN: &str = r#"
 /cost/arrived true
 /relaxation null
 /land []
-/horizon_s number
-/own_ship/turning_radius_m number
-/own_ship/speeds_mps/2 number
-/mission/waypoints/1/east_m number
-/mission/leg_speeds_mps/0 number
-/cost/objective number
-/cost/space_time_error_m2 number
-/cost/space_time_error_arc_length_m2 number
-/cost/duration_s number
-/cost/length_m number
-/cost/delay_s number
-/cost/max_risk number
-/cost/min_clearance_m number
-/search_stats/expanded number
-/search_stats/generated number
-/search_stats/edges_checked number
-/timing/plan_s number
-/trajectory/segments/0/start/t_s number
-/trajectory/segments/0/start/course_deg number
-/trajectory/segments/0/duration_s number
-/trajectory/segments/0/speed_mps number
-/trajectory/segments/0/turn_rate_deg_per_s number
-/trajectory/samples/0/east_m number
-/trajectory/samples/0/speed_mps number
-/obstacles/0/valid_s/1 number
-/obstacles/0/initial_set/vertices_m/0/1 number
-/obstacles/0/velocity_set/vertices_mps/0/1 number
-/encounters/0/dcpa_m number
-/encounters/0/tcpa_s number
-/encounters/0/undisturbed_dcpa_m number
-/encounters/0/undisturbed_tcpa_s number
-/encounters/0/scores/safety number
-/encounters/0/scores/rule_8 number
-/encounters/0/scores/rule_14 number
-/encounters/0/roles/0/until_s number
-/encounters/0/monitors/3/robustness number
 "#;
 
 #[test]
@@ -558,24 +522,12 @@ fn a_pipe_is_not_waited_for() {
 }
 
 #[test]
-fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
+fn sets_are_of_the_kind_that_was_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "risk.toml", HEAD_ON);
-    let asked = ["plan", &file, "--compliance", "shape", "--max-risk", "0.3"];
-    let said = searoom(&asked).code(1);
-    said.stdout(contains("at risk 0.30 (verified, safe)").and(contains("(0.3 accepted)")));
-    let said = searoom(&[&asked[..], &["--json"]].concat()).code(1);
-    let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
-    let risk = plan["cost"]["max_risk"].as_f64().expect("a number");
-    assert!(risk > 0.2 && risk <= 0.3 + 1e-6, "{risk}");
-    assert_eq!(plan["relaxation"]["kind"], "risk");
-    assert_eq!(plan["relaxation"]["amount"], risk);
-    assert_eq!(plan["encounters"][0]["max_risk"], risk);
-    assert_eq!(plan["verified"], true);
     searoom(&["plan", &file, "--max-risk", "1"])
         .code(2)
         .stderr(contains("0 to 0.999999"));
-    // of the other kinds
     for (change, key, entries) in [
         ("representation = \"ellipsoid\"", "shape_m2", 1),
         ("turn_rate_deg_per_s = 0.05", "vertices_m", 4),
