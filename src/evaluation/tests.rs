@@ -3,6 +3,7 @@
 use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
+use crate::geometry::fixtures::random_vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{
     DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
@@ -369,8 +370,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
     for case in 0..150 {
         let mut ellipse = |scale: f64, thin: bool| {
-            let mut vector =
-                || Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale;
+            let mut vector = || random_vector(&mut rng, 1.0) * scale;
             let (center, a) = (vector(), vector());
             let b = crate::frame::to_port(a) * if thin { 0.0 } else { 0.4 };
             Ellipse::from_axes(center, [a, b])
@@ -378,10 +378,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
         let set = (ellipse(30.0, case % 3 == 0), ellipse(1.0, case % 4 == 0));
         let moving = MovingEllipse::new(&[(set.0, 1.0)], &set.1);
         let s = Segment::new(
-            Pose::new(
-                Vector::new(rng.random_range(-80.0..80.0), rng.random_range(-80.0..80.0)),
-                rng.random_range(-3.0..3.0),
-            ),
+            Pose::new(random_vector(&mut rng, 80.0), rng.random_range(-3.0..3.0)),
             rng.random_range(0.0..5.0),
             rng.random_range(1.0..20.0),
             rng.random_range(0.0..8.0),

@@ -155,16 +155,14 @@ pub(crate) fn window_of(segment: &Segment) -> Window {
 mod tests {
     use super::*;
     use crate::frame::{Pose, direction};
+    use crate::geometry::fixtures::random_vector;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
     fn random_land(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, LandObstacle) {
         let pieces: Vec<ConvexPolygon> = (0..rng.random_range(1..25))
             .map(|_| {
-                let centre = Vector::new(
-                    rng.random_range(-300.0..300.0),
-                    rng.random_range(-300.0..300.0),
-                );
+                let centre = random_vector(rng, 300.0);
                 let points: Vec<Vector> = (0..rng.random_range(3..8))
                     .map(|k| centre + direction(f64::from(k)) * rng.random_range(5.0..60.0))
                     .collect();
@@ -183,10 +181,7 @@ mod tests {
         for _ in 0..100 {
             let (pieces, radius, land) = random_land(&mut rng);
             for _ in 0..200 {
-                let p = Vector::new(
-                    rng.random_range(-400.0..400.0),
-                    rng.random_range(-400.0..400.0),
-                );
+                let p = random_vector(&mut rng, 400.0);
                 let distance = pieces
                     .iter()
                     .map(|c| c.signed_distance(p))
@@ -211,13 +206,7 @@ mod tests {
             let (_, _, land) = random_land(&mut rng);
             for _ in 0..20 {
                 let segment = Segment::new(
-                    Pose::new(
-                        Vector::new(
-                            rng.random_range(-400.0..400.0),
-                            rng.random_range(-400.0..400.0),
-                        ),
-                        rng.random_range(-3.0..3.0),
-                    ),
+                    Pose::new(random_vector(&mut rng, 400.0), rng.random_range(-3.0..3.0)),
                     7.0,
                     rng.random_range(0.0..90.0),
                     5.0,

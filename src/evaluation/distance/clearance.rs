@@ -266,6 +266,7 @@ fn beyond_side(
 mod tests {
     use super::*;
     use crate::geometry::ConvexPolygon;
+    use crate::geometry::fixtures::random_vector;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -273,7 +274,7 @@ mod tests {
     fn polygon(rng: &mut ChaCha8Rng, extent: f64) -> ConvexPolygon {
         let points: Vec<Vector> = (0..rng.random_range(1..7))
             .map(|_| {
-                let p = Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+                let p = random_vector(rng, 1.0);
                 let p = if rng.random_bool(0.3) {
                     p.map(f64::round)
                 } else {
@@ -286,7 +287,7 @@ mod tests {
     }
 
     fn segment(rng: &mut ChaCha8Rng) -> Segment {
-        let position = Vector::new(rng.random_range(-60.0..60.0), rng.random_range(-60.0..60.0));
+        let position = random_vector(rng, 60.0);
         let turn_rate = if rng.random_bool(0.5) {
             rng.random_range(-0.3..0.3)
         } else {
