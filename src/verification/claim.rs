@@ -35,38 +35,19 @@ pub(super) const ARRIVAL: &str = "arrival";
 /// Most keys listed in the error for a document of another format.
 const KEYS: usize = 5;
 
-/// A field of a document with an invalid value.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ClaimFault {
-    /// Path of the field.
-    pub path: String,
-    /// The value found.
-    pub found: String,
-    /// The allowed values.
-    pub allowed: String,
-}
-
-/// Reason why a text is not a plan document that can be checked.
+/// Reason why a text is not a plan document that can be checked: the field, what was found, and
+/// what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ClaimError {
-    /// Invalid JSON, a missing key, or a value of the wrong type.
-    #[error("{}{reason}", place(.path))]
-    Shape {
-        /// Path of the field; "." for the whole document.
-        path: String,
-        /// Description, with line and column.
-        reason: String,
-    },
-    /// An invalid value.
-    #[error("{}: found {}; allowed: {}", .0.path, .0.found, .0.allowed)]
-    Value(ClaimFault),
-}
+#[error("{0}")]
+pub struct ClaimError(String);
 
-fn place(path: &str) -> String {
-    if path == "." || path == "?" {
-        String::new()
-    } else {
-        format!("{path}: ")
+impl ClaimError {
+    fn at(path: &str, reason: impl std::fmt::Display) -> Self {
+        match path {
+            // the whole document
+            "." | "?" => Self(reason.to_string()),
+            path => Self(format!("{path}: {reason}")),
+        }
     }
 }
 
@@ -112,10 +93,7 @@ impl Claim {
         let mut json = serde_json::Deserializer::from_str(text);
         let file: PlanFile =
             serde_path_to_error::deserialize(&mut json).map_err(|error| unread(text, &error))?;
-        json.end().map_err(|error| ClaimError::Shape {
-            path: ".".to_owned(),
-            reason: error.to_string(),
-        })?;
+        json.end().map_err(|error| ClaimError::at(".", error))?;
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }
@@ -222,10 +200,7 @@ impl Claim {
 /// Explains why a text was not parsed: invalid JSON, another kind of document, or a plan document
 /// with a broken field.
 fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> ClaimError {
-    let shape = |reason: String| ClaimError::Shape {
-        path: error.path().to_string(),
-        reason,
-    };
+    let shape = |reason: String| ClaimError::at(&error.path().to_string(), reason);
     let document: serde_json::Value = match serde_json::from_str(text) {
         Ok(document) => document,
         Err(error) => {
@@ -244,11 +219,8 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
 }
 
 pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) -> ClaimError {
-    ClaimError::Value(ClaimFault {
-        path: path.to_owned(),
-        found: short_numbers(&found.to_string()),
-        allowed: allowed.to_owned(),
-    })
+    let found = short_numbers(&found.to_string());
+    ClaimError::at(path, format_args!("found {found}; allowed: {allowed}"))
 }
 
 /// Checks that a word is one of the allowed words.

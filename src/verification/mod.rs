@@ -28,7 +28,7 @@ mod risk;
 mod samples;
 mod sets;
 
-pub use claim::{ClaimError, ClaimFault};
+pub use claim::ClaimError;
 
 use claim::{Claim, ClaimedMotion};
 
