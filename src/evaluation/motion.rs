@@ -104,9 +104,9 @@ fn limits(segments: &[Segment], own: &OwnShip, found: &mut Report) {
 
 /// The violations so far, and the time of those that are added next.
 #[derive(Default)]
-struct Report {
-    violations: Vec<Violation>,
-    time: f64,
+pub(super) struct Report {
+    pub violations: Vec<Violation>,
+    pub time: f64,
 }
 
 impl Report {
@@ -115,7 +115,7 @@ impl Report {
     }
 
     /// Adds a violation if a quantity exceeds its limit; a NaN exceeds every limit.
-    fn limit(&mut self, what: &str, unit: &str, value: f64, allowed: f64) {
+    pub fn limit(&mut self, what: &str, unit: &str, value: f64, allowed: f64) {
         if !(value <= allowed) {
             self.add(format!("{what}: {value:.6e} {unit}, allowed {allowed:.6e}"));
         }
