@@ -17,10 +17,7 @@ fn body() -> PolytopeObstacle {
     let ship = ShipTrack {
         pose: Pose::new(Vector::new(1000.0, 0.0), std::f64::consts::PI),
         speed: 4.0,
-        hull: Hull {
-            length: 60.0,
-            beam: 12.0,
-        },
+        hull: Hull::new(60.0, 12.0),
         position_std: 0.0,
         speed_spread: 0.4,
         course_spread: 0.08,
@@ -36,24 +33,18 @@ fn body() -> PolytopeObstacle {
 }
 
 fn line(north: f64) -> Segment {
-    Segment {
-        start: Pose::new(Vector::new(0.0, north), 0.0),
-        start_time: 0.0,
-        duration: 250.0,
-        speed: 5.0,
-        turn_rate: 0.0,
-    }
+    Segment::straight(Pose::new(Vector::new(0.0, north), 0.0), 0.0, 250.0, 5.0)
 }
 
 /// Half a circle of 300 m radius to starboard from north to south about `(east, 0)`, at t = 0.
 fn arc(east: f64) -> Segment {
-    Segment {
-        start: Pose::new(Vector::new(east - 300.0, 0.0), std::f64::consts::FRAC_PI_2),
-        start_time: 0.0,
-        duration: std::f64::consts::PI * 300.0 / 5.0,
-        speed: 5.0,
-        turn_rate: -5.0 / 300.0,
-    }
+    Segment::new(
+        Pose::new(Vector::new(east - 300.0, 0.0), std::f64::consts::FRAC_PI_2),
+        0.0,
+        std::f64::consts::PI * 300.0 / 5.0,
+        5.0,
+        -5.0 / 300.0,
+    )
 }
 
 fn membership(criterion: &mut Criterion) {

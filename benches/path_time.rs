@@ -48,11 +48,7 @@ fn scene(targets: usize, legs: usize) -> Scene {
             let slow = way * (speed - 0.05);
             let velocity =
                 ConvexPolygon::hull(&[fast + spread, fast - spread, slow]).expect("finite");
-            let hull = Hull {
-                length: 40.0,
-                beam: 9.0,
-            }
-            .polygon(&Pose::new(start, heading));
+            let hull = Hull::new(40.0, 9.0).polygon(&Pose::new(start, heading));
             let initial = hull.minkowski_sum(&outer_disc(20.0, heading));
             PolytopeObstacle::new(format!("target {i}"), initial, velocity).into()
         })
@@ -62,10 +58,7 @@ fn scene(targets: usize, legs: usize) -> Scene {
         own: OwnShip {
             pose: Pose::new(points[0], first.y.atan2(first.x)),
             speed: SPEED,
-            hull: Hull {
-                length: 20.0,
-                beam: 6.0,
-            },
+            hull: Hull::new(20.0, 6.0),
             turning_radius: 50.0,
             speeds: vec![SPEED],
             safety_margin: 10.0,

@@ -43,13 +43,7 @@ fn ellipsoid() -> EllipsoidObstacle {
 }
 
 fn line(from: Vector, heading: f64) -> Segment {
-    Segment {
-        start: Pose::new(from, heading),
-        start_time: 0.0,
-        duration: 100.0,
-        speed: 5.0,
-        turn_rate: 0.0,
-    }
+    Segment::straight(Pose::new(from, heading), 0.0, 100.0, 5.0)
 }
 
 const SIZES: [usize; 5] = [4, 8, 16, 32, 64];

@@ -10,10 +10,7 @@ use searoom::frame::Vector;
 use searoom::report::figure::{Figure, FigureError, PlotWindow, risk_panel};
 
 fn main() -> Result<(), FigureError> {
-    let window = PlotWindow {
-        low: Vector::new(-20.0, -75.0),
-        high: Vector::new(140.0, 75.0),
-    };
+    let window = PlotWindow::new(Vector::new(-20.0, -75.0), Vector::new(140.0, 75.0));
     let mut panels = Vec::new();
     for (kind, target) in [
         ("polytope", shared::figure_1()),

@@ -12,10 +12,7 @@ use searoom::report::figure::{Figure, FigureError, PlotWindow, VelocityWindow, d
 
 fn main() -> Result<(), FigureError> {
     let shown = VelocityWindow {
-        window: PlotWindow {
-            low: Vector::new(-2.0, -2.0),
-            high: Vector::new(3.0, 2.0),
-        },
+        window: PlotWindow::new(Vector::new(-2.0, -2.0), Vector::new(3.0, 2.0)),
         own: None,
     };
     let from = Vector::new(50.0, 50.0);

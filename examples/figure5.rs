@@ -20,10 +20,7 @@ fn main() -> Result<(), FigureError> {
     let own = OwnShip {
         pose: Pose::new(path[0], way.y.atan2(way.x)),
         speed: 1.5,
-        hull: Hull {
-            length: 0.0,
-            beam: 0.0,
-        },
+        hull: Hull::new(0.0, 0.0),
         turning_radius: 1.0,
         speeds: vec![1.5],
         safety_margin: 0.0,

@@ -113,7 +113,7 @@ fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Er
     files.sort();
     let mut scenes = Vec::new();
     for file in files {
-        let Contents::Situations { situations, .. } = Contents::read(&file, assumed)? else {
+        let Contents::Situations(situations) = Contents::read(&file, assumed)? else {
             return Err(format!("{}: no encounters", file.display()).into());
         };
         for situation in situations {

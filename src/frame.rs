@@ -219,6 +219,11 @@ pub struct Geographic {
 }
 
 impl Geographic {
+    /// A position by its latitude and longitude, degrees.
+    pub const fn new(lat_deg: f64, lon_deg: f64) -> Self {
+        Self { lat_deg, lon_deg }
+    }
+
     /// True when the latitude is within 90° and the longitude within 180°.
     pub fn is_on_earth(&self) -> bool {
         self.lat_deg.abs() <= 90.0 && self.lon_deg.abs() <= 180.0
@@ -340,10 +345,10 @@ impl Georeference {
                 / ((1.0 - e2) * (1.0 + found * found).sqrt() * (1.0 + t * t).sqrt());
             t += (tau - found) * slope;
         }
-        Geographic {
-            lat_deg: t.atan().to_degrees(),
-            lon_deg: wrap(lon + self.origin.lon_deg.to_radians()).to_degrees(),
-        }
+        Geographic::new(
+            t.atan().to_degrees(),
+            wrap(lon + self.origin.lon_deg.to_radians()).to_degrees(),
+        )
     }
 }
 

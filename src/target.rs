@@ -207,12 +207,7 @@ impl ShipTrack {
 
 fn everything() -> ConvexPolygon {
     let far = f64::MAX.sqrt();
-    ConvexPolygon::from_ccw(vec![
-        Vector::new(-far, -far),
-        Vector::new(far, -far),
-        Vector::new(far, far),
-        Vector::new(-far, far),
-    ])
+    ConvexPolygon::rectangle(Vector::zeros(), far, far)
 }
 
 /// Motion of a target, as far as it is known.

@@ -36,10 +36,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
         env!("CARGO_MANIFEST_DIR"),
         "/benches/data/new-york-2022-01-03.csv"
     );
-    let origin = Geographic {
-        lat_deg: 40.65,
-        lon_deg: -74.05,
-    };
+    let origin = Geographic::new(40.65, -74.05);
     let georeference = Georeference::new(origin).ok_or("no origin")?;
     let mut ships = Vec::new();
     for row in csv::Reader::from_path(file)?.deserialize() {
@@ -50,10 +47,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
         ships.push(ShipTrack {
             pose: Pose::new(position, heading_from_course_deg(course)),
             speed: if at_rest { 0.0 } else { speed_kn * KNOT_MPS },
-            hull: Hull {
-                length,
-                beam: beam.unwrap_or(length / SLENDERNESS),
-            },
+            hull: Hull::new(length, beam.unwrap_or(length / SLENDERNESS)),
             position_std: POSITION_STD,
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },

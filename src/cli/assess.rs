@@ -17,33 +17,20 @@ use super::output::status::ExitStatus;
 use super::runner::guarded;
 
 /// Assesses one file.
-pub fn assess(args: &AssessArgs, output: &Output) -> ExitStatus {
-    let file = &args.scenario;
+pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
-    if let Some(path) = &args.figure
-        && let Err(error) = prepare_figure(path)
-    {
-        return output.refuse(&format_args!("{error:#}"));
-    }
-    match guarded(|| read(args, output)) {
-        Ok(Ok((scenario, query))) => {
-            let shown = guarded(|| show(args, &scenario, &query, output));
-            shown.unwrap_or_else(|fault| {
-                output.error(&format_args!("{}: {fault}", file.display()));
-                ExitStatus::InternalFault
-            })
-        }
-        Ok(Err(errors)) => {
+    args.figure.as_deref().map_or(Ok(()), prepare_figure)?;
+    let assessed = guarded(|| match read(args, output) {
+        Ok((scenario, query)) => show(args, &scenario, &query, output),
+        Err(errors) => {
             for error in errors {
                 output.error(&error);
             }
             ExitStatus::BadInput
         }
-        Err(fault) => {
-            output.error(&format_args!("{}: {fault}", file.display()));
-            ExitStatus::InternalFault
-        }
-    }
+    });
+    let file = args.scenario.display();
+    Ok(assessed.unwrap_or_else(|fault| output.fault(&format_args!("{file}: {fault}"))))
 }
 
 /// Reads all requested files, and returns all errors.

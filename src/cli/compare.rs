@@ -41,13 +41,12 @@ struct Compared {
 }
 
 /// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
-pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
+pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
-    if let Some(path) = &args.written.figure
-        && let Err(error) = prepare_figure(path)
-    {
-        return output.refuse(&format_args!("{error:#}"));
-    }
+    args.written
+        .figure
+        .as_deref()
+        .map_or(Ok(()), prepare_figure)?;
     let assumed = args.assumed.assumed();
     let all = scenes::open(files::find(&args.paths, output), &assumed, output);
     let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
@@ -56,12 +55,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
         figures: None,
         ..args.written.wanted()
     };
-    let products = match Products::prepare(&found, wanted) {
-        Ok(products) => products,
-        Err(error) => {
-            return output.refuse(&format_args!("{error:#}"));
-        }
-    };
+    let products = Products::prepare(&found, wanted)?;
     let asked: Vec<Asked> = all
         .into_iter()
         .map(|scene| match scene {
@@ -78,8 +72,9 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
         status = status.max(c.status());
     }
     let documents: Vec<_> = compared.iter().map(Compared::document).collect();
-    let written = write(args, &compared, &documents)
-        .unwrap_or_else(|error| output.refuse(&format_args!("{error:#}")));
+    if let Err(error) = write(args, &compared, &documents) {
+        status = status.max(output.refuse(&format_args!("{error:#}")));
+    }
     for (c, document) in compared.iter().zip(&documents) {
         let Ok(scenario) = &c.asked.scenario else {
             continue;
@@ -92,18 +87,12 @@ pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
                 comparisons: vec![document.clone()],
             },
         };
-        if let Err((reached, error)) = products.write_comparison(&c.asked.stem, &side) {
-            output.error(&error);
-            status = status.max(reached);
-        }
+        status = status.max(output.written(products.write_comparison(&c.asked.stem, &side)));
     }
-    if products.wants_report()
-        && let Err((reached, error)) = report(&compared, &documents, &products)
-    {
-        output.error(&error);
-        status = status.max(reached);
+    if products.wants_report() {
+        status = status.max(output.written(report(&compared, &documents, &products)));
     }
-    status.max(written).max(show(args, documents, output))
+    Ok(status.max(show(args, documents, output)))
 }
 
 impl Asked {
@@ -235,7 +224,7 @@ fn write(
     args: &CompareArgs,
     compared: &[Compared],
     documents: &[ScenarioComparisonDocument],
-) -> anyhow::Result<ExitStatus> {
+) -> anyhow::Result<()> {
     if let Some(file) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(COMPARISON_COLUMNS)?;
@@ -256,7 +245,7 @@ fn write(
             comparison_figure(&drawn).write(file)?;
         }
     }
-    Ok(ExitStatus::Good)
+    Ok(())
 }
 
 /// Builds the report of all scenarios, including unreadable ones.

@@ -14,7 +14,7 @@ use super::output::Output;
 use super::output::status::ExitStatus;
 
 /// Writes one scenario file per situation. Scenario files are not changed.
-pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
+pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
     let found = files::find(&args.files, output);
     let scenes = scenes::open(found, &assumed, output);
@@ -23,13 +23,9 @@ pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
         .flatten()
         .map(|scene| scene.found.clone())
         .collect();
-    let made = refuse_clashes(&wanted).and_then(|()| {
-        fs::create_dir_all(&args.out)
-            .with_context(|| format!("{}: the folder cannot be made", args.out.display()))
-    });
-    if let Err(error) = made {
-        return output.refuse(&format_args!("{error:#}"));
-    }
+    refuse_clashes(&wanted)?;
+    fs::create_dir_all(&args.out)
+        .with_context(|| format!("{}: the folder cannot be made", args.out.display()))?;
     let mut status = ExitStatus::Good;
     for scene in scenes {
         let reached = match scene {
@@ -38,7 +34,7 @@ pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
         };
         status = status.max(reached);
     }
-    status
+    Ok(status)
 }
 
 fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> ExitStatus {
@@ -51,9 +47,7 @@ fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> 
             return ExitStatus::Good;
         }
         Some(Ok(imported)) => imported,
-        Some(Err(error)) => {
-            return output.refuse(&error);
-        }
+        Some(Err(error)) => return output.refuse(&error),
     };
     let file = args.out.join(format!("{}.toml", scene.found.stem));
     match write_atomically(&file, imported.text.as_bytes()) {

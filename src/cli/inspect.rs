@@ -19,15 +19,22 @@ use super::runner::guarded;
 const OFFERED: usize = 3;
 
 /// Shows a recording, or a part of it.
-pub fn inspect(args: &InspectArgs, output: &Output) -> ExitStatus {
-    match guarded(|| one(args, output)) {
-        Ok(Ok(status)) => status,
-        Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
-        Err(fault) => {
-            output.error(&fault);
-            ExitStatus::InternalFault
-        }
+pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let recorded = read(&args.recording)?;
+    if args.plan {
+        let document = document_of(&recorded, &args.recording)?;
+        return Ok(output.result(document.trim_end()));
     }
+    if let Some(entity) = &args.csv {
+        let table = table(&recorded, entity, &args.recording)?;
+        return Ok(output.result(csv(&table)?.trim_end()));
+    }
+    let contents = Contents::of(&args.recording, &recorded);
+    Ok(if args.json {
+        output.document(&contents)
+    } else {
+        output.result(&contents.text())
+    })
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.
@@ -56,24 +63,6 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
             "{}: holds no plan document: it was written without one",
             path.display()
         )
-    })
-}
-
-fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
-    let recorded = read(&args.recording)?;
-    if args.plan {
-        let document = document_of(&recorded, &args.recording)?;
-        return Ok(output.result(document.trim_end()));
-    }
-    if let Some(entity) = &args.csv {
-        let table = table(&recorded, entity, &args.recording)?;
-        return Ok(output.result(csv(&table)?.trim_end()));
-    }
-    let contents = Contents::of(&args.recording, &recorded);
-    Ok(if args.json {
-        output.document(&contents)
-    } else {
-        output.result(&contents.text())
     })
 }
 

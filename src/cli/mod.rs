@@ -22,7 +22,6 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use output::Output;
-use output::status::ExitStatus;
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
@@ -32,9 +31,8 @@ pub fn main() -> ExitCode {
         Err(error) => return output::usage(&error),
     };
     let output = Output::new();
-    let run = || {
-        match &arguments.command {
-        Command::Check(args) => check::check(args, &output),
+    let run = || match &arguments.command {
+        Command::Check(args) => Ok(check::check(args, &output)),
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
@@ -43,16 +41,16 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "recording")]
         Command::Inspect(args) => inspect::inspect(args, &output),
         #[cfg(not(feature = "recording"))]
-        Command::Inspect(_) => {
-            output.refuse(&"inspect: this program was built without recordings; build it with its default features, `cargo build`")
-        }
-        Command::Verify(args) => verify::verify(args, &output),
-        Command::Completions(args) => shell::completions(args, &output),
-    }
+        Command::Inspect(_) => anyhow::bail!(
+            "inspect: this program was built without recordings; build it with its default features, `cargo build`"
+        ),
+        Command::Verify(args) => Ok(verify::verify(args, &output)),
+        Command::Completions(args) => Ok(shell::completions(args, &output)),
     };
-    let status = runner::guarded(run).unwrap_or_else(|fault| {
-        output.error(&fault);
-        ExitStatus::InternalFault
-    });
+    let status = match runner::guarded(run) {
+        Ok(Ok(status)) => status,
+        Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
+        Err(fault) => output.fault(&fault),
+    };
     status.into()
 }

@@ -14,57 +14,42 @@ use super::output::status::ExitStatus;
 use super::runner::{Attempt, Previous, attempt};
 
 /// Plans one file and prints the verdict.
-pub fn plan(args: &PlanArgs, output: &Output) -> ExitStatus {
+pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let opened = scenes::open_one(&args.scenario, &assumed, output).and_then(|scene| {
-        let found = std::slice::from_ref(&scene.found);
-        let products = Products::prepare(found, args.shared.written.wanted());
-        let products = products.map_err(|error| format!("{error:#}"))?;
-        let previous = args.previous.as_ref();
-        let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
-        Ok((scene, products, previous.transpose()?))
-    });
-    let (scene, products, previous) = match opened {
-        Ok(opened) => opened,
-        Err(error) => {
-            return output.refuse(&error);
-        }
-    };
-    match attempt(&scene, &args.shared, &assumed, previous.as_ref()) {
-        Attempt::Run(run, notes) => {
-            for note in notes {
-                output.note(&note);
-            }
-            let no_return = args.no_return.then(|| run.no_return()).flatten();
-            if args.no_return && no_return.is_none() {
-                output.note(&no_return_reason(&run));
-            }
-            let document = PlanDocument {
-                time_of_no_return_s: no_return.map(NoReturn::time),
-                ..PlanDocument::of(&run)
-            };
-            let shown = if args.shared.written.json {
-                output.document(&document)
-            } else {
-                let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
-                let text = plan_document_text(&document);
-                output.result(&format!("{text}{}", line.unwrap_or_default()))
-            };
-            let written = match write(&products, &scene.found, &run, &document) {
-                Ok(()) => ExitStatus::Good,
-                Err((status, error)) => {
-                    output.error(&error);
-                    status
+    let scene = scenes::open_one(&args.scenario, &assumed, output).map_err(anyhow::Error::msg)?;
+    let found = std::slice::from_ref(&scene.found);
+    let products = Products::prepare(found, args.shared.written.wanted())?;
+    let previous = args.previous.as_ref();
+    let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
+    let previous = previous.transpose().map_err(anyhow::Error::msg)?;
+    Ok(
+        match attempt(&scene, &args.shared, &assumed, previous.as_ref()) {
+            Attempt::Run(run, notes) => {
+                for note in notes {
+                    output.note(&note);
                 }
-            };
-            shown.max(written).max(args.shared.status(&run, &document))
-        }
-        Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
-        Attempt::Fault(fault) => {
-            output.error(&fault);
-            ExitStatus::InternalFault
-        }
-    }
+                let no_return = args.no_return.then(|| run.no_return()).flatten();
+                if args.no_return && no_return.is_none() {
+                    output.note(&no_return_reason(&run));
+                }
+                let document = PlanDocument {
+                    time_of_no_return_s: no_return.map(NoReturn::time),
+                    ..PlanDocument::of(&run)
+                };
+                let shown = if args.shared.written.json {
+                    output.document(&document)
+                } else {
+                    let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
+                    let text = plan_document_text(&document);
+                    output.result(&format!("{text}{}", line.unwrap_or_default()))
+                };
+                let written = output.written(write(&products, &scene.found, &run, &document));
+                shown.max(written).max(args.shared.status(&run, &document))
+            }
+            Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
+            Attempt::Fault(fault) => output.fault(&fault),
+        },
+    )
 }
 
 fn write(

@@ -24,12 +24,12 @@ struct Tally {
     runs: Vec<SuiteRunDocument>,
     errors: Vec<String>,
     report: HtmlReport,
-    status: Option<ExitStatus>,
+    status: ExitStatus,
 }
 
 impl Tally {
     fn reach(&mut self, status: ExitStatus) {
-        self.status = self.status.max(Some(status));
+        self.status = self.status.max(status);
     }
 
     /// Adds a valid scenario that the requested planner or rules do not support.
@@ -61,24 +61,19 @@ impl Tally {
 }
 
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
-pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
+pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
     let files = files::find(&args.paths, output);
     let all = scenes::open(files, &assumed, output);
     if args.lint {
-        return lint::suite(all, args, &assumed, output);
+        return Ok(lint::suite(all, args, &assumed, output));
     }
     let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()
     };
-    let products = match Products::prepare(&found, wanted) {
-        Ok(products) => products,
-        Err(error) => {
-            return output.refuse(&format_args!("{error:#}"));
-        }
-    };
+    let products = Products::prepare(&found, wanted)?;
     let bar = output.progress(all.len());
     let mut tally = Tally::default();
     for entry in all {
@@ -114,17 +109,15 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
     }
     let document = SuiteDocument::of(tally.runs);
     let lead = document.summary.to_string();
-    if let Err((status, error)) = products.write_report(&tally.report, "Searoom: a suite", &lead) {
-        output.error(&error);
-        tally.status = tally.status.max(Some(status));
-    }
+    let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
+    let written = output.written(report);
     let shown = if args.shared.written.json {
         output.document(&document)
     } else {
         let table = suite_table(&document.runs, output.colour);
         output.result(&format!("{table}\n{}", document.summary))
     };
-    tally.status.unwrap_or(ExitStatus::Good).max(shown)
+    Ok(tally.status.max(written).max(shown))
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {

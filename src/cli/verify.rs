@@ -51,10 +51,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
                 output.refuse(&error)
             }
-            Some(Err(fault)) => {
-                output.error(&format_args!("{name}: {fault}"));
-                ExitStatus::InternalFault
-            }
+            Some(Err(fault)) => output.fault(&format_args!("{name}: {fault}")),
         };
         status = status.max(reached);
     }

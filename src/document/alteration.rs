@@ -87,24 +87,17 @@ fn visible(turned: f64, start: f64) -> Option<Turn> {
 mod tests {
     use super::*;
     use crate::frame::{Pose, Vector};
+    use crate::trajectory::fixtures::chain;
     use crate::trajectory::{ForceNode, Segment, Steered};
 
     /// Builds ten-second segments with the given turns in degrees to starboard.
     fn arcs(turns: &[f64]) -> Trajectory {
-        let mut start = Pose::new(Vector::zeros(), 0.2);
-        let mut segments = Vec::new();
-        for (index, degrees) in turns.iter().enumerate() {
-            let segment = Segment {
-                start,
-                start_time: 10.0 * index as f64,
-                duration: 10.0,
-                speed: 5.0,
-                turn_rate: -degrees.to_radians() / 10.0,
-            };
-            start = segment.end();
-            segments.push(segment);
-        }
-        Trajectory::new(segments).expect("continuous")
+        let parts = turns.iter();
+        let parts: Vec<_> = parts
+            .map(|degrees| (10.0, 5.0, -degrees.to_radians() / 10.0))
+            .collect();
+        let start = Pose::new(Vector::zeros(), 0.2);
+        Trajectory::new(chain(start, &parts)).expect("continuous")
     }
 
     #[test]

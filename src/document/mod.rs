@@ -19,7 +19,6 @@ mod suite;
 mod targets;
 mod verification;
 
-pub(crate) use alteration::first_alteration;
 pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
@@ -32,7 +31,6 @@ pub use encounter::{
     BreachDocument, ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument,
     RoleDocument, breaks,
 };
-pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use memory::{

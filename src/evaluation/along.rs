@@ -150,20 +150,10 @@ fn sailed(points: &[Vector], from: f64, s: &Segment) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::frame::{Pose, heading_of};
-    use crate::vessel::Hull;
+    use crate::vessel::fixtures::own_ship;
 
     fn own() -> OwnShip {
-        OwnShip {
-            pose: Pose::new(Vector::zeros(), 0.0),
-            speed: 5.0,
-            hull: Hull {
-                length: 30.0,
-                beam: 8.0,
-            },
-            turning_radius: 100.0,
-            speeds: vec![2.5, 6.0],
-            safety_margin: 20.0,
-        }
+        own_ship(&[2.5, 6.0])
     }
 
     fn points(list: &[(f64, f64)]) -> Vec<Vector> {
@@ -182,13 +172,12 @@ mod tests {
                 heading = if waits { heading } else { heading_of(way) };
                 let duration = if waits { 10.0 } else { way.norm() / speed };
                 time += duration;
-                Segment {
-                    start: Pose::new(p[0], heading),
-                    start_time: time - duration,
+                Segment::straight(
+                    Pose::new(p[0], heading),
+                    time - duration,
                     duration,
-                    speed: if waits { 0.0 } else { speed },
-                    turn_rate: 0.0,
-                }
+                    if waits { 0.0 } else { speed },
+                )
             })
             .collect()
     }

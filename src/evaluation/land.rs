@@ -106,26 +106,23 @@ mod tests {
     #[test]
     fn land_distances_match_a_dense_scan() {
         let mut rng = ChaCha8Rng::seed_from_u64(77);
-        let hull = Hull {
-            length: 20.0,
-            beam: 6.0,
-        };
+        let hull = Hull::new(20.0, 6.0);
         let (mut clear, mut aground) = (0, 0);
         for case in 0..150 {
             let land = comb(&mut rng);
-            let s = Segment {
-                start: Pose::new(
+            let s = Segment::new(
+                Pose::new(
                     Vector::new(
                         rng.random_range(-50.0..200.0),
                         rng.random_range(-120.0..20.0),
                     ),
                     rng.random_range(-3.0..3.0),
                 ),
-                start_time: 3.0,
-                duration: rng.random_range(1.0..30.0),
-                speed: 4.0,
-                turn_rate: if case % 2 == 0 { 0.0 } else { 0.08 },
-            };
+                3.0,
+                rng.random_range(1.0..30.0),
+                4.0,
+                if case % 2 == 0 { 0.0 } else { 0.08 },
+            );
             let reach = hull.half_diagonal();
             let land = [land];
             let found = LandBodies::new(&land).least_distance(&[s], Body::hull(&hull), reach);
@@ -157,17 +154,8 @@ mod tests {
     fn a_hull_that_never_leaves_the_inside_is_aground() {
         let ring = [(0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0)];
         let land = [Polygon::new(&[ring.map(|(x, y)| Vector::new(x, y)).to_vec()]).expect("valid")];
-        let hull = Hull {
-            length: 20.0,
-            beam: 6.0,
-        };
-        let inland = Segment {
-            start: Pose::new(Vector::new(400.0, 500.0), 0.0),
-            start_time: 0.0,
-            duration: 10.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let hull = Hull::new(20.0, 6.0);
+        let inland = Segment::straight(Pose::new(Vector::new(400.0, 500.0), 0.0), 0.0, 10.0, 5.0);
         let found = LandBodies::new(&land).least_distance(&[inland], Body::hull(&hull), 11.0);
         assert!(found.value <= -400.0, "{found:?}");
         let nowhere = LandBodies::new(&[]).least_distance(&[inland], Body::hull(&hull), 11.0);

@@ -9,7 +9,6 @@ mod distance;
 mod land;
 mod met;
 mod motion;
-mod nominal;
 mod request;
 mod safety;
 mod sets;
@@ -20,7 +19,6 @@ pub use cost::counted::{Counted, counted_error};
 pub(crate) use cost::stage_cost::{StageWeights, stage_costs};
 pub(crate) use distance::clearance::Body;
 pub(crate) use distance::turned_hull::TurnedHull;
-pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
 pub(crate) use sets::moving_ellipse::shape_rounding;
@@ -50,6 +48,13 @@ pub struct Violation {
     pub what: String,
     /// Time of the violation, seconds.
     pub time: f64,
+}
+
+impl Violation {
+    /// A violation at a time, seconds.
+    pub fn new(what: String, time: f64) -> Self {
+        Self { what, time }
+    }
 }
 
 /// Encounter of own ship with one target along the plan.
@@ -138,7 +143,7 @@ impl Evaluation {
 /// # Examples
 ///
 /// ```
-/// use searoom::evaluation::{Evaluation, Freedom, Request, evaluate};
+/// use searoom::evaluation::{Evaluation, Request, evaluate};
 /// use searoom::scenario::Scenario;
 /// use searoom::trajectory::Segment;
 ///
@@ -147,18 +152,8 @@ impl Evaluation {
 /// let start = scenario.own_ship.pose;
 /// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
 /// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
 ///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
+///     ..Request::new(&held, &scenario.own_ship, &scenario.desired, scenario.horizon)
 /// };
 /// let found: Evaluation = evaluate(&request);
 /// assert!(!found.verified() && !found.safe() && found.min_clearance < 0.0);

@@ -53,3 +53,29 @@ pub struct Request<'a> {
     /// Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
     pub max_risk: f64,
 }
+
+impl<'a> Request<'a> {
+    /// Free water without targets. The motion ends within the horizon, seconds, and is held to own
+    /// ship's limits; the time weight is the square of own speed.
+    pub fn new(
+        segments: &'a [Segment],
+        own: &'a OwnShip,
+        desired: &'a DesiredTrajectory,
+        horizon: f64,
+    ) -> Self {
+        Self {
+            segments,
+            own,
+            freedom: Freedom::Limits,
+            desired,
+            targets: &[],
+            sets: &[],
+            land: &[],
+            land_margin: 0.0,
+            horizon,
+            arrival_hold: 60.0,
+            time_weight: own.speed * own.speed,
+            max_risk: 0.0,
+        }
+    }
+}

@@ -50,10 +50,7 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     } else {
         return None;
     };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
+    Some(Violation::new(what, least.time))
 }
 
 /// Violation of a set by a motion with this least distance, if any. While the sections are too
@@ -83,10 +80,7 @@ pub(super) fn collision(label: &str, least: &Least, depth: f64) -> Option<Violat
     } else {
         return None;
     };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
+    Some(Violation::new(what, least.time))
 }
 
 /// Result of the checks against the sets of one target.
@@ -190,20 +184,12 @@ mod tests {
                 length_m = 60, beam_m = 12, position_std_m = {spread_m} }}]"#
         );
         let scenario = Scenario::parse(&text).expect("valid");
-        let held = Segment {
-            start: scenario.own_ship.pose,
-            start_time: 0.0,
-            duration: 300.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let held = Segment::straight(scenario.own_ship.pose, 0.0, 300.0, 5.0);
         Scene { scenario, held }
     }
 
     fn box_around(half: f64) -> ConvexPolygon {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.map(|(x, y)| Vector::new(750.0 + half * x, 60.0 + half * y));
-        ConvexPolygon::hull(&corners).expect("finite")
+        ConvexPolygon::rectangle(Vector::new(750.0, 60.0), half, half)
     }
 
     /// Evaluates the motion with these sets, risk, land and land margin.
@@ -216,18 +202,18 @@ mod tests {
     ) -> Evaluation {
         let Scene { scenario, held } = scene;
         evaluate(&Request {
-            segments: std::slice::from_ref(held),
-            own: &scenario.own_ship,
             freedom: Freedom::Any,
-            desired: &scenario.desired,
             targets: &scenario.targets,
             sets,
             land,
             land_margin,
-            horizon: scenario.horizon,
-            time_weight: 25.0,
             max_risk,
-            arrival_hold: scenario.arrival_hold,
+            ..Request::new(
+                std::slice::from_ref(held),
+                &scenario.own_ship,
+                &scenario.desired,
+                scenario.horizon,
+            )
         })
     }
 

@@ -4,6 +4,7 @@ use super::{Evaluation, Request, Safety, Violation, land_distance, least_of, mee
 use crate::evaluation::cost::counted::counted_error_of_cubics;
 use crate::evaluation::cost::quadrature::smooth;
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::motion::Report;
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, ForceNode, Steered};
@@ -44,8 +45,7 @@ pub struct Steering<'a> {
 /// is within own ship's length of the last waypoint ([`Counted`](super::Counted)).
 /// `request.segments` is ignored.
 pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
-    let mut violations = Vec::new();
-    check(request, steering, &mut violations);
+    let mut violations = check(request, steering);
     let pieces: Vec<Cubic> = steering.motion.pieces().collect();
     let sound = Safety::of_motion(violations.is_empty());
     let (passages, met) = meetings(request, &pieces, &[], true, &mut violations);
@@ -74,68 +74,45 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
 }
 
 /// Checks start, end, forces and dynamics.
-fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
+fn check(request: &Request, steering: &Steering) -> Vec<Violation> {
     let nodes = steering.motion.nodes();
     let (first, last) = (&nodes[0], &nodes[nodes.len() - 1]);
     let own = request.own;
-    // Adds a violation if a quantity exceeds its limit; a NaN exceeds every limit.
-    let mut limit = |what: String, time: f64, value: f64, allowed: f64| {
-        if !(value <= allowed) {
-            let what = format!("{what}: {value:.6e}, allowed {allowed:.6e}");
-            found.push(Violation { what, time });
-        }
+    let mut found = Report {
+        time: last.time,
+        ..Report::default()
     };
-    limit(
-        "start time, s".to_owned(),
-        first.time,
-        first.time.abs(),
-        tolerance::TIME_S,
-    );
-    limit(
-        "end time, s from the horizon".to_owned(),
-        last.time,
-        (last.time - request.horizon).abs(),
-        tolerance::TIME_S * (1.0 + request.horizon),
-    );
+    let (off, allowed) = (last.time - request.horizon, 1.0 + request.horizon);
+    let allowed = tolerance::TIME_S * allowed;
+    found.limit("end time", "s from the horizon", off.abs(), allowed);
+    found.time = first.time;
+    found.limit("start time", "s", first.time.abs(), tolerance::TIME_S);
     let gap = (first.pose.position - own.pose.position).norm();
-    limit(
-        "start position, m from own ship".to_owned(),
-        first.time,
-        gap,
-        tolerance::JOINT_M,
+    found.limit("start position", "m from own ship", gap, tolerance::JOINT_M);
+    let (turn, unit) = (
+        wrap(first.pose.heading - own.pose.heading),
+        "rad from own ship's",
     );
-    let turn = wrap(first.pose.heading - own.pose.heading).abs();
-    limit(
-        "start heading, rad from own ship's".to_owned(),
-        first.time,
-        turn,
-        tolerance::JOINT_RAD,
-    );
+    found.limit("start heading", unit, turn.abs(), tolerance::JOINT_RAD);
     let speed = (first.velocity - Vector::new(own.speed, 0.0)).norm() + first.yaw_rate.abs();
-    limit(
-        "start velocity, from own ship's".to_owned(),
-        first.time,
-        speed,
-        tolerance::LIMIT * own.speed.max(1.0),
-    );
+    let allowed = tolerance::LIMIT * own.speed.max(1.0);
+    found.limit("start velocity", "m/s from own ship's", speed, allowed);
     let scales = steering.vessel.scales();
     for (index, pair) in nodes.windows(2).enumerate() {
         let (from, to) = (&pair[0], &pair[1]);
         let force = force(from);
-        for (axis, name) in ["surge force, N", "sway force, N", "yaw moment, Nm"]
-            .into_iter()
-            .enumerate()
-        {
-            let most = steering.force_limits[axis];
-            limit(
-                format!("{name}, in interval {index}"),
-                from.time,
-                force[axis].abs(),
-                most * (1.0 + tolerance::LIMIT),
-            );
+        found.time = from.time;
+        let axes = [
+            ("surge force", "N"),
+            ("sway force", "N"),
+            ("yaw moment", "Nm"),
+        ];
+        for (axis, (name, unit)) in axes.into_iter().enumerate() {
+            let allowed = steering.force_limits[axis] * (1.0 + tolerance::LIMIT);
+            let what = format!("{name} in interval {index}");
+            found.limit(&what, unit, force[axis].abs(), allowed);
         }
-        let duration = to.time - from.time;
-        let reached = integrated(steering.vessel, &state(from), &force, duration);
+        let reached = integrated(steering.vessel, &state(from), &force, to.time - from.time);
         let off = (reached - state(to)).component_div(&scales.state);
         // The maximum norm would lose a NaN.
         let off = if off.sum().is_finite() {
@@ -143,13 +120,11 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
         } else {
             f64::NAN
         };
-        limit(
-            format!("vessel state off the plan after interval {index}, in its units"),
-            to.time,
-            off,
-            tolerance::DEFECT,
-        );
+        found.time = to.time;
+        let what = format!("vessel state off the plan after interval {index}");
+        found.limit(&what, "of its units", off, tolerance::DEFECT);
     }
+    found.violations
 }
 
 /// Forces from a node until the next one.

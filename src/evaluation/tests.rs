@@ -3,6 +3,7 @@
 use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
+use crate::geometry::fixtures::random_vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{
     DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
@@ -10,6 +11,7 @@ use crate::target::{
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
 use crate::vessel::OwnShip;
+use crate::vessel::fixtures::own_ship;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -19,17 +21,7 @@ mod turned;
 const RADIUS: f64 = 100.0;
 
 fn own() -> OwnShip {
-    OwnShip {
-        pose: Pose::new(Vector::zeros(), 0.0),
-        speed: 5.0,
-        hull: Hull {
-            length: 30.0,
-            beam: 8.0,
-        },
-        turning_radius: RADIUS,
-        speeds: vec![2.5, 5.0, 6.0],
-        safety_margin: 20.0,
-    }
+    own_ship(&[2.5, 5.0, 6.0])
 }
 
 fn desired() -> DesiredTrajectory {
@@ -42,13 +34,13 @@ fn follow(segments: &mut Vec<Segment>, length: f64, speed: f64, turn: f64) {
         .last()
         .map_or((own().pose, 0.0), |s| (s.end(), s.end_time()));
     let duration = length / speed;
-    segments.push(Segment {
+    segments.push(Segment::new(
         start,
         start_time,
         duration,
         speed,
-        turn_rate: turn / duration,
-    });
+        turn / duration,
+    ));
 }
 
 /// 200 m ahead, a deviation to starboard and back, ahead to the end.
@@ -93,10 +85,7 @@ fn ship(y: f64, speed: f64) -> Target {
         motion: Motion::Ship(ShipTrack {
             pose: Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
             speed,
-            hull: Hull {
-                length: 60.0,
-                beam: 12.0,
-            },
+            hull: Hull::new(60.0, 12.0),
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.02,
@@ -124,10 +113,7 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
             2.3,
         );
         (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
-        track.hull = Hull {
-            length: 6.0,
-            beam: 1.0,
-        };
+        track.hull = Hull::new(6.0, 1.0);
     }
     let along = judge(&segments, &[], std::slice::from_ref(&other));
     assert!(along.min_clearance > 1.0, "{}", along.min_clearance);
@@ -150,18 +136,9 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
 
 fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Evaluation {
     evaluate(&Request {
-        freedom: Freedom::Limits,
-        segments,
-        own: &own(),
-        desired: &desired(),
         targets,
         sets,
-        land: &[],
-        land_margin: 0.0,
-        horizon: 400.0,
-        arrival_hold: 60.0,
-        time_weight: 25.0,
-        max_risk: 0.0,
+        ..Request::new(segments, &own(), &desired(), 400.0)
     })
 }
 
@@ -252,13 +229,7 @@ fn a_tightened_turn_is_found() {
     // A turn on the spot.
     let mut s = plan();
     let (pose, time) = (s[6].end(), s[6].end_time());
-    s.push(Segment {
-        start: pose,
-        start_time: time,
-        duration: 1.0,
-        speed: 0.0,
-        turn_rate: 0.1,
-    });
+    s.push(Segment::new(pose, time, 1.0, 0.0, 0.1));
     assert_eq!(faults(&s), ["turn", "speed"]);
 }
 
@@ -298,13 +269,7 @@ fn a_set_crossed_between_any_two_samples_is_found() {
     // A needle that own ship crosses in a hundredth of a second.
     let at = plan()[0].pose_at(17.0).position;
     let thin = |half: f64| {
-        let initial = ConvexPolygon::hull(&[
-            at + Vector::new(-half, 30.0),
-            at + Vector::new(half, 30.0),
-            at + Vector::new(half, -30.0),
-            at + Vector::new(-half, -30.0),
-        ])
-        .expect("finite");
+        let initial = ConvexPolygon::rectangle(at, half, 30.0);
         SpaceTimeSet::constant("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
@@ -353,18 +318,8 @@ fn what_is_not_a_number_is_never_verified() {
     limits.turning_radius = f64::NAN;
     limits.pose.heading = f64::NAN;
     let found = evaluate(&Request {
-        freedom: Freedom::Limits,
-        segments: &plan(),
-        own: &limits,
-        desired: &desired(),
-        targets: &[],
-        sets: &[],
-        land: &[],
-        land_margin: 0.0,
-        horizon: f64::NAN,
         arrival_hold: f64::NAN,
-        time_weight: 25.0,
-        max_risk: 0.0,
+        ..Request::new(&plan(), &limits, &desired(), f64::NAN)
     });
     assert_eq!(words(&found), ["start", "heading", "turn", "arrival"]);
 }
@@ -381,13 +336,7 @@ fn margins_go_to_the_target_of_their_name() {
 }
 
 fn line(from: Vector, heading: f64, duration: f64) -> Segment {
-    Segment {
-        start: Pose::new(from, heading),
-        start_time: 0.0,
-        duration,
-        speed: 5.0,
-        turn_rate: 0.0,
-    }
+    Segment::straight(Pose::new(from, heading), 0.0, duration, 5.0)
 }
 
 fn round(initial: Ellipse, velocity: Ellipse) -> SpaceTimeSet {
@@ -421,24 +370,20 @@ fn distances_of_ellipses_match_a_dense_scan() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
     for case in 0..150 {
         let mut ellipse = |scale: f64, thin: bool| {
-            let mut vector =
-                || Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale;
+            let mut vector = || random_vector(&mut rng, 1.0) * scale;
             let (center, a) = (vector(), vector());
             let b = crate::frame::to_port(a) * if thin { 0.0 } else { 0.4 };
             Ellipse::from_axes(center, [a, b])
         };
         let set = (ellipse(30.0, case % 3 == 0), ellipse(1.0, case % 4 == 0));
         let moving = MovingEllipse::new(&[(set.0, 1.0)], &set.1);
-        let s = Segment {
-            start: Pose::new(
-                Vector::new(rng.random_range(-80.0..80.0), rng.random_range(-80.0..80.0)),
-                rng.random_range(-3.0..3.0),
-            ),
-            start_time: rng.random_range(0.0..5.0),
-            duration: rng.random_range(1.0..20.0),
-            speed: rng.random_range(0.0..8.0),
-            turn_rate: [0.0, 0.1, -0.2][case % 3],
-        };
+        let s = Segment::new(
+            Pose::new(random_vector(&mut rng, 80.0), rng.random_range(-3.0..3.0)),
+            rng.random_range(0.0..5.0),
+            rng.random_range(1.0..20.0),
+            rng.random_range(0.0..8.0),
+            [0.0, 0.1, -0.2][case % 3],
+        );
         // Distance to the section as an ellipse.
         let at = |time: f64| {
             let root = |e: &Ellipse| e.shape().trace().sqrt();
@@ -469,23 +414,17 @@ fn distances_of_ellipses_match_a_dense_scan() {
 #[test]
 fn slabs_are_judged_within_their_time() {
     // At rest for 60 s, then north at 5 m/s.
-    let square = ConvexPolygon::hull(&[
-        Vector::new(280.0, -10.0),
-        Vector::new(320.0, -10.0),
-        Vector::new(320.0, 10.0),
-        Vector::new(280.0, 10.0),
-    ])
-    .expect("finite");
+    let square = ConvexPolygon::rectangle(Vector::new(300.0, 0.0), 20.0, 10.0);
     let timed =
         |until, north| TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, north)));
     let judged = |until: f64| {
         let set = SpaceTimeSet {
             from: 0.0,
             name: "slabs".to_owned(),
-            sets: Uncertainty {
-                initial: square.clone().into(),
-                velocities: vec![timed(until, 0.0), timed(f64::INFINITY, 5.0)],
-            },
+            sets: Uncertainty::new(
+                square.clone(),
+                vec![timed(until, 0.0), timed(f64::INFINITY, 5.0)],
+            ),
         };
         let found = judge(&[line(Vector::zeros(), 0.0, 300.0)], &[set], &[]);
         words(&found).contains(&"set".to_owned())

@@ -51,10 +51,7 @@ fn body_coordinates_round_trip() {
     );
 }
 
-const TRONDHEIM: Geographic = Geographic {
-    lat_deg: 63.44,
-    lon_deg: 10.399,
-};
+const TRONDHEIM: Geographic = Geographic::new(63.44, 10.399);
 
 #[test]
 fn places_and_points_are_inverse() {
@@ -80,10 +77,7 @@ fn the_plane_keeps_distances_and_bearings_from_the_origin() {
     use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
     let wgs84 = Geodesic::wgs84();
     for lat_deg in [-63.44, -12.0, 0.0, 40.7, 63.44, 78.0] {
-        let origin = Geographic {
-            lat_deg,
-            lon_deg: 10.399,
-        };
+        let origin = Geographic::new(lat_deg, 10.399);
         let earth = Georeference::new(origin).expect("valid");
         for i in 0..72 {
             let azimuth = f64::from(i) * 5.0;
@@ -101,9 +95,11 @@ fn the_plane_keeps_distances_and_bearings_from_the_origin() {
     let earth = Georeference::new(TRONDHEIM).expect("valid");
     for i in 0..50 {
         let k = f64::from(i);
-        let place = |k: f64| Geographic {
-            lat_deg: 63.44 + 0.2 * (k * 0.7).sin(),
-            lon_deg: 10.399 + 0.4 * (k * 1.1).cos(),
+        let place = |k: f64| {
+            Geographic::new(
+                63.44 + 0.2 * (k * 0.7).sin(),
+                10.399 + 0.4 * (k * 1.1).cos(),
+            )
         };
         let (a, b) = (place(k), place(k + 0.3));
         let north = Geographic {

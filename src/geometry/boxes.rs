@@ -13,6 +13,11 @@ pub struct Window {
 }
 
 impl Window {
+    /// The box between two corners.
+    pub fn new(low: Vector, high: Vector) -> Self {
+        Self { low, high }
+    }
+
     /// The smallest box around points; `None` without points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
         let mut points = points.into_iter();
@@ -96,10 +101,7 @@ mod tests {
             let mut whole = |most: i32| f64::from(rng.random_range(0..most));
             let p = Vector::new(whole(50), whole(50));
             let size = Vector::new(whole(9), whole(9));
-            Window {
-                low: p,
-                high: p + size,
-            }
+            Window::new(p, p + size)
         };
         let boxes: Vec<Window> = (0..200).map(|_| draw()).collect();
         let index = BoxIndex::new(boxes.iter().copied());
@@ -115,10 +117,7 @@ mod tests {
     #[test]
     fn a_set_is_cut_at_the_edges_of_the_box() {
         let at = |x: f64, y: f64| Vector::new(x, y);
-        let window = Window {
-            low: at(0.0, 0.0),
-            high: at(10.0, 10.0),
-        };
+        let window = Window::new(at(0.0, 0.0), at(10.0, 10.0));
         let hull = |points: &[Vector]| ConvexPolygon::hull(points).expect("finite");
         let across = hull(&[at(5.0, 5.0), at(15.0, 5.0), at(15.0, 15.0), at(5.0, 15.0)]);
         assert!((hull(&window.part_of(&across)).area() - 25.0).abs() < 1e-9);

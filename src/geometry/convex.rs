@@ -115,6 +115,13 @@ impl ConvexPolygon {
         Self { vertices: vec![p] }
     }
 
+    /// The rectangle about a centre, with these half-widths east and north.
+    pub fn rectangle(center: Vector, east: f64, north: f64) -> Self {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| center + Vector::new(x * east, y * north));
+        Self::from_ccw(corners.to_vec())
+    }
+
     /// A polygon from the counter-clockwise boundary of a convex set.
     ///
     /// Removes duplicates, collinear vertices and slivers. Never panics; an empty list gives the

@@ -6,13 +6,18 @@ use rand_chacha::ChaCha8Rng;
 use super::ConvexPolygon;
 use crate::frame::Vector;
 
+/// A vector with both components below `most`.
+pub fn random_vector(rng: &mut ChaCha8Rng, most: f64) -> Vector {
+    Vector::new(rng.random_range(-most..most), rng.random_range(-most..most))
+}
+
 /// One to eight points within three times the size of the origin on either axis, often on a grid:
 /// repeated ones, ones on a line, and sides that are parallel.
 pub fn random_points(rng: &mut ChaCha8Rng, size: f64) -> Vec<Vector> {
     let on_grid = rng.random_bool(0.5);
     (0..rng.random_range(1..9))
         .map(|_| {
-            let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
+            let p = random_vector(rng, 3.0);
             (if on_grid { p.map(f64::round) } else { p }) * size
         })
         .collect()

@@ -162,10 +162,7 @@ mod tests {
     #[test]
     fn known_places_are_where_they_are() {
         let map = harbour("trondheim-harbour", 63.44, 10.399);
-        let origin = Geographic {
-            lat_deg: 63.44,
-            lon_deg: 10.399,
-        };
+        let origin = Geographic::new(63.44, 10.399);
         let earth = Georeference::new(origin).expect("valid");
         let at = |lat_deg, lon_deg| earth.to_plane(Geographic { lat_deg, lon_deg });
         assert!(map.contains(at(63.4512, 10.3833)), "Munkholmen");

@@ -185,10 +185,7 @@ impl Reading<'_> {
             return Ok(point);
         }
         let written = format!("[{lon_deg:?}, {lat_deg:?}]");
-        let exchanged = Geographic {
-            lat_deg: lon_deg,
-            lon_deg: lat_deg,
-        };
+        let exchanged = Geographic::new(lon_deg, lat_deg);
         if self.earth.to_near_plane(exchanged).is_some() {
             let found = format!("{written}{EXCHANGED},");
             let allowed = format!("{POSITION}; or an origin that is not exchanged itself");
@@ -238,10 +235,7 @@ mod tests {
     use super::*;
 
     fn earth() -> Georeference {
-        let origin = Geographic {
-            lat_deg: 63.44,
-            lon_deg: 10.4,
-        };
+        let origin = Geographic::new(63.44, 10.4);
         Georeference::new(origin).expect("valid")
     }
 
@@ -288,64 +282,36 @@ mod tests {
         assert!(Map::parse(&polygon(high), &earth()).is_ok());
     }
 
+    /// Positions of a ring, what is found, and what is allowed.
+    const RINGS: &str = "
+63.44,10.4 63.44,10.41 63.45,10.41 63.44,10.4: looks like [latitude, longitude]; [longitude, latitude]
+10.4,63.44 10.41 10.41,63.45 10.4,63.44: in ring 0 1 numbers where a place is meant at position 1; [longitude, latitude]
+10.4,63.44 1e308,63.44 10.41,63.45 10.4,63.44: in ring 0 [1e308, 63.44] at position 1; [longitude, latitude]
+10.4,63.44 10.41,93.44 10.41,63.45 10.4,63.44: in ring 0 [10.41, 93.44] at position 1; [longitude, latitude]
+5.4,60.44 5.41,60.44 5.41,60.45 5.4,60.44: km from the origin; within 100 km of the origin (lat 63.44
+10.4,63.44 10.41,63.45 10.41,63.44 10.4,63.45 10.4,63.44: crosses itself at lat 63.445; touch
+10.4,63.44 10.41,63.44 10.41,63.45 10.4,63.45: an end that is not its beginning; a closed ring
+10.4,63.44 10.41,63.44 10.4,63.44: 3 positions; at least 4
+10.4,63.44 10.4,63.44 10.4,63.44 10.4,63.44: 1 different vertices; 3 different
+";
+
     #[test]
     fn faults_name_their_feature_and_what_is_allowed() {
         let island = polygon(ISLAND);
         let line = r#"{"type":"LineString","coordinates":[[10.4,63.44],[10.41,63.44]]}"#;
-        let cases = [
+        let hole = format!("{ISLAND},{}", ISLAND.replace("63.4", "63.5"));
+        let rings = RINGS.lines().filter_map(|row| {
+            let (points, said) = row.split_once(": ")?;
+            let (found, allowed) = said.split_once("; ")?;
+            let points = points.replace(' ', "],[");
+            Some((polygon(&format!("[[{points}]]")), found, allowed))
+        });
+        let mut cases = vec![
             (line.to_owned(), "a LineString", POLYGON),
             ("null".to_owned(), "no geometry", POLYGON),
-            (
-                polygon("[[63.44,10.4],[63.44,10.41],[63.45,10.41],[63.44,10.4]]"),
-                "looks like [latitude, longitude]",
-                POSITION,
-            ),
-            (
-                polygon("[[10.4,63.44],[10.41],[10.41,63.45],[10.4,63.44]]"),
-                "in ring 0 1 numbers where a place is meant at position 1",
-                POSITION,
-            ),
-            (
-                polygon("[[10.4,63.44],[1e308,63.44],[10.41,63.45],[10.4,63.44]]"),
-                "in ring 0 [1e308, 63.44] at position 1",
-                POSITION,
-            ),
-            (
-                polygon("[[10.4,63.44],[10.41,93.44],[10.41,63.45],[10.4,63.44]]"),
-                "in ring 0 [10.41, 93.44] at position 1",
-                POSITION,
-            ),
-            (
-                polygon("[[5.4,60.44],[5.41,60.44],[5.41,60.45],[5.4,60.44]]"),
-                "km from the origin",
-                "within 100 km of the origin (lat 63.44",
-            ),
-            (
-                polygon("[[10.4,63.44],[10.41,63.45],[10.41,63.44],[10.4,63.45],[10.4,63.44]]"),
-                "crosses itself at lat 63.445",
-                "touch",
-            ),
-            (
-                polygon("[[10.4,63.44],[10.41,63.44],[10.41,63.45],[10.4,63.45]]"),
-                "an end that is not its beginning",
-                "a closed ring",
-            ),
-            (
-                polygon("[[10.4,63.44],[10.41,63.44],[10.4,63.44]]"),
-                "3 positions",
-                "at least 4",
-            ),
-            (
-                polygon("[[10.4,63.44],[10.4,63.44],[10.4,63.44],[10.4,63.44]]"),
-                "1 different vertices",
-                "3 different",
-            ),
-            (
-                polygon(&format!("{ISLAND},{}", ISLAND.replace("63.4", "63.5"))),
-                "hole 1 is not inside",
-                "holes inside",
-            ),
+            (polygon(&hole), "hole 1 is not inside", "holes inside"),
         ];
+        cases.extend(rings);
         for (geometry, found, allowed) in &cases {
             let fault = only_fault(&collection(&[&island, geometry]));
             assert_eq!(fault.path, "features[1]", "{fault}");

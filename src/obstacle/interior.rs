@@ -119,13 +119,7 @@ mod tests {
         let segment = polygon(&[at(50.0, -20.0), at(50.0, 20.0)]);
         let flat = Ellipse::from_axes(at(50.0, 0.0), [at(0.0, 20.0), at(0.0, 0.0)]);
         let rest = Ellipse::from_axes(Vector::zeros(), [Vector::zeros(); 2]);
-        let own = Segment {
-            start: Pose::new(Vector::zeros(), 0.0),
-            start_time: 0.0,
-            duration: 20.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let own = Segment::straight(Pose::new(Vector::zeros(), 0.0), 0.0, 20.0, 5.0);
         let sets: [Obstacle; 3] = [
             PolytopeObstacle::new("segment", segment, still.clone()).into(),
             PolytopeObstacle::new("point", polygon(&[at(50.0, 0.0)]), still).into(),

@@ -132,16 +132,10 @@ fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
 pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_valid() {
         let all = Vector::repeat(f64::MAX);
-        return Window {
-            low: -all,
-            high: all,
-        };
+        return Window::new(-all, all);
     }
     let (start, end) = (segment.start.position, segment.end().position);
-    let ends = Window {
-        low: start.inf(&end),
-        high: start.sup(&end),
-    };
+    let ends = Window::new(start.inf(&end), start.sup(&end));
     if !segment.is_arc() {
         return ends;
     }
@@ -161,16 +155,14 @@ pub(crate) fn window_of(segment: &Segment) -> Window {
 mod tests {
     use super::*;
     use crate::frame::{Pose, direction};
+    use crate::geometry::fixtures::random_vector;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
     fn random_land(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, LandObstacle) {
         let pieces: Vec<ConvexPolygon> = (0..rng.random_range(1..25))
             .map(|_| {
-                let centre = Vector::new(
-                    rng.random_range(-300.0..300.0),
-                    rng.random_range(-300.0..300.0),
-                );
+                let centre = random_vector(rng, 300.0);
                 let points: Vec<Vector> = (0..rng.random_range(3..8))
                     .map(|k| centre + direction(f64::from(k)) * rng.random_range(5.0..60.0))
                     .collect();
@@ -189,10 +181,7 @@ mod tests {
         for _ in 0..100 {
             let (pieces, radius, land) = random_land(&mut rng);
             for _ in 0..200 {
-                let p = Vector::new(
-                    rng.random_range(-400.0..400.0),
-                    rng.random_range(-400.0..400.0),
-                );
+                let p = random_vector(&mut rng, 400.0);
                 let distance = pieces
                     .iter()
                     .map(|c| c.signed_distance(p))
@@ -216,19 +205,13 @@ mod tests {
         for _ in 0..200 {
             let (_, _, land) = random_land(&mut rng);
             for _ in 0..20 {
-                let segment = Segment {
-                    start: Pose::new(
-                        Vector::new(
-                            rng.random_range(-400.0..400.0),
-                            rng.random_range(-400.0..400.0),
-                        ),
-                        rng.random_range(-3.0..3.0),
-                    ),
-                    start_time: 7.0,
-                    duration: rng.random_range(0.0..90.0),
-                    speed: 5.0,
-                    turn_rate: [0.0, 0.05, -0.1][rng.random_range(0..3)],
-                };
+                let segment = Segment::new(
+                    Pose::new(random_vector(&mut rng, 400.0), rng.random_range(-3.0..3.0)),
+                    7.0,
+                    rng.random_range(0.0..90.0),
+                    5.0,
+                    [0.0, 0.05, -0.1][rng.random_range(0..3)],
+                );
                 let first = land
                     .blocks()
                     .iter()
@@ -241,13 +224,7 @@ mod tests {
             }
         }
         assert!(met > 500 && clear > 500, "{met} {clear}");
-        let lost = Segment {
-            start: Pose::new(Vector::new(f64::NAN, 0.0), 0.0),
-            start_time: 0.0,
-            duration: 1.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let lost = Segment::straight(Pose::new(Vector::new(f64::NAN, 0.0), 0.0), 0.0, 1.0, 5.0);
         let (_, _, land) = random_land(&mut rng);
         assert!(land.meets(&lost, 1e-7));
     }

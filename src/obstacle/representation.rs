@@ -119,10 +119,7 @@ impl Obstacle {
         let later = later
             .filter(|set| set.until > time)
             .map(|set| TimedVelocitySet::new(set.until - time, set.velocities));
-        let sets = Uncertainty {
-            initial: self.section(time),
-            velocities: later.collect(),
-        };
+        let sets = Uncertainty::new(self.section(time), later.collect());
         // the last set never ends, so one remains, and the ends increase
         Self::new(self.name(), sets).unwrap_or_else(|_| self.clone())
     }

@@ -16,6 +16,13 @@ pub struct PeakRisk {
     pub time: f64,
 }
 
+impl PeakRisk {
+    /// A risk at a time, seconds.
+    pub fn new(risk: f64, time: f64) -> Self {
+        Self { risk, time }
+    }
+}
+
 /// `1 - alpha`, clipped to `[0, 1]`; 1 where alpha is not a number.
 pub(super) fn risk_of(alpha: f64) -> f64 {
     if alpha.is_nan() {
@@ -146,10 +153,7 @@ impl Affine {
 /// as many steps as there are faces. Errs to the high side: a face that moves by at most
 /// [`tolerance::LENGTH_M`] with alpha is placed where it is for alpha = 1.
 pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &Line) -> PeakRisk {
-    let none = PeakRisk {
-        risk: 0.0,
-        time: line.start,
-    };
+    let none = PeakRisk::new(0.0, line.start);
     let certain = PeakRisk { risk: 1.0, ..none };
     // the part of the motion inside all faces that do not depend on alpha
     let (mut start, mut end) = (line.start, line.end);
@@ -190,10 +194,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
         polytope_alpha(faces, spreads, position, time)
     };
     if at(start) == 0.0 {
-        return PeakRisk {
-            risk: 1.0,
-            time: start,
-        };
+        return PeakRisk::new(1.0, start);
     }
     // at t = 0 only O_0 is reachable
     if !(end > 0.0) {
@@ -257,10 +258,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     let time = (1.0 / u).clamp(start, end);
     // all three are alpha at that time; rounding errs to the high side of the risk
     let alpha = at(time).min(bound).min(highest(u).at(u)).max(0.0);
-    PeakRisk {
-        risk: risk_of(alpha),
-        time,
-    }
+    PeakRisk::new(risk_of(alpha), time)
 }
 
 /// The largest risk along any segment, by bisection on the exact contact with level sets.
@@ -272,10 +270,7 @@ pub(super) fn peak_by_bisection(
     mut contact: impl FnMut(f64) -> Option<f64>,
 ) -> PeakRisk {
     let Some(first) = contact(0.0) else {
-        return PeakRisk {
-            risk: 0.0,
-            time: start_time,
-        };
+        return PeakRisk::new(0.0, start_time);
     };
     if let Some(time) = contact(1.0) {
         return PeakRisk { risk: 1.0, time };

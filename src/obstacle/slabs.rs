@@ -212,10 +212,7 @@ impl SlabObstacle {
 
     /// These velocity sets with another set at t = 0, metres.
     pub fn with_initial(&self, initial: impl Into<ConvexSet>) -> Self {
-        let sets = Uncertainty {
-            initial: initial.into(),
-            velocities: self.sets().velocities.clone(),
-        };
+        let sets = Uncertainty::new(initial.into(), self.sets().velocities.clone());
         Self::from_sequence(self.shared.name.clone(), sets)
     }
 
@@ -240,10 +237,7 @@ impl SlabObstacle {
     fn peak_over(&self, segments: &[Segment]) -> PeakRisk {
         let start_time = segments.first().map_or(0.0, |s| s.start_time);
         if let Some(invalid) = segments.iter().find(|s| !s.is_valid()) {
-            return PeakRisk {
-                risk: 1.0,
-                time: invalid.start_time,
-            };
+            return PeakRisk::new(1.0, invalid.start_time);
         }
         let mut levels: Vec<(usize, PolytopeObstacle)> = Vec::new();
         let mut met: Vec<(usize, Segment)> = Vec::new();

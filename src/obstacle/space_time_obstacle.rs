@@ -129,10 +129,7 @@ pub(super) fn largest_risk_of_parts<S: SpaceTimeObstacle + ?Sized>(
     set: &S,
     trajectory: &Trajectory,
 ) -> PeakRisk {
-    let mut peak = PeakRisk {
-        risk: 0.0,
-        time: trajectory.start_time(),
-    };
+    let mut peak = PeakRisk::new(0.0, trajectory.start_time());
     for piece in trajectory
         .steered()
         .iter()

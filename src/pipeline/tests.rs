@@ -457,7 +457,7 @@ fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {
         .join("scenarios/dnv/traffic_situation_47.json");
     let assumed = Assumed::default();
     let contents = Contents::read(&file, &assumed).expect("readable");
-    let Contents::Situations { situations, .. } = contents else {
+    let Contents::Situations(situations) = contents else {
         panic!("a situation");
     };
     let situation = situations.into_iter().next().expect("one").expect("sound");

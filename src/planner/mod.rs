@@ -4,8 +4,6 @@ mod clock;
 mod control_settings;
 pub mod cost;
 mod explored;
-#[cfg(test)]
-mod fixtures;
 mod interface;
 mod line_error;
 mod no_plan;

@@ -84,10 +84,10 @@ velocity_set = { vertices_mps = [[0.0, 0.1], [0.2, -0.1], [-0.2, -0.1]] }
     let text = format!("{HEAD_ON}{sets}{OTHER_SETS}");
     let mut run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
     let evaluation = run.evaluation.as_mut().expect("judged");
-    evaluation.violations.push(Violation {
-        what: "set of 'drifting': 1.2 m deep, 0 m allowed".to_owned(),
-        time: 100.0,
-    });
+    evaluation.violations.push(Violation::new(
+        "set of 'drifting': 1.2 m deep, 0 m allowed".to_owned(),
+        100.0,
+    ));
     run
 }
 

@@ -22,10 +22,7 @@ const OWN_SPEEDS: [f64; 3] = [2.5, 5.0, 6.0];
 /// Metres, smallest turning radius.
 const TURNING_RADIUS: f64 = 100.0;
 /// Own hull.
-const OWN_HULL: Hull = Hull {
-    length: 30.0,
-    beam: 8.0,
-};
+const OWN_HULL: Hull = Hull::new(30.0, 8.0);
 /// Metres between hulls.
 const SAFETY_MARGIN: f64 = 20.0;
 /// m²/s².
@@ -336,10 +333,7 @@ fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<
     let bearing = rng.random_range(kind.bearings());
     let speed = rng.random_range(kind.speeds());
     let length = rng.random_range(TARGET_LENGTH);
-    let hull = Hull {
-        length,
-        beam: length / rng.random_range(SLENDERNESS),
-    };
+    let hull = Hull::new(length, length / rng.random_range(SLENDERNESS));
     let miss = rng.random_range(MISS) * length;
     let position_std = rng.random_range(POSITION_STD);
     let speed_spread = rng.random_range(SPEED_SPREAD);

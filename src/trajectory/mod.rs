@@ -1,6 +1,8 @@
 //! Trajectories: lines and arcs in time, the desired trajectory, and the network of paths.
 
 mod desired;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod network;
 mod segment;
 mod steered;

@@ -19,6 +19,22 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// A line, an arc or a wait, by its fields in their order.
+    pub fn new(start: Pose, start_time: f64, duration: f64, speed: f64, turn_rate: f64) -> Self {
+        Self {
+            start,
+            start_time,
+            duration,
+            speed,
+            turn_rate,
+        }
+    }
+
+    /// A straight line at constant speed, or a wait at speed 0.
+    pub fn straight(start: Pose, start_time: f64, duration: f64, speed: f64) -> Self {
+        Self::new(start, start_time, duration, speed, 0.0)
+    }
+
     /// True when every number is finite and neither duration nor speed is negative.
     pub fn is_valid(&self) -> bool {
         let Pose { position, heading } = self.start;

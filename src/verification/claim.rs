@@ -1,10 +1,10 @@
 //! Parses and validates a plan document; the result has no invalid state.
 
 use super::FORMAT;
-use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
+use super::file::{PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
-use crate::document::planner_names;
+use crate::document::{OwnShipDocument, PositionDocument, planner_names};
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
@@ -35,38 +35,19 @@ pub(super) const ARRIVAL: &str = "arrival";
 /// Most keys listed in the error for a document of another format.
 const KEYS: usize = 5;
 
-/// A field of a document with an invalid value.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ClaimFault {
-    /// Path of the field.
-    pub path: String,
-    /// The value found.
-    pub found: String,
-    /// The allowed values.
-    pub allowed: String,
-}
-
-/// Reason why a text is not a plan document that can be checked.
+/// Reason why a text is not a plan document that can be checked: the field, what was found, and
+/// what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ClaimError {
-    /// Invalid JSON, a missing key, or a value of the wrong type.
-    #[error("{}{reason}", place(.path))]
-    Shape {
-        /// Path of the field; "." for the whole document.
-        path: String,
-        /// Description, with line and column.
-        reason: String,
-    },
-    /// An invalid value.
-    #[error("{}: found {}; allowed: {}", .0.path, .0.found, .0.allowed)]
-    Value(ClaimFault),
-}
+#[error("{0}")]
+pub struct ClaimError(String);
 
-fn place(path: &str) -> String {
-    if path == "." || path == "?" {
-        String::new()
-    } else {
-        format!("{path}: ")
+impl ClaimError {
+    fn at(path: &str, reason: impl std::fmt::Display) -> Self {
+        match path {
+            // the whole document
+            "." | "?" => Self(reason.to_string()),
+            path => Self(format!("{path}: {reason}")),
+        }
     }
 }
 
@@ -112,10 +93,7 @@ impl Claim {
         let mut json = serde_json::Deserializer::from_str(text);
         let file: PlanFile =
             serde_path_to_error::deserialize(&mut json).map_err(|error| unread(text, &error))?;
-        json.end().map_err(|error| ClaimError::Shape {
-            path: ".".to_owned(),
-            reason: error.to_string(),
-        })?;
+        json.end().map_err(|error| ClaimError::at(".", error))?;
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }
@@ -222,10 +200,7 @@ impl Claim {
 /// Explains why a text was not parsed: invalid JSON, another kind of document, or a plan document
 /// with a broken field.
 fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> ClaimError {
-    let shape = |reason: String| ClaimError::Shape {
-        path: error.path().to_string(),
-        reason,
-    };
+    let shape = |reason: String| ClaimError::at(&error.path().to_string(), reason);
     let document: serde_json::Value = match serde_json::from_str(text) {
         Ok(document) => document,
         Err(error) => {
@@ -244,11 +219,8 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
 }
 
 pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) -> ClaimError {
-    ClaimError::Value(ClaimFault {
-        path: path.to_owned(),
-        found: short_numbers(&found.to_string()),
-        allowed: allowed.to_owned(),
-    })
+    let found = short_numbers(&found.to_string());
+    ClaimError::at(path, format_args!("found {found}; allowed: {allowed}"))
 }
 
 /// Checks that a word is one of the allowed words.
@@ -285,7 +257,7 @@ pub(super) fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
     within(path, value, 0.0, f64::INFINITY)
 }
 
-pub(super) fn point(place: PlaceFile) -> Vector {
+pub(super) fn point(place: PositionDocument) -> Vector {
     Vector::new(place.east_m, place.north_m)
 }
 
@@ -293,7 +265,7 @@ pub(super) fn vector([x, y]: [f64; 2]) -> Vector {
     Vector::new(x, y)
 }
 
-fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
+fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     let mut least = 0.0;
     for (index, speed) in own.speeds_mps.iter().enumerate() {
         within(
@@ -315,10 +287,10 @@ fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
     Ok(OwnShip {
         pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
         speed: within("own_ship.speed_mps", own.speed_mps, 0.0, FASTEST_MPS)?,
-        hull: Hull {
-            length: not_negative("own_ship.length_m", own.length_m)?,
-            beam: not_negative("own_ship.beam_m", own.beam_m)?,
-        },
+        hull: Hull::new(
+            not_negative("own_ship.length_m", own.length_m)?,
+            not_negative("own_ship.beam_m", own.beam_m)?,
+        ),
         turning_radius: positive("own_ship.turning_radius_m", own.turning_radius_m)?,
         speeds: own.speeds_mps.clone(),
         safety_margin: not_negative("own_ship.safety_margin_m", own.safety_margin_m)?,
@@ -365,10 +337,10 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
                     heading_from_course_deg(ship.course_deg),
                 ),
                 speed: not_negative(&at("speed_mps"), ship.speed_mps)?,
-                hull: Hull {
-                    length: not_negative(&at("length_m"), ship.length_m)?,
-                    beam: not_negative(&at("beam_m"), ship.beam_m)?,
-                },
+                hull: Hull::new(
+                    not_negative(&at("length_m"), ship.length_m)?,
+                    not_negative(&at("beam_m"), ship.beam_m)?,
+                ),
                 position_std: not_negative(&at("position_std_m"), ship.position_std_m)?,
                 speed_spread: not_negative(&at("speed_spread_mps"), ship.speed_spread_mps)?,
                 course_spread: radians_from_deg(within(
@@ -439,8 +411,5 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             "one set after another",
         ));
     }
-    Ok(Motion::Sets(Uncertainty {
-        initial,
-        velocities,
-    }))
+    Ok(Motion::Sets(Uncertainty::new(initial, velocities)))
 }

@@ -1,15 +1,15 @@
 //! Checks the figures of a document against its motion.
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
-use super::encounters::shape_rounding;
 use super::mismatch;
-use crate::document::first_alteration;
-use crate::evaluation::{Evaluation, Steering, Violation, stage_costs};
+use crate::evaluation::{Evaluation, MovingSlabs, Steering, Violation, stage_costs};
 use crate::frame::Vector;
+use crate::geometry::ConvexSet;
+use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::{ForceNode, Segment};
 
-/// Checks the costs, the figures of the mission and the path-time profile.
+/// Checks the costs, the figures of the mission and the closest approaches.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
@@ -115,29 +115,51 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     if cost.min_land_distance_m.is_none() && land.is_finite() {
         found.push(mismatch("cost.min_land_distance_m", "nothing", land));
     }
-    found.extend(first_turn(claim));
-    found.extend(profile(claim));
     found.extend(way_left(claim, evaluation));
+    found.extend(closest_approaches(claim, evaluation));
     found
 }
 
-/// Checks the first alteration of course.
-fn first_turn(claim: &Claim) -> Option<Violation> {
-    let said = claim.file.cost.as_ref()?.first_turn.as_ref();
-    let so = first_alteration(&claim.motion.as_ref()?.trajectory()?);
-    let agree = match (said, &so) {
-        (Some(said), Some(so)) => {
-            said.side == so.side.to_string()
-                && near(said.turn_deg, so.degrees)
-                && near(said.t_s, so.start)
+/// Checks that there is an encounter for each target, and its least distance.
+fn closest_approaches(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
+    let encounters = &claim.file.encounters;
+    let said: Vec<&str> = encounters.iter().map(|e| e.target.as_str()).collect();
+    let names: Vec<&str> = claim.targets.iter().map(|t| t.name.as_str()).collect();
+    if said != names {
+        let [said, names] = [said, names].map(|names| format!("'{}'", names.join(", ")));
+        return vec![mismatch("encounters", said, names)];
+    }
+    let all = encounters.iter().zip(&claim.targets);
+    let wrong = all
+        .zip(&evaluation.passages)
+        .filter(|((said, target), passage)| {
+            let rounding = shape_rounding(target, passage.tcpa);
+            !said
+                .dcpa_m
+                .is_some_and(|dcpa| near_to(dcpa, passage.dcpa, rounding))
+        });
+    wrong
+        .map(|((said, target), passage)| {
+            let what = format!("encounter with '{}', dcpa_m", target.name);
+            mismatch(&what, words(said.dcpa_m), passage.dcpa)
+        })
+        .collect()
+}
+
+/// Largest difference of two distances from an explicit set at a time, metres; 0 for ships.
+///
+/// It is that of the shape matrices of ellipses. Sums of polygons omit corners at which the
+/// boundary turns by less than [`tolerance::COLLINEAR_RAD`].
+fn shape_rounding(target: &Target, time: f64) -> f64 {
+    let across = |set: &ConvexSet| set.as_polygon().map_or(0.0, |set| set.across());
+    match &target.motion {
+        Motion::Ship(_) => 0.0,
+        Motion::Sets(sets) => {
+            let fastest = sets.velocities.iter().map(|set| across(&set.velocities));
+            let extent = across(&sets.initial) + fastest.fold(0.0, f64::max) * time;
+            tolerance::COLLINEAR_RAD * extent + MovingSlabs::new(sets).rounding(time)
         }
-        (said, so) => said.is_none() && so.is_none(),
-    };
-    let turn = |side: &str, degrees: f64, time: f64| format!("{degrees}° to {side} at {time} s");
-    let words = |turn: Option<String>| turn.unwrap_or_else(|| "nothing".to_owned());
-    let said = said.map(|t| turn(&t.side, t.turn_deg, t.t_s));
-    let so = so.map(|t| turn(&t.side.to_string(), t.degrees, t.start));
-    (!agree).then(|| mismatch("cost.first_turn", words(said), words(so)))
+    }
 }
 
 /// Checks the remaining distance of a plan that does not arrive. It is at least the straight
@@ -234,64 +256,4 @@ pub(super) fn near_to(said: f64, so: f64, rounding: f64) -> bool {
 
 fn words(value: Option<f64>) -> String {
     value.map_or_else(|| "nothing".to_owned(), |v| format!("{v}"))
-}
-
-/// Distance along the profile at a time, metres; `None` outside the profile.
-fn profile_at(profile: &[[f64; 2]], time: f64) -> Option<f64> {
-    let piece = profile
-        .windows(2)
-        .find(|w| w[0][1] <= time && time <= w[1][1])?;
-    let [from, to] = [piece[0], piece[1]];
-    let share = (time - from[1]) / (to[1] - from[1]);
-    Some(if share.is_nan() {
-        to[0]
-    } else {
-        from[0] + share * (to[0] - from[0])
-    })
-}
-
-/// Checks that the profile is the distance covered over time.
-fn profile(claim: &Claim) -> Option<Violation> {
-    let profile = &claim.file.path_time.as_ref()?.profile;
-    let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
-        return None;
-    };
-    let sailed = |time: f64| -> f64 {
-        let way = |s: &Segment| s.speed * (time - s.start_time).clamp(0.0, s.duration);
-        segments.iter().map(way).sum()
-    };
-    let Some([begin, at]) = profile.first() else {
-        return Some(mismatch("path_time.profile", "nothing", "that of a motion"));
-    };
-    let start = segments.first().map_or(f64::NAN, |s| s.start_time);
-    if !near(*at, start) {
-        let said = format!("a start at {at} s");
-        return Some(mismatch("path_time.profile", said, format!("{start} s")));
-    }
-    // The profile is linear between its points, and the covered distance between the joints of the
-    // motion. They are equal if they are equal at both.
-    let joints = segments.iter().map(Segment::end_time);
-    let at_joints = joints.filter_map(|t| Some([profile_at(profile, t)?, t]));
-    let mut points = profile.iter().copied().chain(at_joints);
-    let wrong = points.find(|[s, t]| !near(*s - begin, sailed(*t)));
-    if let Some([s, t]) = &wrong {
-        let so = begin + sailed(*t);
-        return Some(Violation {
-            time: *t,
-            ..mismatch(
-                "path_time.profile",
-                format!("{s} m at {t} s"),
-                format!("{so} m"),
-            )
-        });
-    }
-    let end = segments.last().map_or(f64::NAN, Segment::end_time);
-    let last = profile.last().map_or(f64::NAN, |[_, t]| *t);
-    (!near(last, end)).then(|| {
-        mismatch(
-            "path_time.profile",
-            format!("an end at {last} s"),
-            format!("{end} s"),
-        )
-    })
 }

@@ -1,9 +1,14 @@
 //! Schema of the plan document for the checker: the required keys, in the units of the file.
 //!
-//! It is separate from the writer's schema, so that an error of the writer is not read back as
-//! valid.
+//! The parts that a document must state in one way only are those of the writer. The others differ:
+//! a key that is missing or has another form is a violation here, or refused by its name.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use crate::document::{
+    ForceLimitsDocument, MissionDocument, OwnShipDocument, PositionDocument, SegmentDocument,
+};
 
 #[derive(Debug, Deserialize)]
 pub(super) struct PlanFile {
@@ -19,8 +24,8 @@ pub(super) struct PlanFile {
     pub max_risk: f64,
     pub objective: String,
     pub horizon_s: f64,
-    pub own_ship: OwnShipFile,
-    pub mission: MissionFile,
+    pub own_ship: OwnShipDocument,
+    pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub targets: Vec<TargetFile>,
     pub obstacles: Vec<ObstacleFile>,
@@ -29,39 +34,9 @@ pub(super) struct PlanFile {
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
     pub trajectory: Option<TrajectoryFile>,
-    pub escape: Option<EscapeFile>,
     pub encounters: Vec<EncounterFile>,
-    pub path_time: Option<PathTimeFile>,
+    pub path_time: Option<IgnoredAny>,
     pub optimal_control: Option<ControlFile>,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-pub(super) struct PlaceFile {
-    pub east_m: f64,
-    pub north_m: f64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct OwnShipFile {
-    pub position: PlaceFile,
-    pub course_deg: f64,
-    pub speed_mps: f64,
-    pub length_m: f64,
-    pub beam_m: f64,
-    pub turning_radius_m: f64,
-    pub speeds_mps: Vec<f64>,
-    pub safety_margin_m: f64,
-    pub land_margin_m: f64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct MissionFile {
-    pub waypoints: Vec<PlaceFile>,
-    pub leg_speeds_mps: Vec<f64>,
-    pub duration_s: f64,
-    pub length_m: f64,
-    #[serde(default)]
-    pub alternatives: Vec<Vec<PlaceFile>>,
 }
 
 /// A tracked ship, or explicit sets.
@@ -77,7 +52,7 @@ pub(super) struct TargetFile {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct ShipFile {
-    pub position: PlaceFile,
+    pub position: PositionDocument,
     pub course_deg: f64,
     pub speed_mps: f64,
     pub length_m: f64,
@@ -135,7 +110,6 @@ pub(super) struct CostFile {
     pub duration_s: f64,
     pub length_m: f64,
     pub delay_s: Option<f64>,
-    pub first_turn: Option<TurnFile>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
     pub hold_clearance_m: Option<f64>,
@@ -144,32 +118,9 @@ pub(super) struct CostFile {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct TurnFile {
-    pub side: String,
-    pub turn_deg: f64,
-    pub t_s: f64,
-}
-
-#[derive(Debug, Deserialize)]
 pub(super) struct TrajectoryFile {
-    pub segments: Option<Vec<SegmentFile>>,
+    pub segments: Option<Vec<SegmentDocument>>,
     pub samples: Vec<SampleFile>,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-pub(super) struct StartFile {
-    pub t_s: f64,
-    pub east_m: f64,
-    pub north_m: f64,
-    pub course_deg: f64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct SegmentFile {
-    pub start: StartFile,
-    pub duration_s: f64,
-    pub speed_mps: f64,
-    pub turn_rate_deg_per_s: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -192,43 +143,15 @@ pub(super) struct SampleFile {
 #[derive(Debug, Deserialize)]
 pub(super) struct EncounterFile {
     pub target: String,
-    pub role: Option<String>,
     pub dcpa_m: Option<f64>,
-    pub tcpa_s: Option<f64>,
-    pub undisturbed_dcpa_m: Option<f64>,
-    pub undisturbed_tcpa_s: Option<f64>,
-    pub passing_side: Option<String>,
-    pub crosses_astern: Option<bool>,
     pub max_risk: Option<f64>,
     pub max_risk_t_s: Option<f64>,
-}
-
-/// Escape of a stand-on ship after the hold.
-#[derive(Debug, Deserialize)]
-pub(super) struct EscapeFile {
-    pub policy: String,
-    pub held_until_s: f64,
-    pub first_segment: usize,
-    pub turn_deg: f64,
-    pub speed_mps: f64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct PathTimeFile {
-    pub profile: Vec<[f64; 2]>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct ControlFile {
     pub vessel: String,
-    pub force_limits: ForceLimitsFile,
+    pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
     pub control_weights: [f64; 3],
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct ForceLimitsFile {
-    pub surge_n: f64,
-    pub sway_n: f64,
-    pub yaw_nm: f64,
 }

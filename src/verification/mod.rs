@@ -10,8 +10,8 @@
 //!   continuous time, with certified distances ([`crate::evaluation`]);
 //! - that the sets are large enough: each contains the target's hull, the margin and the
 //!   uncertainty, and every velocity that the target may take;
-//! - that the reported properties are those of the motion: safety, costs, risks, samples,
-//!   encounters, path-time profile, and the hold and escape of a stand-on ship.
+//! - that the reported properties are those of the motion: safety, costs, risks, samples and least
+//!   distances.
 //!
 //! It uses no planner, obstacle or contact test, and parses the document by its own schema. It
 //! shares with the planners only geometry, segments, and the hull and velocity sets of a tracked
@@ -19,8 +19,6 @@
 
 mod claim;
 mod coverage;
-mod encounters;
-mod escape;
 mod figures;
 mod file;
 mod motion;
@@ -29,9 +27,8 @@ mod reached;
 mod risk;
 mod samples;
 mod sets;
-mod undisturbed;
 
-pub use claim::{ClaimError, ClaimFault};
+pub use claim::ClaimError;
 
 use claim::{Claim, ClaimedMotion};
 
@@ -146,11 +143,8 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         if motion.is_sound() {
             violations.extend(figures::check(&claim, evaluation));
             violations.extend(risk::check(&claim, &request));
-            violations.extend(escape::check(&claim, evaluation, &request));
             violations.extend(samples::check(&claim, motion));
-            violations.extend(encounters::check(&claim, motion, evaluation));
         }
-        violations.extend(undisturbed::check(&claim));
     }
     let claimed_from = |name: &str| {
         let own = claim.sets.iter().filter(|set| set.name == name);
@@ -209,8 +203,5 @@ fn request(claim: &Claim) -> Request<'_> {
 /// Violation for a false statement in the document: the quantity, the reported value and the true
 /// value.
 fn mismatch(what: &str, said: impl std::fmt::Display, so: impl std::fmt::Display) -> Violation {
-    Violation {
-        what: format!("{what}: the document says {said}, it is {so}"),
-        time: 0.0,
-    }
+    Violation::new(format!("{what}: the document says {said}, it is {so}"), 0.0)
 }

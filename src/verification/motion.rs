@@ -1,10 +1,11 @@
 //! Motion of a document: segments, or nodes with forces.
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
-use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
+use super::file::{ControlFile, PlanFile, SampleFile};
+use crate::document::{SegmentDocument, StartDocument};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
-use crate::trajectory::{ForceNode, Segment, Steered, Trajectory};
+use crate::trajectory::{ForceNode, Segment, Steered};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
@@ -31,14 +32,6 @@ impl ClaimedMotion {
         match self {
             Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
             Self::Steered { motion, .. } => motion.nodes()[motion.nodes().len() - 1].time,
-        }
-    }
-
-    /// The motion as a trajectory; `None` where it has gaps.
-    pub fn trajectory(&self) -> Option<Trajectory> {
-        match self {
-            Self::Segments(segments) => Trajectory::with_corners(segments.clone()).ok(),
-            Self::Steered { motion, .. } => Some(motion.clone().into()),
         }
     }
 
@@ -92,10 +85,10 @@ pub(super) fn read(
                     weights: weights(control)?,
                 })),
                 Err(error) => {
-                    faults.push(Violation {
-                        what: format!("nodes among trajectory.samples: {error}"),
-                        time: 0.0,
-                    });
+                    faults.push(Violation::new(
+                        format!("nodes among trajectory.samples: {error}"),
+                        0.0,
+                    ));
                     // A chain without segments is judged as no motion.
                     Ok(Some(ClaimedMotion::Segments(Vec::new())))
                 }
@@ -128,21 +121,21 @@ fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
     })
 }
 
-fn pose(start: &StartFile) -> Pose {
+fn pose(start: &StartDocument) -> Pose {
     Pose::new(
         Vector::new(start.east_m, start.north_m),
         heading_from_course_deg(start.course_deg),
     )
 }
 
-fn segment(segment: &SegmentFile) -> Segment {
-    Segment {
-        start: pose(&segment.start),
-        start_time: segment.start.t_s,
-        duration: segment.duration_s,
-        speed: segment.speed_mps,
-        turn_rate: radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
-    }
+fn segment(segment: &SegmentDocument) -> Segment {
+    Segment::new(
+        pose(&segment.start),
+        segment.start.t_s,
+        segment.duration_s,
+        segment.speed_mps,
+        radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
+    )
 }
 
 /// Converts the samples that are nodes. A course has no full circles, so the heading is continued

@@ -20,10 +20,10 @@ pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> 
         .as_ref()
         .map_or(&[][..], |t| &t.samples);
     let wrong = |index: usize, what: String, time: f64| {
-        Some(Violation {
-            what: format!("trajectory.samples[{index}]: {what}"),
+        Some(Violation::new(
+            format!("trajectory.samples[{index}]: {what}"),
             time,
-        })
+        ))
     };
     let step = STEP.max(motion.end_time() / PARTS);
     let mut before = -tolerance::TIME_S;

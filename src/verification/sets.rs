@@ -105,10 +105,7 @@ pub(super) fn read(
         sets.push(SpaceTimeSet {
             name: entry.name.clone(),
             from: released.unwrap_or(0.0),
-            sets: Uncertainty {
-                initial,
-                velocities: vec![timed],
-            },
+            sets: Uncertainty::new(initial, vec![timed]),
         });
     }
     Ok((sets, faults))

@@ -141,18 +141,19 @@ fn arc_angle(angle: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::frame::Vector;
+    use crate::geometry::fixtures::random_vector;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
 
     fn end(from: Pose, path: &DubinsPath, radius: f64) -> Pose {
         path.pieces.iter().fold(from, |pose, piece| {
-            Segment {
-                start: pose,
-                start_time: 0.0,
-                duration: piece.length,
-                speed: 1.0,
-                turn_rate: piece.turn.map_or(0.0, |s| s.turn_sign() / radius),
-            }
+            Segment::new(
+                pose,
+                0.0,
+                piece.length,
+                1.0,
+                piece.turn.map_or(0.0, |s| s.turn_sign() / radius),
+            )
             .end()
         })
     }
@@ -161,15 +162,8 @@ mod tests {
     fn every_word_ends_at_its_goal_and_none_is_shorter_than_the_chord() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
         for _ in 0..5000 {
-            let mut pose = || {
-                Pose::new(
-                    Vector::new(
-                        rng.random_range(-500.0..500.0),
-                        rng.random_range(-500.0..500.0),
-                    ),
-                    rng.random_range(-4.0..4.0),
-                )
-            };
+            let mut pose =
+                || Pose::new(random_vector(&mut rng, 500.0), rng.random_range(-4.0..4.0));
             let (from, to) = (pose(), pose());
             let radius = rng.random_range(10.0..300.0);
             let all = paths(&from, &to, radius);

@@ -2,6 +2,8 @@
 
 mod cybership2;
 pub mod dubins;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod froude;
 mod kind;
 mod manoeuvring;
@@ -24,6 +26,11 @@ pub struct Hull {
 }
 
 impl Hull {
+    /// A hull of this length and beam, metres.
+    pub const fn new(length: f64, beam: f64) -> Self {
+        Self { length, beam }
+    }
+
     /// The rectangle at a pose.
     pub fn polygon(&self, pose: &Pose) -> ConvexPolygon {
         let (l, b) = (self.length / 2.0, self.beam / 2.0);

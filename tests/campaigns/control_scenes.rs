@@ -104,10 +104,7 @@ pub fn own_ship() -> OwnShip {
     OwnShip {
         pose: Pose::new(Vector::zeros(), 0.0),
         speed: 0.2,
-        hull: Hull {
-            length: 0.0,
-            beam: 0.0,
-        },
+        hull: Hull::new(0.0, 0.0),
         turning_radius: 2.0,
         speeds: vec![0.1, 0.2, 0.24],
         safety_margin: 0.0,

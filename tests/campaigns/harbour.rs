@@ -21,10 +21,7 @@ use super::{Report, Seeds};
 const TARGETS: usize = 3;
 
 pub fn harbour() -> Arc<Map> {
-    let origin = Geographic {
-        lat_deg: 63.444,
-        lon_deg: 10.39,
-    };
+    let origin = Geographic::new(63.444, 10.39);
     let earth = Georeference::new(origin).expect("valid");
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/trondheim-harbour.geojson");
     Arc::new(Map::read(&file, &earth).expect("a map"))
@@ -50,10 +47,7 @@ pub const FJORD: Waters = Waters {
     near: 250.0,
     land_margin: 10.0,
     safety_margin: 20.0,
-    hull: Hull {
-        length: 20.0,
-        beam: 6.0,
-    },
+    hull: Hull::new(20.0, 6.0),
     turning_radius: 40.0,
     speeds: [2.0, 4.0, 5.0],
     legs: 250.0..700.0,
@@ -63,10 +57,7 @@ pub const QUAYS: Waters = Waters {
     near: 25.0,
     land_margin: 2.0,
     safety_margin: 5.0,
-    hull: Hull {
-        length: 10.0,
-        beam: 3.0,
-    },
+    hull: Hull::new(10.0, 3.0),
     turning_radius: 20.0,
     speeds: [1.0, 3.0, 4.0],
     legs: 120.0..350.0,
@@ -117,10 +108,7 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
                 motion: Motion::Ship(ShipTrack {
                     pose: Pose::new(place, course),
                     speed: pace,
-                    hull: Hull {
-                        length: 1.2 * hull.length,
-                        beam: 1.2 * hull.beam,
-                    },
+                    hull: Hull::new(1.2 * hull.length, 1.2 * hull.beam),
                     position_std: 0.0,
                     speed_spread: 0.2,
                     course_spread: 0.03,

@@ -90,10 +90,7 @@ impl Placing {
     }
 
     fn hull(&self, hull: Hull) -> Hull {
-        Hull {
-            length: hull.length * self.length,
-            beam: hull.beam * self.length,
-        }
+        Hull::new(hull.length * self.length, hull.beam * self.length)
     }
 
     /// Returns the scene with this placement.
@@ -186,10 +183,7 @@ pub fn scene(seed: u64) -> Scenario {
         let ship = ShipTrack {
             pose: Pose::new(start, course),
             speed: pace,
-            hull: Hull {
-                length,
-                beam: length / 5.0,
-            },
+            hull: Hull::new(length, length / 5.0),
             position_std: rng.random_range(0.0..8.0),
             speed_spread: rng.random_range(0.0..0.2),
             course_spread: rng.random_range(0.0..0.07),
@@ -211,10 +205,7 @@ pub fn scene(seed: u64) -> Scenario {
         own_ship: OwnShip {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed,
-            hull: Hull {
-                length: 100.0,
-                beam: 20.0,
-            },
+            hull: Hull::new(100.0, 20.0),
             turning_radius: rng.random_range(100.0..400.0),
             speeds: vec![0.5 * speed, speed, 1.2 * speed],
             safety_margin: rng.random_range(30.0..150.0),

@@ -12,15 +12,15 @@ fn is_said_only(pointer: &str) -> bool {
         "/search_stats",
         "/timing",
         "/relaxation/",
+        "/escape/",
+        "/cost/first_turn/",
         "/optimal_control/intervals",
         "/optimal_control/start_intervals",
         "/optimal_control/defect",
         "/optimal_control/force_limits",
         "/optimal_control/starts",
         "/optimal_control/homotopy_classes",
-        "/path_time/legs",
-        "/path_time/obstacles",
-        "/path_time/corners",
+        "/path_time/",
         "/mission/alternatives",
         "/land/",
         "/obstacles/",
@@ -36,6 +36,9 @@ fn is_said_only(pointer: &str) -> bool {
     .any(|part| pointer.starts_with(part))
         // the largest risk may persist for a time interval
         || pointer.contains("max_risk_t_s")
+        || ["/tcpa_s", "/undisturbed_tcpa_s", "/undisturbed_dcpa_m"]
+            .iter()
+            .any(|unproven| pointer.ends_with(unproven))
         || ["roles", "scores", "breaches", "monitors", "manoeuvre"]
             .iter()
             .any(|judged| pointer.contains(&format!("/{judged}")))
@@ -55,9 +58,6 @@ pub fn run(each: usize) -> Report {
                 && ["surge_n", "sway_n", "yaw_nm"]
                     .iter()
                     .any(|k| pointer.ends_with(k));
-            // the barge is touched for a time interval; any time in it is a closest approach
-            let lasting = (name == "canal" && pointer == "/encounters/0/tcpa_s")
-                || pointer.ends_with("/undisturbed_tcpa_s");
             // relaxed amount of a ship domain
             let drawn = pointer.strip_suffix("/amount").is_some_and(|given_up| {
                 document.pointer(&format!("{given_up}/kind")) != Some(&json!("risk"))
@@ -67,7 +67,7 @@ pub fn run(each: usize) -> Report {
                 sample.starts_with("/trajectory/samples/")
                     && document.pointer(&format!("{sample}/speed_mps")) == Some(&json!(0.0))
             });
-            !(is_said_only(pointer) || one_sided || loose || lasting || drawn || waiting)
+            !(is_said_only(pointer) || one_sided || loose || drawn || waiting)
         };
         let mut pointers = Vec::new();
         numbers(&document, "", &mut pointers);

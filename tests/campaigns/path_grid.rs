@@ -66,13 +66,12 @@ impl Path {
                 } else {
                     start + duration
                 };
-                Segment {
-                    start: Pose::new(a, heading_of(b - a)),
-                    start_time: time(s[0]),
-                    duration: end - time(s[0]),
-                    speed: (b - a).norm() / (end - time(s[0])),
-                    turn_rate: 0.0,
-                }
+                Segment::straight(
+                    Pose::new(a, heading_of(b - a)),
+                    time(s[0]),
+                    end - time(s[0]),
+                    (b - a).norm() / (end - time(s[0])),
+                )
             })
             .collect()
     }

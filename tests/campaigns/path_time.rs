@@ -131,10 +131,7 @@ pub fn own(path: &Path, speed: f64) -> OwnShip {
     OwnShip {
         pose: Pose::new(path.points[0], first.y.atan2(first.x)),
         speed,
-        hull: Hull {
-            length: 10.0,
-            beam: 3.0,
-        },
+        hull: Hull::new(10.0, 3.0),
         turning_radius: 50.0,
         speeds: vec![speed],
         safety_margin: 5.0,

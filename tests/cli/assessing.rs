@@ -27,15 +27,6 @@ const ASSESSMENT: &str = r#"
 /velocities/0/targets/0/in_velocity_obstacle false
 /velocities/1/north_mps 6.0
 /velocities/2/targets/0/in_velocity_obstacle true
-/targets/0/sections/0/vertices_m/0/1 number
-/points/1/targets/0/alpha number
-/hold_course/targets/0/tcpa_s number
-/hold_course/targets/0/max_risk number
-/alteration/starboard_deg number
-/alteration/port_deg number
-/alteration/speed_mps number
-/velocities/0/targets/0/dcpa_m number
-/velocities/0/targets/0/tcpa_s number
 "#;
 
 #[test]
@@ -124,57 +115,15 @@ fn an_assessment_reads_as_a_table() {
 fn what_an_assessment_cannot_read_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let scenario = "scenarios/colregs/head-on.toml";
-    let allowed = "allowed: a header line east_m,north_m,t_s and at least one row";
-    let wide = "allowed: a number from -10000000 to 10000000";
-    for (name, contents, said) in [
-        (
-            "empty.csv",
-            "",
-            vec!["line 1: found an empty file", allowed],
-        ),
-        (
-            "bare.csv",
-            "east_m,north_m,t_s\n",
-            vec!["found no rows", allowed],
-        ),
-        (
-            "short.csv",
-            "east_m,north_m,t_s\n1,2,3\n4,5\n",
-            vec!["line 3: t_s: found no value: the row has 2 of 3", "1 fault"],
-        ),
-        (
-            "long.csv",
-            "east_m,north_m,t_s\n1,2,3,4\n",
-            vec!["line 2: found 4 values; allowed: 3: east_m,north_m,t_s"],
-        ),
-        (
-            "early.csv",
-            "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n",
-            vec![
-                "2: t_s: found -0.5; allowed: a number from 0 to 1000000",
-                "3: east_m: found the text \"x\"",
-                "3: north_m: found nothing",
-                wide,
-            ],
-        ),
-        (
-            "other.csv",
-            "east_mps,north_mps\n1,2\n",
-            vec![
-                "line 1: found an unknown column \"east_mps\"",
-                "line 1: t_s: found no such column",
-            ],
-        ),
-    ] {
-        let file = write(folder.path(), name, contents);
-        let mut assert = searoom(&["assess", scenario, "--points", &file])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(name));
-        for said in said {
-            assert = assert.stderr(contains(said));
-        }
-    }
+    let file = write(
+        folder.path(),
+        "early.csv",
+        "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n",
+    );
+    searoom(&["assess", scenario, "--points", &file])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("early.csv: 3 faults").and(contains("line 2: t_s: found -0.5; allowed:")));
     let missing = text(&folder.path().join("missing.csv")).to_owned();
     searoom(&["assess", scenario, "--velocities", &missing])
         .code(2)
@@ -183,13 +132,7 @@ fn what_an_assessment_cannot_read_is_named() {
         .code(2)
         .stderr(contains("not a regular file"));
     for (option, value, said) in [
-        (
-            "--at",
-            "1,2",
-            "found 2 values; allowed: 3: east_m,north_m,t_s",
-        ),
         ("--at", "1,2,-1", "t_s: found -1; allowed: a number from 0"),
-        ("--at", "nan,2,1", "east_m: found NaN"),
         ("--velocity", "1,101", "north_mps: found 101"),
         ("--section", "-1", "t_s: found -1"),
     ] {
@@ -200,7 +143,7 @@ fn what_an_assessment_cannot_read_is_named() {
     }
     // faults of the scenario and of the rows together
     let bad = write(folder.path(), "bad.toml", "title = 3");
-    let empty = text(&folder.path().join("empty.csv")).to_owned();
+    let empty = write(folder.path(), "empty.csv", "");
     searoom(&["assess", &bad, "--points", &empty])
         .code(2)
         .stderr(contains("title: found 3").and(contains("an empty file")));

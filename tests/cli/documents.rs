@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use assert_cmd::Command;
+use super::program::{document, searoom, stdout, write};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/documents.md");
@@ -25,19 +25,9 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-fn printed(args: &[&str]) -> Vec<u8> {
-    let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .output()
-        .expect("runs");
-    output.stdout
-}
-
 fn keys_of(args: &[&str]) -> BTreeSet<String> {
-    let document: Value = serde_json::from_slice(&printed(args)).expect("one document");
     let mut found = BTreeSet::new();
-    keys(&document, &mut found);
+    keys(&document(&searoom(args)), &mut found);
     found
 }
 
@@ -60,11 +50,9 @@ fn every_key_is_on_the_page() {
 #[test]
 fn every_key_of_a_verification_is_on_its_page() {
     let folder = tempfile::tempdir().expect("a folder");
-    let plan = folder.path().join("plan.json");
-    let printed = printed(&["plan", "scenarios/harbour/munkholmen.toml", "--json"]);
-    std::fs::write(&plan, printed).expect("written");
-    let plan = plan.to_str().expect("text");
-    named(VERIFICATION, &keys_of(&["verify", plan, "--json"]));
+    let plan = searoom(&["plan", "scenarios/harbour/munkholmen.toml", "--json"]);
+    let plan = write(folder.path(), "plan.json", stdout(&plan));
+    named(VERIFICATION, &keys_of(&["verify", &plan, "--json"]));
 }
 
 #[cfg(feature = "recording")]
@@ -73,7 +61,7 @@ fn every_key_of_a_recording_is_on_the_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.rrd");
     let file = file.to_str().expect("text");
-    printed(&["plan", "scenarios/colregs/head-on.toml", "--rrd", file]);
+    searoom(&["plan", "scenarios/colregs/head-on.toml", "--rrd", file]).success();
     named(PAGE, &keys_of(&["inspect", "--json", file]));
 }
 

@@ -7,25 +7,27 @@ use searoom::report::figure::{Figure, assessment_figure};
 use searoom::study::assess::OwnSituation;
 use searoom::target::{TimedVelocitySet, Uncertainty};
 
-fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
-    let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)];
-    let corners = corners.map(|(x, y)| center + Vector::new(x * length, y * beam));
-    ConvexPolygon::from_vertices(&corners).expect("convex")
-}
-
 /// One target of each kind.
 fn targets() -> Vec<Obstacle> {
     let place = Vector::new(400.0, 100.0);
-    let velocities = rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
+    let velocities = ConvexPolygon::rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
     let shape = nalgebra::Matrix2::new(900.0, 0.0, 0.0, 400.0);
     let spread = nalgebra::Matrix2::new(0.04, 0.01, 0.01, 0.09);
     let timed = [(60.0, 0.2), (f64::INFINITY, 0.6)].map(|(until, wide)| {
-        TimedVelocitySet::new(until, rectangle(Vector::new(0.0, -1.5), wide, wide))
+        TimedVelocitySet::new(
+            until,
+            ConvexPolygon::rectangle(Vector::new(0.0, -1.5), wide, wide),
+        )
     });
-    let initial = rectangle(Vector::new(200.0, 500.0), 20.0, 20.0);
+    let initial = ConvexPolygon::rectangle(Vector::new(200.0, 500.0), 20.0, 20.0);
     let changing = Uncertainty::new(initial, timed.to_vec());
     vec![
-        PolytopeObstacle::new("polygons", rectangle(place, 30.0, 12.0), velocities).into(),
+        PolytopeObstacle::new(
+            "polygons",
+            ConvexPolygon::rectangle(place, 30.0, 12.0),
+            velocities,
+        )
+        .into(),
         EllipsoidObstacle::new(
             "ellipses",
             Ellipse::new(-place, shape).expect("a shape"),
@@ -54,21 +56,9 @@ fn the_same_figure_is_the_same_bytes() {
     let svg = drawn().svg();
     assert_eq!(svg, drawn().svg());
     assert_eq!(drawn().png().expect("drawn"), drawn().png().expect("drawn"));
-    for text in [
-        "East [m]",
-        "North [m]",
-        "East velocity [m/s]",
-        "North velocity [m/s]",
-        "dCPA [m]",
-        "risk",
-        "Risk at 80 s",
-        "velocity obstacle",
-        "own velocity",
-        "section at 0 s",
-        "polygons",
-        "ellipses",
-        "slabs",
-    ] {
+    let texts = "East [m]; North [m]; East velocity [m/s]; North velocity [m/s]; dCPA [m]; risk; \
+        Risk at 80 s; velocity obstacle; own velocity; section at 0 s; polygons; ellipses; slabs";
+    for text in texts.split("; ") {
         assert!(svg.contains(text), "{text}");
     }
     assert!(
@@ -98,7 +88,7 @@ fn every_situation_can_be_drawn() {
         PolytopeObstacle::new("buoy", point(Vector::new(9.0, 9.0)), point(Vector::zeros())).into();
     let over: Obstacle = PolytopeObstacle::new(
         "over",
-        rectangle(Vector::zeros(), 9.0, 9.0),
+        ConvexPolygon::rectangle(Vector::zeros(), 9.0, 9.0),
         point(Vector::zeros()),
     )
     .into();

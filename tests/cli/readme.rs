@@ -1,22 +1,15 @@
 //! Checks that the examples in the documentation match the program's output.
 
 use std::path::PathBuf;
-use std::process::Command;
 
+use super::program::{run, searoom, stdout};
 use searoom::report::COMPARISON_COLUMNS;
 use searoom::scenario::{Fault, Scenario};
 
 const BEGIN: &str = "all but the time -->\n```text\n";
 const END: &str = "```\n<!-- suite end -->";
 
-const ASSESS: &[&str] = &[
-    "assess",
-    "scenarios/colregs/give-way.toml",
-    "--at",
-    "750,0,150",
-    "--velocity",
-    "4.8,-1.4",
-];
+const ASSESS: &str = "assess scenarios/colregs/give-way.toml --at 750,0,150 --velocity 4.8,-1.4";
 const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/cli/readme.rs -->\n```text\n";
 const ASSESS_END: &str = "```\n<!-- assess end -->";
 
@@ -28,27 +21,12 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(file(name)).expect("a document of the project")
 }
 
-/// Output of the program.
-fn searoom(args: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .output()
-        .expect("started");
-    assert!(output.status.success(), "{output:?}");
-    String::from_utf8(output.stdout).expect("text")
-}
-
 /// Words of each line without table rules and times; the times precede the last two columns.
 fn untimed(table: &str) -> Vec<Vec<&str>> {
     table
         .lines()
         .map(|line| line.split_whitespace().collect::<Vec<_>>())
-        .filter(|words| {
-            !words
-                .iter()
-                .all(|w| w.chars().all(|c| matches!(c, '─' | '═')))
-        })
+        .filter(|words| !words.concat().trim_matches(['─', '═']).is_empty())
         .map(|mut words| {
             if matches!(words.last(), Some(&("yes" | "NO" | "–"))) {
                 words.remove(words.len() - 3);
@@ -72,7 +50,7 @@ fn the_readme_shows_the_table_of_the_suite() {
     let readme = read("README.md");
     let (_, rest) = readme.split_once(BEGIN).expect("the table's begin");
     let (shown, _) = rest.split_once(END).expect("the table's end");
-    let table = searoom(&["suite", "scenarios/colregs"]);
+    let table = stdout(&searoom(&["suite", "scenarios/colregs"]).success());
     assert_eq!(
         untimed(shown),
         untimed(&table),
@@ -85,8 +63,8 @@ fn the_guide_shows_an_assessment() {
     let guide = read("docs/assess.md");
     let (_, rest) = guide.split_once(ASSESS_BEGIN).expect("the begin");
     let (shown, _) = rest.split_once(ASSESS_END).expect("the end");
-    assert!(guide.contains(&format!("searoom {}\n", ASSESS.join(" "))));
-    let printed = searoom(ASSESS);
+    assert!(guide.contains(&format!("searoom {ASSESS}\n")));
+    let printed = stdout(&run(ASSESS).success());
     assert_eq!(
         shown, printed,
         "docs/assess.md is out of date; the text of today:\n{printed}"
@@ -189,17 +167,10 @@ fn the_gallery_is_small_and_shows_what_there_is() {
 
 /// README and all pages in docs.
 fn pages() -> Vec<String> {
-    let docs = std::fs::read_dir(file("docs")).expect("a folder");
-    let names = docs.map(|e| {
-        e.expect("an entry")
-            .file_name()
-            .to_string_lossy()
-            .into_owned()
-    });
+    let docs = std::fs::read_dir(file("docs")).expect("a folder").flatten();
+    let names = docs.map(|entry| format!("docs/{}", entry.file_name().to_string_lossy()));
     let pages = names.filter(|name| name.ends_with(".md"));
-    let mut all: Vec<String> = pages.map(|name| format!("docs/{name}")).collect();
-    all.push("README.md".to_owned());
-    all
+    pages.chain(["README.md".to_owned()]).collect()
 }
 
 #[test]

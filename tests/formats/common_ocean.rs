@@ -2,7 +2,7 @@
 
 use searoom::frame::Vector;
 use searoom::geometry::ConvexSet;
-use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Assumption, Contents, Imported, Situation};
 use searoom::scenario::{Fault, Scenario};
 
 const HEAD_ON: &str = include_str!("../../scenarios/commonocean/sample-head-on.xml");
@@ -10,10 +10,7 @@ const FAIRWAY: &str = include_str!("../../scenarios/commonocean/sample-fairway.x
 
 fn read(text: &str) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
     match Contents::parse(text, &Assumed::default())? {
-        Contents::Situations { format, situations } => {
-            assert_eq!(format, Format::CommonOcean);
-            Ok(situations)
-        }
+        Contents::Situations(situations) => Ok(situations),
         // a text cut before its first tag is not XML
         _ => Ok(Vec::new()),
     }
@@ -144,66 +141,38 @@ fn a_ship_that_appears_late_and_slows_is_in_her_sets() {
     }
 }
 
+/// A text of the head-on sample, what replaces it, and the place of the fault.
+const MISTAKES: &str = r#"
+2022a | 1999 | commonOcean
+timeStepSize="10.0"  | | commonOcean
+timeStepSize="10.0" | timeStepSize="0" | commonOcean
+<type>cargoship</type> | <type>kayak</type> | SHIP/type
+<type>cargoship</type> | | SHIP
+<length>90.0</length> | | SHIP/shape/rectangle
+<length>90.0< | <length>ninety< | SHIP/shape/rectangle/length
+<y>2000.0< | <y>4000000000< | SHIP/initialState/position/point/y
+<y>1950.0< | <y>-1950.0< | SHIP
+<time><exact>2< | <time><exact>1< | SHIP
+<y>-2000.0</y></point></position> | <y>-2000.0</y></point></position><velocity><exact>-5</exact></velocity> | OWN
+<time><intervalStart>60< | <time><intervalStart>160< | OWN/goalState/time
+<position>%<rectangle> | <position>%<square> |
+planningProblem id="1" | planningProblem id="1" id="1" |
+"#;
+
 #[test]
 fn one_mistake_is_one_fault_with_its_line() {
-    let own = "commonOcean/planningProblem[1]";
     let ship = "commonOcean/dynamicObstacle[11]";
-    for (from, to, path) in [
-        ("2022a", "1999", "commonOcean".to_owned()),
-        ("timeStepSize=\"10.0\" ", "", "commonOcean".to_owned()),
-        (
-            "timeStepSize=\"10.0\"",
-            "timeStepSize=\"0\"",
-            "commonOcean".to_owned(),
-        ),
-        (
-            "<type>cargoship</type>",
-            "<type>kayak</type>",
-            format!("{ship}/type"),
-        ),
-        ("<type>cargoship</type>", "", ship.to_owned()),
-        (
-            "<length>90.0</length>",
-            "",
-            format!("{ship}/shape/rectangle"),
-        ),
-        (
-            "<length>90.0<",
-            "<length>ninety<",
-            format!("{ship}/shape/rectangle/length"),
-        ),
-        (
-            "<y>2000.0<",
-            "<y>4000000000<",
-            format!("{ship}/initialState/position/point/y"),
-        ),
-        ("<y>1950.0<", "<y>-1950.0<", ship.to_owned()),
-        ("<time><exact>2<", "<time><exact>1<", ship.to_owned()),
-        (
-            "<y>-2000.0</y></point></position>",
-            "<y>-2000.0</y></point></position><velocity><exact>-5</exact></velocity>",
-            own.to_owned(),
-        ),
-        (
-            "<time><intervalStart>60<",
-            "<time><intervalStart>160<",
-            format!("{own}/goalState/time"),
-        ),
-        (
-            "<position>\n        <rectangle>",
-            "<position>\n        <square>",
-            String::new(),
-        ),
-        (
-            "planningProblem id=\"1\"",
-            "planningProblem id=\"1\" id=\"1\"",
-            String::new(),
-        ),
-    ] {
+    for row in MISTAKES.lines().filter(|row| !row.is_empty()) {
+        let row = row.replace('%', "\n        ").replace("SHIP", ship);
+        let row = row.replace("OWN", "commonOcean/planningProblem[1]");
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [from, to, path] = cells[..] else {
+            panic!("{row}");
+        };
         assert!(HEAD_ON.contains(from), "{from}");
         let found = faults(&HEAD_ON.replacen(from, to, 1));
         let paths: Vec<&str> = found.iter().map(|f| f.path.as_str()).collect();
-        assert_eq!(paths, [path.as_str()], "{from} -> {to}: {found:?}");
+        assert_eq!(paths, [path], "{from} -> {to}: {found:?}");
         assert!(found[0].line.is_some(), "{found:?}");
     }
     // a ship without a shape is a fault until the user gives its size

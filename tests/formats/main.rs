@@ -8,7 +8,7 @@ use std::path::Path;
 use searoom::frame::Vector;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, RelaxationLevel, Run};
-use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Assumption, Contents, Imported, Situation};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{Placement, random_traffic};
 use serde_json::{Value, json};
@@ -21,7 +21,7 @@ fn benchmark(name: &str) -> Vec<Situation> {
 }
 
 fn situations(contents: Contents) -> Vec<Situation> {
-    let Contents::Situations { situations, .. } = contents else {
+    let Contents::Situations(situations) = contents else {
         panic!("situations");
     };
     let good = |s: Result<Situation, _>| s.expect("no faults");
@@ -52,7 +52,7 @@ fn imported(situation: &Situation) -> Imported {
 
 fn paths(text: &str, assumed: &Assumed) -> Vec<String> {
     let faults = match Contents::parse(text, assumed) {
-        Ok(Contents::Situations { situations, .. }) => {
+        Ok(Contents::Situations(situations)) => {
             let mut faults = Vec::new();
             for situation in situations {
                 match situation.map(|s| s.scenario(assumed)) {
@@ -294,12 +294,9 @@ fn every_fault_of_a_file_is_named_at_once() {
 fn a_broken_case_of_imazu_costs_itself_alone() {
     let text = include_str!("../../scenarios/imazu/imazu.json");
     let broken = text.replacen("\"course_deg\": 270.0", "\"course_deg\": \"west\"", 1);
-    let Ok(Contents::Situations { format, situations }) =
-        Contents::parse(&broken, &Assumed::default())
-    else {
+    let Ok(Contents::Situations(situations)) = Contents::parse(&broken, &Assumed::default()) else {
         panic!("situations");
     };
-    assert_eq!(format, Format::Imazu);
     assert_eq!(situations.len(), 22);
     let bad: Vec<_> = situations.iter().filter_map(|s| s.as_ref().err()).collect();
     assert_eq!(bad.len(), 1);
@@ -364,7 +361,7 @@ fn hostile_text_never_panics() {
 
 fn paths_or_good(text: &str) -> usize {
     match Contents::parse(text, &Assumed::default()) {
-        Ok(Contents::Situations { situations, .. }) => situations
+        Ok(Contents::Situations(situations)) => situations
             .into_iter()
             .filter(|s| {
                 s.as_ref()

@@ -51,10 +51,7 @@ impl Declared {
     /// Converts to a DNV file; the inverse projection gives degrees.
     fn document(&self) -> String {
         let mut document = dnv_01();
-        let origin = searoom::frame::Geographic {
-            lat_deg: 58.763449,
-            lon_deg: 10.490654,
-        };
+        let origin = searoom::frame::Geographic::new(58.763449, 10.490654);
         let earth = searoom::frame::Georeference::new(origin).expect("on earth");
         let waypoints: Vec<Value> = self
             .points
@@ -139,7 +136,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let declared = Declared::random(&mut rng);
         let situation =
             match Contents::parse(&declared.document(), &Assumed::default()).expect("JSON") {
-                Contents::Situations { mut situations, .. } => match situations.remove(0) {
+                Contents::Situations(mut situations) => match situations.remove(0) {
                     Ok(situation) => situation,
                     // a turn that does not fit is refused
                     Err(faults) => {

@@ -24,13 +24,12 @@ fn a_ship_that_does_not_give_way_is_hit() {
             let scenario = random_encounter(kind, seed, Placement::Random)
                 .expect("drawn")
                 .scenario;
-            let undisturbed = Trajectory::new(vec![Segment {
-                start: scenario.own_ship.pose,
-                start_time: 0.0,
-                duration: scenario.desired.duration(),
-                speed: scenario.own_ship.speed,
-                turn_rate: 0.0,
-            }])
+            let undisturbed = Trajectory::new(vec![Segment::straight(
+                scenario.own_ship.pose,
+                0.0,
+                scenario.desired.duration(),
+                scenario.own_ship.speed,
+            )])
             .expect("one line");
             let ship = scenario.targets[0].ship().expect("a ship");
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

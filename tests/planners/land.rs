@@ -71,10 +71,7 @@ fn faults(folder: &Path, text: &str) -> Vec<String> {
 fn degrees_and_metres_are_one_plane_and_the_map_lies_on_it() {
     let folder = folder();
     let scenario = read(folder.path(), SCENARIO).expect("valid");
-    let origin = Geographic {
-        lat_deg: 63.44,
-        lon_deg: 10.399,
-    };
+    let origin = Geographic::new(63.44, 10.399);
     let earth = Georeference::new(origin).expect("valid");
     assert_eq!(scenario.earth, Some(earth));
     let at = |lat_deg, lon_deg| earth.to_plane(Geographic { lat_deg, lon_deg });
@@ -169,10 +166,7 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
 #[test]
 fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
     let folder = folder();
-    let origin = Geographic {
-        lat_deg: 63.44,
-        lon_deg: 10.399,
-    };
+    let origin = Geographic::new(63.44, 10.399);
     let earth = Georeference::new(origin).expect("valid");
     let corners = [
         (-1.0, -1.0),

@@ -58,9 +58,7 @@ fn one_leg(obstacles: Vec<Obstacle>, horizon: f64) -> Drawn {
 }
 
 fn square(name: &str, center: Vector, half: f64, velocity: Vector) -> Obstacle {
-    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let corners = corners.map(|(x, y)| center + Vector::new(x, y) * half);
-    let initial = ConvexPolygon::hull(&corners).expect("finite");
+    let initial = ConvexPolygon::rectangle(center, half, half);
     PolytopeObstacle::new(name, initial, ConvexPolygon::point(velocity)).into()
 }
 

@@ -180,14 +180,7 @@ fn the_least_alteration_is_that_of_a_dense_search() {
 
 #[test]
 fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
-    let around = |center: Vector| {
-        let sides = [(10.0, -5.0), (10.0, 5.0), (-10.0, 5.0), (-10.0, -5.0)];
-        let corners: Vec<Vector> = sides
-            .iter()
-            .map(|&(x, y)| center + Vector::new(x, y))
-            .collect();
-        ConvexPolygon::hull(&corners).expect("finite")
-    };
+    let around = |center: Vector| ConvexPolygon::rectangle(center, 10.0, 5.0);
     let at = |center: Vector, velocity: Vector| -> Obstacle {
         PolytopeObstacle::new("p", around(center), ConvexPolygon::point(velocity)).into()
     };

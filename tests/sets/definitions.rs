@@ -29,16 +29,15 @@ fn the_largest_risk_over_a_segment_of_velocities() {
             at(1.3447887713747981, -0.7744303115552711),
         ]),
     );
-    let s = Segment {
-        start: Pose::new(
+    let s = Segment::straight(
+        Pose::new(
             at(99.65467289116157, -41.06950535229376),
             3.1943180518723153,
         ),
-        start_time: 0.0,
-        duration: 34.054769876637884,
-        speed: 5.8175559313373135,
-        turn_rate: 0.0,
-    };
+        0.0,
+        34.054769876637884,
+        5.8175559313373135,
+    );
     let sampled = (0..20_000)
         .map(|i| f64::from(i) * s.duration / 20_000.0)
         .map(|t| o.risk(s.pose_at(t).position, t))
@@ -75,13 +74,12 @@ fn the_largest_risk_where_the_velocities_lie_along_a_face() {
             let o = PolytopeObstacle::new("o", initial, hull(&[fastest * 0.01, fastest]));
             let (half, side, share) = meeting;
             let meets = fastest * (half * share) + abeam * side;
-            let line = Segment {
-                start: Pose::new(meets - direction(own) * (speed * half), own),
-                start_time: 0.0,
-                duration: 2.0 * half,
+            let line = Segment::straight(
+                Pose::new(meets - direction(own) * (speed * half), own),
+                0.0,
+                2.0 * half,
                 speed,
-                turn_rate: 0.0,
-            };
+            );
             let exact = o.peak_risk(&line).risk;
             let searched = SlabObstacle::new("o", Obstacle::from(o).sets())
                 .expect("one set")
@@ -96,10 +94,7 @@ fn the_largest_risk_where_the_velocities_lie_along_a_face() {
 
 #[test]
 fn of_a_flat_minimum_the_earliest_instant_is_told() {
-    let square = hull(
-        &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)]
-            .map(|(x, y)| Vector::new(x, y)),
-    );
+    let square = ConvexPolygon::rectangle(Vector::zeros(), 10.0, 10.0);
     let o = PolytopeObstacle::new("x", square, ConvexPolygon::point(Vector::zeros()));
     let past = o.closest_approach(
         Vector::new(-100.0, 15.0),

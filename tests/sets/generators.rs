@@ -136,13 +136,7 @@ pub fn line() -> impl Strategy<Value = Segment> {
     let start = (vector(200.0), -3.2..3.2);
     let start_time = prop_oneof![Just(0.0), 0.0..40.0];
     (start, start_time, 1.0..120.0, 0.5..8.0).prop_map(|(start, start_time, duration, speed)| {
-        Segment {
-            start: Pose::new(start.0, start.1),
-            start_time,
-            duration,
-            speed,
-            turn_rate: 0.0,
-        }
+        Segment::straight(Pose::new(start.0, start.1), start_time, duration, speed)
     })
 }
 

@@ -54,16 +54,16 @@ impl Map {
 
     /// Maps a segment, without current.
     fn segment(&self, s: &Segment) -> Segment {
-        Segment {
-            start: Pose::new(
+        Segment::new(
+            Pose::new(
                 self.place(s.start.position),
                 heading_of(self.linear * direction(s.start.heading)),
             ),
-            start_time: s.start_time * self.stretch,
-            duration: s.duration * self.stretch,
-            speed: s.speed * self.scale / self.stretch,
-            turn_rate: s.turn_rate * self.linear.determinant().signum() / self.stretch,
-        }
+            s.start_time * self.stretch,
+            s.duration * self.stretch,
+            s.speed * self.scale / self.stretch,
+            s.turn_rate * self.linear.determinant().signum() / self.stretch,
+        )
     }
 
     fn set(&self, set: &ConvexSet, of_velocities: bool) -> ConvexSet {

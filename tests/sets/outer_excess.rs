@@ -40,9 +40,7 @@ fn ellipses(name: &str, initial: Ellipse, velocity: Ellipse) -> String {
 }
 
 fn rectangle(along: f64, across: f64) -> ConvexPolygon {
-    let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-    let corners = corners.map(|(x, y)| Vector::new(x * along, y * across));
-    ConvexPolygon::hull(&corners).expect("finite")
+    ConvexPolygon::rectangle(Vector::zeros(), along, across)
 }
 
 /// Compares the smallest ellipses around two rectangles with the polytope of the rectangles.

@@ -115,13 +115,12 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
         let initial = Ellipse::new(Vector::zeros(), shape).expect("a shape");
         let o = EllipsoidObstacle::new("x", initial, growing);
         for (own, speed) in [(100.0, 5.0), (100.0, 0.0), (-60.0, 0.0), (11.0, 0.0)] {
-            let line = Segment {
-                start: Pose::new(Vector::new(own, 0.0), std::f64::consts::PI),
-                start_time: 0.0,
-                duration: 400.0,
+            let line = Segment::straight(
+                Pose::new(Vector::new(own, 0.0), std::f64::consts::PI),
+                0.0,
+                400.0,
                 speed,
-                turn_rate: 0.0,
-            };
+            );
             let found = o.first_contact(&line, 0.0).expect("reached in the end");
             let reach = |t: f64| o.support(Vector::new(own.signum(), 0.0), t).value;
             let gap = (line.pose_at(found).position.x.abs() - reach(found)).abs();
@@ -136,13 +135,13 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
 fn numbers_that_overflow_are_contact() {
     let circle = |r: f64| Ellipse::new(Vector::zeros(), Matrix2::identity() * r).expect("a shape");
     let o = EllipsoidObstacle::new("x", circle(100.0), circle(1.0));
-    let lost = Segment {
-        start_time: 0.0,
-        speed: 1e305,
-        duration: 1e5,
-        turn_rate: 1e-7,
-        start: Pose::new(Vector::new(150.0, -80.0), 1.0),
-    };
+    let lost = Segment::new(
+        Pose::new(Vector::new(150.0, -80.0), 1.0),
+        0.0,
+        1e5,
+        1e305,
+        1e-7,
+    );
     assert!(lost.is_valid() && o.first_contact(&lost, 0.0).is_some());
     // a circle of one metre, traversed more often than the resolution of the time
     let whirl = Segment {
@@ -161,13 +160,13 @@ fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() 
     // a circle of 20 m about (30, 0) approaches the origin to 10 m: it touches, and slightly
     // farther it does not
     for (shift, meets) in [(0.0, true), (-1e-7, true), (1e-7, false)] {
-        let arc = Segment {
-            start: Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),
-            start_time: 0.0,
-            duration: std::f64::consts::TAU * 20.0 / 5.0,
-            speed: 5.0,
-            turn_rate: 0.25,
-        };
+        let arc = Segment::new(
+            Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),
+            0.0,
+            std::f64::consts::TAU * 20.0 / 5.0,
+            5.0,
+            0.25,
+        );
         assert_eq!(o.first_contact(&arc, 0.0).is_some(), meets, "{shift}");
     }
 }

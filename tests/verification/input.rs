@@ -66,6 +66,7 @@ certain contact | /max_risk = 1.0 | max_risk: found 1
 a word | /trajectory/segments/3/speed_mps = "fast" | trajectory.segments[3].speed_mps: invalid type: string
 no targets | /targets remove | missing field `targets`
 no radius | /own_ship/turning_radius_m = 0.0 | own_ship.turning_radius_m: found 0; allowed: a positive number
+too fast | /own_ship/speed_mps = 101.0 | own_ship.speed_mps
 no speed | /own_ship/speeds_mps = [] | own_ship.speeds_mps: found no speed above 0
 no waypoint | /mission/waypoints = [] | mission.leg_speeds_mps: found 1 speeds for 0 waypoints
 one waypoint | /mission/waypoints/last remove; /mission/leg_speeds_mps = [] | mission: found what makes no way

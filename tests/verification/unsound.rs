@@ -3,14 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use searoom::document::{PlanDocument, VerifiedPlanDocument};
 use searoom::evaluation::{Freedom, Request, evaluate};
 use searoom::frame::Vector;
-use searoom::pipeline;
 use searoom::planner::Planner;
 use searoom::planner::path_time::PathTimePlanner;
 use searoom::planner::space_time::SpaceTimePlanner;
-use searoom::report::verification_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Segment;
 use searoom::verification::verify;
@@ -19,7 +16,7 @@ use serde_json::{Value, json};
 use crate::alter::{at, list};
 use crate::documents::{checked, document, inside, scenario};
 
-fn fault(name: &str) -> String {
+pub fn fault(name: &str) -> String {
     let path = format!("{}/tests/faults/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(path).expect("a fault")
 }
@@ -106,31 +103,15 @@ fn a_path_is_sailed_to_its_end() {
     "#;
     let mut scenario = Scenario::parse(text).expect("a scenario");
     let own = &scenario.own_ship;
-    let wait = |duration: f64| Segment {
-        start: own.pose,
-        start_time: 0.0,
-        duration,
-        speed: 0.0,
-        turn_rate: 0.0,
-    };
+    let wait = |duration: f64| Segment::straight(own.pose, 0.0, duration, 0.0);
     let waypoints = [scenario.desired.waypoints()];
     for freedom in [Freedom::Limits, Freedom::Paths(&waypoints)] {
         for duration in [0.0, 100.0] {
-            let request = Request {
-                segments: &[wait(duration)],
-                own,
+            let found = evaluate(&Request {
                 freedom,
-                desired: &scenario.desired,
-                targets: &[],
-                sets: &[],
-                land: &[],
-                land_margin: 0.0,
-                horizon: 900.0,
-                time_weight: 25.0,
-                max_risk: 0.0,
-                arrival_hold: 60.0,
-            };
-            let found = evaluate(&request).violations;
+                ..Request::new(&[wait(duration)], own, &scenario.desired, 900.0)
+            });
+            let found = found.violations;
             assert!(
                 found.iter().any(|v| v.what.starts_with("arrival: ")),
                 "{found:?}"
@@ -159,13 +140,12 @@ fn a_path_is_sailed_to_its_end() {
 fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
     let mut scenario = scenario("colregs/head-on.toml");
     scenario.own_ship.speeds = vec![1e6];
-    let run = [Segment {
-        start: scenario.own_ship.pose,
-        start_time: 0.0,
-        duration: 1500.0 / 1e6,
-        speed: 1e6,
-        turn_rate: 0.0,
-    }];
+    let run = [Segment::straight(
+        scenario.own_ship.pose,
+        0.0,
+        1500.0 / 1e6,
+        1e6,
+    )];
     let place = scenario.own_ship.pose.position + Vector::new(700.123_456, 0.0);
     let corners = [(0.0, -1.0), (1e-3, 0.0), (0.0, 1.0)].map(|(x, y)| place + Vector::new(x, y));
     let [wall, still] = [&corners[..], &[Vector::zeros()]]
@@ -174,18 +154,9 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
         "wall", wall, still,
     )];
     let found = evaluate(&Request {
-        segments: &run,
-        own: &scenario.own_ship,
         freedom: Freedom::Any,
-        desired: &scenario.desired,
-        targets: &[],
         sets: &sets,
-        land: &[],
-        land_margin: 0.0,
-        horizon: 900.0,
-        time_weight: 25.0,
-        max_risk: 0.0,
-        arrival_hold: 60.0,
+        ..Request::new(&run, &scenario.own_ship, &scenario.desired, 900.0)
     });
     let through = |v: &searoom::evaluation::Violation| v.what.contains("'wall': distance");
     assert!(
@@ -313,86 +284,6 @@ fn what_is_entered_after_a_release_is_found() {
             entered.is_some_and(|v| (v.time - time).abs() < 3.0),
             "{found:#?}"
         );
-    }
-}
-
-/// Three ships pass on parallel courses: every view says of each what is hers.
-#[test]
-fn each_target_has_its_own_clearance_in_every_view() {
-    let ship = |name: &str, north: f64| {
-        format!(
-            "[[targets]]\nname = \"{name}\"\nposition = {{ east_m = 1000, north_m = {north} }}\ncourse_deg = 270\nspeed_mps = 5\nlength_m = 60\nbeam_m = 12\n"
-        )
-    };
-    let text = format!(
-        "title = \"three\"\nhorizon_s = 400.0\n{}{}{}{}{}",
-        "own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }\n",
-        "mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }] }\nplanner = { compliance = \"none\" }\n",
-        ship("far", 410.0),
-        ship("near", 210.0),
-        ship("middle", -310.0),
-    );
-    let scenario = Scenario::parse(&text).expect("a scenario");
-    let run = pipeline::run(scenario);
-    let plan = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
-    let found = verify(&plan).expect("a plan document");
-    assert!(found.verified(), "{:?}", found.violations);
-    let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &found);
-    let text = verification_text(&found, false);
-    for (index, (name, clearance)) in [("far", 400.0), ("near", 200.0), ("middle", 300.0)]
-        .into_iter()
-        .enumerate()
-    {
-        let close = |value: f64| (value - clearance).abs() < 1e-6;
-        assert_eq!(found.targets[index], name);
-        let passages = &found.evaluation.as_ref().expect("a motion").passages;
-        assert!(
-            close(passages[index].min_clearance),
-            "{:?}",
-            passages[index]
-        );
-        let margin = &entry.targets[index];
-        assert_eq!(margin.target, name);
-        assert!(
-            margin.min_clearance_m.is_some_and(close) && margin.dcpa_m.is_some_and(close),
-            "{margin:?}"
-        );
-        let row = text
-            .lines()
-            .find(|line| line.trim_start().starts_with(name));
-        let row: Vec<&str> = row.expect("a row").split_whitespace().collect();
-        assert_eq!(
-            row[3..5],
-            [format!("{clearance:.1}"), format!("{clearance:.1}")],
-            "{text}"
-        );
-    }
-    assert_eq!(
-        found.evaluation.expect("a motion").min_clearance,
-        entry.targets[1].min_clearance_m.expect("one")
-    );
-}
-
-/// Plans that are what they say: something given up when the time was out, a node at a rounding
-/// past a whole second, ellipses and sets at the ends of the numbers, an arc of a millimetre at the
-/// end of a long way; a ship that stands on from beside its leg by a rounding; one that has arrived
-/// within a set; a plan until the horizon near a ship that turns.
-#[test]
-fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
-    for name in [
-        "deadline-without-relaxation",
-        "forces-node",
-        "ellipse-1e-300",
-        "left-set",
-        "millimetre-radius",
-        "hold-with-a-rounding",
-        "arrived-inside",
-        "horizon-at-a-turn",
-        "leg-ends-at-the-horizon",
-    ] {
-        let scenario = Scenario::parse(&fault(&format!("{name}.toml"))).expect(name);
-        let found = checked(&document(scenario));
-        assert!(found.verified(), "{name}: {:#?}", found.violations);
     }
 }
 

@@ -124,7 +124,7 @@ fn of_file(
             found: found.clone(),
             source: Source::File,
         })),
-        Ok(Contents::Situations { situations, .. }) => {
+        Ok(Contents::Situations(situations)) => {
             for situation in situations {
                 scenes.push(match situation {
                     Ok(situation) => Ok(Scene {

@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
+use products::Failure;
 use status::ExitStatus;
 
 /// Escape codes of red, green, yellow, and their ends, as used in tables.
@@ -79,10 +80,7 @@ impl Output {
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
             Ok(text) => self.result(text.trim_end()),
-            Err(error) => {
-                self.error(&format_args!("{error:#}"));
-                ExitStatus::InternalFault
-            }
+            Err(error) => self.fault(&format_args!("{error:#}")),
         }
     }
 
@@ -97,6 +95,23 @@ impl Output {
     pub fn refuse(&self, error: &impl Display) -> ExitStatus {
         self.error(error);
         ExitStatus::BadInput
+    }
+
+    /// Prints an internal fault.
+    pub fn fault(&self, fault: &impl Display) -> ExitStatus {
+        self.error(fault);
+        ExitStatus::InternalFault
+    }
+
+    /// Prints why a result could not be written, if it could not.
+    pub fn written(&self, result: Result<(), Failure>) -> ExitStatus {
+        result.map_or_else(
+            |(status, error)| {
+                self.error(&error);
+                status
+            },
+            |()| ExitStatus::Good,
+        )
     }
 
     /// Prints a note.

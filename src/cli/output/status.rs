@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use searoom::pipeline::{Relaxation, Run};
 
 /// Exit status; the highest of a run is reported.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExitStatus {
     /// All plans are found and verified.
+    #[default]
     Good,
     /// A scenario has no plan that is clear of all sets and arrives.
     NoPlan,
@@ -74,10 +75,7 @@ mod tests {
         let sound = pipeline::run(Scenario::read(file.as_ref()).expect("no faults"));
         assert_eq!(ExitStatus::of(&sound).code(), 0);
         let mut spoilt = sound.clone();
-        let violation = Violation {
-            what: "a gap".to_owned(),
-            time: 0.0,
-        };
+        let violation = Violation::new("a gap".to_owned(), 0.0);
         let judged = spoilt.evaluation.as_mut().expect("judged");
         judged.violations.push(violation);
         assert_eq!(ExitStatus::of(&spoilt).code(), 3);

@@ -153,6 +153,7 @@ fn entrance<P: Piece>(
 mod tests {
     use super::*;
     use crate::frame::Pose;
+    use crate::trajectory::fixtures::chain;
     use crate::trajectory::{ForceNode, Steered};
 
     fn desired(points: &[(f64, f64)]) -> DesiredTrajectory {
@@ -162,17 +163,7 @@ mod tests {
 
     /// Legs of `(duration, speed, turn rate)`, as segments and as nodes every second.
     fn both(start: Pose, legs: &[(f64, f64, f64)]) -> [Trajectory; 2] {
-        let mut segments: Vec<Segment> = Vec::new();
-        for &(duration, speed, turn_rate) in legs {
-            let before = segments.last();
-            segments.push(Segment {
-                start: before.map_or(start, Segment::end),
-                start_time: before.map_or(0.0, Segment::end_time),
-                duration,
-                speed,
-                turn_rate,
-            });
-        }
+        let segments = chain(start, legs);
         let mut nodes = Vec::new();
         for s in &segments {
             let many = s.duration.ceil() as usize;

@@ -97,25 +97,7 @@ fn pieces(segment: &Segment) -> usize {
 mod tests {
     use super::*;
     use crate::frame::{Pose, Vector, direction};
-
-    fn chain(start: Pose, parts: &[(f64, f64, f64)]) -> Vec<Segment> {
-        let (mut pose, mut time) = (start, 0.0);
-        parts
-            .iter()
-            .map(|&(duration, speed, turn_rate)| {
-                let s = Segment {
-                    start: pose,
-                    start_time: time,
-                    duration,
-                    speed,
-                    turn_rate,
-                };
-                pose = s.end();
-                time = s.end_time();
-                s
-            })
-            .collect()
-    }
+    use crate::trajectory::fixtures::chain;
 
     fn desired(points: &[(f64, f64)], speeds: &[f64]) -> DesiredTrajectory {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();

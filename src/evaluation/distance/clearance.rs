@@ -109,10 +109,7 @@ impl Body {
         let pose = piece.pose_at(time);
         // Minima and maxima below lose a NaN, so it is caught here.
         if !(pose.position.x.is_finite() && pose.position.y.is_finite() && time.is_finite()) {
-            return Probe {
-                value: f64::NAN,
-                lower: f64::NAN,
-            };
+            return Probe::new(f64::NAN, f64::NAN);
         }
         let reach = self.half_length.hypot(self.half_beam);
         let apart = set
@@ -140,10 +137,7 @@ impl Body {
                 + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration) * reach);
         // Distance of the body from a face now, and its lower bound within `half` seconds.
         let beyond = |face: &Face| {
-            let mut gap = Probe {
-                value: f64::INFINITY,
-                lower: f64::INFINITY,
-            };
+            let mut gap = Probe::new(f64::INFINITY, f64::INFINITY);
             for corner in corners {
                 let value = face.normal.dot(&corner.position) - face.support(time);
                 let rate = face.normal.dot(&corner.velocity) - face.rate;
@@ -152,10 +146,7 @@ impl Body {
             }
             gap
         };
-        let mut best = Probe {
-            value: f64::NEG_INFINITY,
-            lower: f64::NEG_INFINITY,
-        };
+        let mut best = Probe::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
         // Direction from the set to the body across the widest gap.
         let mut across = Vector::zeros();
         let mut keep = |gap: Probe, toward: Vector| {
@@ -208,10 +199,7 @@ impl Body {
                 }
                 best
             }
-            _ => Probe {
-                value: f64::NAN,
-                lower: f64::NAN,
-            },
+            _ => Probe::new(f64::NAN, f64::NAN),
         }
     }
 
@@ -256,10 +244,7 @@ fn beyond_side(
         bounds.yaw_rate,
         bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration,
     );
-    let mut gap = Probe {
-        value: f64::INFINITY,
-        lower: f64::INFINITY,
-    };
+    let mut gap = Probe::new(f64::INFINITY, f64::INFINITY);
     for vertex in &set.vertices {
         let offset = vertex.at(time) - pose.position;
         let relative = vertex.velocity - moving.velocity;
@@ -281,6 +266,7 @@ fn beyond_side(
 mod tests {
     use super::*;
     use crate::geometry::ConvexPolygon;
+    use crate::geometry::fixtures::random_vector;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -288,7 +274,7 @@ mod tests {
     fn polygon(rng: &mut ChaCha8Rng, extent: f64) -> ConvexPolygon {
         let points: Vec<Vector> = (0..rng.random_range(1..7))
             .map(|_| {
-                let p = Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+                let p = random_vector(rng, 1.0);
                 let p = if rng.random_bool(0.3) {
                     p.map(f64::round)
                 } else {
@@ -301,28 +287,25 @@ mod tests {
     }
 
     fn segment(rng: &mut ChaCha8Rng) -> Segment {
-        let position = Vector::new(rng.random_range(-60.0..60.0), rng.random_range(-60.0..60.0));
+        let position = random_vector(rng, 60.0);
         let turn_rate = if rng.random_bool(0.5) {
             rng.random_range(-0.3..0.3)
         } else {
             0.0
         };
-        Segment {
-            start: Pose::new(position, rng.random_range(-3.0..3.0)),
-            start_time: rng.random_range(0.0..5.0),
-            duration: rng.random_range(0.0..15.0),
-            speed: rng.random_range(0.0..8.0),
+        Segment::new(
+            Pose::new(position, rng.random_range(-3.0..3.0)),
+            rng.random_range(0.0..5.0),
+            rng.random_range(0.0..15.0),
+            rng.random_range(0.0..8.0),
             turn_rate,
-        }
+        )
     }
 
     #[test]
     fn least_distances_match_a_dense_scan() {
         let mut rng = ChaCha8Rng::seed_from_u64(21);
-        let hull = Hull {
-            length: 12.0,
-            beam: 4.0,
-        };
+        let hull = Hull::new(12.0, 4.0);
         for case in 0..400 {
             let (initial, velocity) = (polygon(&mut rng, 15.0), polygon(&mut rng, 2.0));
             let set = MovingSet::new(&initial, &velocity);
@@ -355,24 +338,15 @@ mod tests {
 
     #[test]
     fn sliding_along_a_face_costs_few_probes() {
-        let square = |r: f64| {
-            ConvexPolygon::hull(&[
-                Vector::new(-r, -r),
-                Vector::new(r, -r),
-                Vector::new(r, r),
-                Vector::new(-r, r),
-            ])
-            .expect("finite")
-        };
+        let square = |r: f64| ConvexPolygon::rectangle(Vector::zeros(), r, r);
         let set = MovingSet::new(&square(10.0), &square(0.5));
         // First along the growing upper face, then around a corner of a fixed set.
-        let slide = Segment {
-            start: Pose::new(Vector::new(-8.0, 10.0), 0.5),
-            start_time: 0.0,
-            duration: 60.0,
-            speed: 0.5 / 0.5_f64.sin(),
-            turn_rate: 0.0,
-        };
+        let slide = Segment::straight(
+            Pose::new(Vector::new(-8.0, 10.0), 0.5),
+            0.0,
+            60.0,
+            0.5 / 0.5_f64.sin(),
+        );
         let found = least_distance(&[slide], Body::POINT, &set);
         assert!(
             found.certified && found.value.abs() < 1e-9 && found.probes < 10,
@@ -408,22 +382,19 @@ mod tests {
         // The nearest point is inside own ship's side, which turns; a fixed line bounds it badly.
         let buoy = ConvexPolygon::point(Vector::new(0.0, 40.0));
         let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::zeros()));
-        let hull = Hull {
-            length: 30.0,
-            beam: 8.0,
-        };
+        let hull = Hull::new(30.0, 8.0);
         // On a circle of 100 m about (0, 100), lowest after 10 s.
         let (half_turn, rate) = (0.6_f64, 0.06);
-        let s = Segment {
-            start: Pose::new(
+        let s = Segment::new(
+            Pose::new(
                 Vector::new(-100.0 * half_turn.sin(), 100.0 - 100.0 * half_turn.cos()),
                 -half_turn,
             ),
-            start_time: 0.0,
-            duration: 20.0,
-            speed: 6.0,
-            turn_rate: rate,
-        };
+            0.0,
+            20.0,
+            6.0,
+            rate,
+        );
         let found = least_distance(&[s], Body::hull(&hull), &set);
         assert!(found.certified && found.probes < 300, "{found:?}");
         assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);

@@ -28,6 +28,11 @@ pub(crate) struct Least {
 }
 
 impl Probe {
+    /// A value, and the lower bound around it.
+    pub fn new(value: f64, lower: f64) -> Self {
+        Self { value, lower }
+    }
+
     /// Probe of a value that is nowhere below `lower`, if that exceeds the `known` least value by
     /// more than rounding.
     pub fn beyond(known: f64, lower: f64) -> Option<Self> {

@@ -23,12 +23,13 @@ pub(crate) trait Piece: Copy {
 
 /// Segment at rest at the end of a chain of pieces, for `duration` seconds; empty without pieces.
 pub(crate) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
-    let lying = |last: &P| Segment {
-        start: last.pose_at(last.end_time()),
-        start_time: last.end_time(),
-        duration,
-        speed: 0.0,
-        turn_rate: 0.0,
+    let lying = |last: &P| {
+        Segment::straight(
+            last.pose_at(last.end_time()),
+            last.end_time(),
+            duration,
+            0.0,
+        )
     };
     pieces.last().map(lying).into_iter().collect()
 }

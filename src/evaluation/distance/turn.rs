@@ -31,13 +31,7 @@ pub(crate) fn turns(segments: &[Segment]) -> Vec<Turn> {
             let mut start = after;
             start.heading = before.heading;
             Some(Turn {
-                sweep: Segment {
-                    start,
-                    start_time: 0.0,
-                    duration: turn.abs(),
-                    speed: 0.0,
-                    turn_rate: turn.signum(),
-                },
+                sweep: Segment::new(start, 0.0, turn.abs(), 0.0, turn.signum()),
                 time: pair[1].start_time,
             })
         })
@@ -71,23 +65,14 @@ mod tests {
     use std::f64::consts::PI;
 
     fn straight(heading: f64, from: f64) -> Segment {
-        Segment {
-            start: Pose::new(Vector::zeros(), heading),
-            start_time: from,
-            duration: 10.0,
-            speed: 0.0,
-            turn_rate: 0.0,
-        }
+        Segment::straight(Pose::new(Vector::zeros(), heading), from, 10.0, 0.0)
     }
 
     /// The bow, 10 m ahead of the centre, passes a buoy at a distance of 3 m. Neither course comes
     /// near the buoy at any time.
     #[test]
     fn a_turn_sweeps_over_the_headings_between() {
-        let body = Body::hull(&Hull {
-            length: 20.0,
-            beam: 0.2,
-        });
+        let body = Body::hull(&Hull::new(20.0, 0.2));
         let velocity = direction(0.7) * 0.5;
         let buoy = |bearing: f64| {
             let at_turn = direction(bearing) * 13.0;

@@ -116,10 +116,7 @@ mod tests {
             let ship = ShipTrack {
                 pose: Pose::new(position, rng.random_range(-3.0..3.0)),
                 speed: 5.0,
-                hull: Hull {
-                    length,
-                    beam: length * rng.random_range(0.01..1.2),
-                },
+                hull: Hull::new(length, length * rng.random_range(0.01..1.2)),
                 position_std: 0.0,
                 speed_spread: 0.0,
                 course_spread: match case % 4 {

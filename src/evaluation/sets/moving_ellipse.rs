@@ -220,10 +220,7 @@ impl MovingEllipse {
         let position = piece.pose_at(time).position;
         // A comparison below loses a NaN, so it is caught here.
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
-            return Probe {
-                value: f64::NAN,
-                lower: f64::NAN,
-            };
+            return Probe::new(f64::NAN, f64::NAN);
         }
         let disc = self.disc();
         let apart = disc.least_distance(position, piece.bounds().speed, [time, half]);
@@ -248,10 +245,7 @@ impl MovingEllipse {
         let normal = direction(angle);
         let rate = normal.dot(&piece.velocity_at(time)) - self.line(normal, time).rate;
         let bend = 0.5 * half * half * piece.bounds().acceleration;
-        Probe {
-            value: best,
-            lower: best - rate.abs() * half - bend,
-        }
+        Probe::new(best, best - rate.abs() * half - bend)
     }
 }
 

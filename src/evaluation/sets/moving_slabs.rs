@@ -265,22 +265,16 @@ mod tests {
     #[test]
     fn a_slab_that_begins_by_a_rounding_before_the_end_is_looked_at_where_it_matters() {
         let end = 600.0_f64;
-        let wait = Segment {
-            start: Pose::new(Vector::zeros(), 0.0),
-            start_time: 0.0,
-            duration: end,
-            speed: 0.0,
-            turn_rate: 0.0,
-        };
+        let wait = Segment::straight(Pose::new(Vector::zeros(), 0.0), 0.0, end, 0.0);
         let least = |velocity: f64| {
             let timed = |until: f64, v: f64| {
                 TimedVelocitySet::new(until, ConvexPolygon::point(Vector::new(0.0, -v)))
             };
             let begins = end * (1.0 - 3.0 * f64::EPSILON);
-            let sets = Uncertainty {
-                initial: ConvexPolygon::point(Vector::new(0.0, 90.0)).into(),
-                velocities: vec![timed(begins, 0.0), timed(f64::INFINITY, velocity)],
-            };
+            let sets = Uncertainty::new(
+                ConvexPolygon::point(Vector::new(0.0, 90.0)),
+                vec![timed(begins, 0.0), timed(f64::INFINITY, velocity)],
+            );
             MovingSlabs::new(&sets).least_distance(&[wait], Body::POINT)
         };
         assert_eq!(least(50.0).value, 90.0);

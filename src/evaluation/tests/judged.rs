@@ -96,10 +96,7 @@ fn a_hull_is_judged_from_the_release_of_its_set_on() {
     let mut other = ship(0.0, 0.0);
     if let Motion::Ship(track) = &mut other.motion {
         track.pose = Pose::new(Vector::new(280.0, 0.0), 0.0);
-        track.hull = Hull {
-            length: 6.0,
-            beam: 1.0,
-        };
+        track.hull = Hull::new(6.0, 1.0);
         (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
     }
     let far = rectangle([200.0, 500.0], [300.0, 510.0]);
@@ -137,18 +134,9 @@ fn land_nearer_than_the_margin_is_a_violation() {
         let upper = -4.0 - 20.0 * share;
         let coast = rectangle([600.0, upper - 100.0], [700.0, upper]);
         let found = evaluate(&Request {
-            freedom: Freedom::Limits,
-            segments: &straight(),
-            own: &own(),
-            desired: &desired(),
-            targets: &[],
-            sets: &[],
             land: &[Polygon::new(&[coast]).expect("a rectangle")],
             land_margin: 20.0,
-            horizon: 400.0,
-            arrival_hold: 60.0,
-            time_weight: 25.0,
-            max_risk: 0.0,
+            ..Request::new(&straight(), &own(), &desired(), 400.0)
         });
         assert_eq!(words(&found) == ["land:"], is_near, "{share}");
         assert_eq!(found.verified(), !is_near);
@@ -171,18 +159,9 @@ fn the_time_after_arrival_is_told_and_not_judged() {
     };
     let hold = |targets: &[Target], arrival_hold| {
         let found = evaluate(&Request {
-            freedom: Freedom::Limits,
-            segments: &straight(),
-            own: &own(),
-            desired: &desired(),
             targets,
-            sets: &[],
-            land: &[],
-            land_margin: 0.0,
-            horizon: 400.0,
             arrival_hold,
-            time_weight: 25.0,
-            max_risk: 0.0,
+            ..Request::new(&straight(), &own(), &desired(), 400.0)
         });
         assert!(found.verified(), "{:?}", found.violations);
         assert_eq!(found.arrival_hold, arrival_hold);

@@ -110,7 +110,7 @@ fn half_spaces_of_the_normals_are_the_set() {
 
 #[test]
 fn not_a_number_is_inside() {
-    let square = outer_square(1.0);
+    let square = ConvexPolygon::rectangle(Vector::zeros(), 1.0, 1.0);
     assert!(square.contains(Vector::new(f64::NAN, 100.0)));
     assert!(!square.contains(Vector::new(100.0, 100.0)));
 }
@@ -121,16 +121,6 @@ fn centroid_is_the_area_mean() {
     let points: Vec<Vector> = l.iter().map(|&(x, y)| Vector::new(x + 1e6, y)).collect();
     let c = ConvexPolygon::hull(&points).expect("finite").centroid();
     assert!((c - Vector::new(1e6 + 2.0, 1.0)).norm() < 1e-9);
-}
-
-fn outer_square(half: f64) -> ConvexPolygon {
-    ConvexPolygon::hull(&[
-        Vector::new(-half, -half),
-        Vector::new(half, -half),
-        Vector::new(half, half),
-        Vector::new(-half, half),
-    ])
-    .expect("finite")
 }
 
 /// Along an edge of 27 m, seen a hair from its normal, lies one of 17 nm, whose ends rounding makes

@@ -3,7 +3,7 @@
 use super::*;
 use crate::frame::{Pose as Place, direction, heading_of};
 use crate::geometry::ConvexPolygon;
-use crate::geometry::fixtures::{random_points as points, random_polygon as set};
+use crate::geometry::fixtures::{random_points as points, random_polygon as set, random_vector};
 use crate::obstacle::PolytopeObstacle;
 use crate::obstacle::contact::{arc_contacts, line_contact};
 use crate::trajectory::Segment;
@@ -138,22 +138,19 @@ fn contacts_in_space_time_are_those_of_parry() {
         } else {
             set(&mut rng, 0.7)
         };
-        let at = Vector::new(
-            rng.random_range(-300.0..300.0),
-            rng.random_range(-300.0..300.0),
-        );
+        let at = random_vector(&mut rng, 300.0);
         let toward = heading_of(initial.centroid() - at);
-        let own = Segment {
-            start: Place::new(at, toward + rng.random_range(-0.6..0.6)),
-            start_time: 0.0,
-            duration: 120.0,
-            speed: rng.random_range(0.0..8.0),
-            turn_rate: if case % 3 == 0 {
+        let own = Segment::new(
+            Place::new(at, toward + rng.random_range(-0.6..0.6)),
+            0.0,
+            120.0,
+            rng.random_range(0.0..8.0),
+            if case % 3 == 0 {
                 rng.random_range(-0.03..0.03)
             } else {
                 0.0
             },
-        };
+        );
         let body = PolytopeObstacle::new("set", initial.clone(), velocity.clone());
         let inside = if own.is_arc() {
             arc_contacts(&body, &own, 0.0)

@@ -43,10 +43,7 @@ pub(super) fn first_crossing(rings: &[Vec<Vector>]) -> Option<Crossing> {
             });
         }
     }
-    let window = |e: &Edge| Window {
-        low: e.from.inf(&e.to),
-        high: e.from.sup(&e.to),
-    };
+    let window = |e: &Edge| Window::new(e.from.inf(&e.to), e.from.sup(&e.to));
     let boxes = BoxIndex::new(edges.iter().map(window));
     edges.iter().enumerate().find_map(|(i, edge)| {
         let mut later: Vec<usize> = boxes.meeting(&window(edge)).filter(|k| *k > i).collect();

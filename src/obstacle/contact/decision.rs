@@ -129,7 +129,7 @@ fn narrow(shares: &mut (f64, f64), at_start: f64, at_end: f64) {
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::geometry::fixtures::random_polygon;
+    use crate::geometry::fixtures::{random_polygon, random_vector};
     use crate::obstacle::contact::first_contact;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -160,20 +160,17 @@ mod tests {
             let position = match round % 3 {
                 0 => corners[k],
                 1 => corners[k] + beside * rng.random_range(0.0..1.0),
-                _ => Vector::new(
-                    rng.random_range(-300.0..300.0),
-                    rng.random_range(-300.0..300.0),
-                ),
+                _ => random_vector(&mut rng, 300.0),
             };
             let speed = rng.random_range(0.5..8.0);
             let radius = rng.random_range(20.0..150.0);
-            let mut arc = Segment {
-                start: Pose::new(position, rng.random_range(-3.2..3.2)),
-                start_time: time,
-                duration: rng.random_range(0.01..2.0) * radius / speed,
+            let mut arc = Segment::new(
+                Pose::new(position, rng.random_range(-3.2..3.2)),
+                time,
+                rng.random_range(0.01..2.0) * radius / speed,
                 speed,
-                turn_rate: [1.0, -1.0][rng.random_range(0..2)] * speed / radius,
-            };
+                [1.0, -1.0][rng.random_range(0..2)] * speed / radius,
+            );
             if rng.random_bool(0.5) {
                 // the same arc, ending there
                 arc.start = arc.pose_after(-arc.duration);

@@ -245,21 +245,9 @@ mod tests {
 
     #[test]
     fn an_arc_that_leaves_and_enters_again_has_two_contacts() {
-        let wall = ConvexPolygon::hull(&[
-            Vector::new(-300.0, -10.0),
-            Vector::new(300.0, -10.0),
-            Vector::new(300.0, 10.0),
-            Vector::new(-300.0, 10.0),
-        ])
-        .expect("finite");
+        let wall = ConvexPolygon::rectangle(Vector::zeros(), 300.0, 10.0);
         let o = PolytopeObstacle::new("wall", wall, ConvexPolygon::point(Vector::zeros()));
-        let arc = Segment {
-            start: Pose::new(Vector::new(0.0, 0.0), 0.2),
-            start_time: 0.0,
-            duration: 130.0,
-            speed: 5.0,
-            turn_rate: 0.05,
-        };
+        let arc = Segment::new(Pose::new(Vector::new(0.0, 0.0), 0.2), 0.0, 130.0, 5.0, 0.05);
         assert_eq!(arc_contacts(&o, &arc, 0.0).len(), 2);
     }
 
@@ -267,13 +255,7 @@ mod tests {
     fn touching_counts_only_at_depth_zero() {
         let square = crate::geometry::outer_disc(10.0, 0.0);
         let o = PolytopeObstacle::new("still", square, ConvexPolygon::point(Vector::zeros()));
-        let along = Segment {
-            start: Pose::new(Vector::new(-100.0, 10.0), 0.0),
-            start_time: 0.0,
-            duration: 40.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
+        let along = Segment::straight(Pose::new(Vector::new(-100.0, 10.0), 0.0), 0.0, 40.0, 5.0);
         assert!(first_contact(&o, &along, 0.0).is_some());
         assert!(first_contact(&o, &along, 1e-9).is_none());
     }

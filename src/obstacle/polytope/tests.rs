@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::fixtures::random_polygon;
+use crate::geometry::fixtures::{random_polygon, random_vector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -14,7 +14,7 @@ fn the_slack_found_from_face_to_face_is_that_of_all_faces() {
             random_polygon(&mut rng, 20.0),
             random_polygon(&mut rng, 1.0),
         );
-        let place = Vector::new(rng.random_range(-90.0..90.0), rng.random_range(-90.0..90.0));
+        let place = random_vector(&mut rng, 90.0);
         let time = [0.0, rng.random_range(0.0..30.0), -3.0][rng.random_range(0..3)];
         let all = o.slack(place, time).value;
         if all > 0.0 {

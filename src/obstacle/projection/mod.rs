@@ -20,6 +20,13 @@ pub struct PathTime {
     pub time: f64,
 }
 
+impl PathTime {
+    /// A point by its coordinates.
+    pub fn new(distance: f64, time: f64) -> Self {
+        Self { distance, time }
+    }
+}
+
 /// A straight piece of a path: `x(s) = start + s direction`, `0 <= s <= length`, paper eq. (28).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
@@ -106,14 +113,8 @@ impl PathTimeObstacle {
         let least = |of: fn(&PathTime) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
         let most =
             |of: fn(&PathTime) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-        let low = PathTime {
-            distance: least(|p| p.distance),
-            time: least(|p| p.time),
-        };
-        let high = PathTime {
-            distance: most(|p| p.distance),
-            time: most(|p| p.time),
-        };
+        let low = PathTime::new(least(|p| p.distance), least(|p| p.time));
+        let high = PathTime::new(most(|p| p.distance), most(|p| p.time));
         (deep && low.time < high.time).then_some(Self {
             faces,
             corners,
@@ -288,10 +289,10 @@ impl Clipped {
                 let share = fa / (fa - fb);
                 let (p, q) = (a.corner, b.corner);
                 kept.push(Side {
-                    corner: PathTime {
-                        distance: p.distance + (q.distance - p.distance) * share,
-                        time: p.time + (q.time - p.time) * share,
-                    },
+                    corner: PathTime::new(
+                        p.distance + (q.distance - p.distance) * share,
+                        p.time + (q.time - p.time) * share,
+                    ),
                     face: if fa <= 0.0 { Some(index) } else { a.face },
                     outside: None,
                 });
@@ -316,15 +317,15 @@ fn centroid(corners: &[PathTime]) -> PathTime {
     }
     if area == 0.0 {
         let count = corners.len() as f64;
-        return PathTime {
-            distance: corners.iter().map(|c| c.distance).sum::<f64>() / count,
-            time: corners.iter().map(|c| c.time).sum::<f64>() / count,
-        };
+        return PathTime::new(
+            corners.iter().map(|c| c.distance).sum::<f64>() / count,
+            corners.iter().map(|c| c.time).sum::<f64>() / count,
+        );
     }
-    PathTime {
-        distance: first.distance + distance / (3.0 * area),
-        time: first.time + time / (3.0 * area),
-    }
+    PathTime::new(
+        first.distance + distance / (3.0 * area),
+        first.time + time / (3.0 * area),
+    )
 }
 
 /// The corners of `{(s, t) : start + s direction in O_t}` within `0 <= s <= length`, `0 <= t <=

@@ -75,10 +75,8 @@ fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
                 assert!(away.distance <= OUTER_EXCESS_M + 1e-9, "{away:?}");
             }
             for _ in 0..200 {
-                let at = PathTime {
-                    distance: rng.random_range(0.0..300.0),
-                    time: rng.random_range(0.0..horizon),
-                };
+                let at =
+                    PathTime::new(rng.random_range(0.0..300.0), rng.random_range(0.0..horizon));
                 let away = o.signed_distance(track.at(at.distance), at.time).distance;
                 if away < -1e-6 {
                     met += 1;
@@ -120,10 +118,7 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
             _ => [rng.random_range(0.0..100.0), rng.random_range(100.0..200.0)],
         };
         let t = [rng.random_range(0.0..40.0), rng.random_range(40.0..90.0)];
-        let [from, to] = [0, 1].map(|i| PathTime {
-            distance: s[i],
-            time: t[i],
-        });
+        let [from, to] = [0, 1].map(|i| PathTime::new(s[i], t[i]));
         let found = seen.as_ref().and_then(|o| o.inside(from, to, 1e-7));
         met += usize::from(found.is_some());
         for i in 0..=400 {

@@ -22,16 +22,16 @@ fn matches_a_dense_sum_on_lines_arcs_corners_and_clamped_ends() {
     ] {
         for i in 0..60 {
             let k = f64::from(i);
-            let segment = Segment {
-                start: Pose::new(
+            let segment = Segment::new(
+                Pose::new(
                     Vector::new(800.0 * (0.31 * k).sin(), 150.0 * (k * 0.7).cos()),
                     k * 0.41,
                 ),
-                start_time: (k * 3.7) % 90.0,
-                duration: 20.0 + k,
-                speed: [0.0, 2.5, 5.0, 6.0][i as usize % 4],
-                turn_rate: [0.0, 0.05, -0.06][i as usize % 3],
-            };
+                (k * 3.7) % 90.0,
+                20.0 + k,
+                [0.0, 2.5, 5.0, 6.0][i as usize % 4],
+                [0.0, 0.05, -0.06][i as usize % 3],
+            );
             let exact = dense(&desired, &segment, 25.0);
             let found = space_time_error(&desired, &segment, 25.0);
             assert!(
@@ -52,19 +52,19 @@ fn reported_costs_equal_a_dense_sum() {
     let (q, mut most) = (25.0, (0.0, None));
     for i in 0..20_000 {
         let k = f64::from(i);
-        let segment = Segment {
-            start: Pose::new(
+        let segment = Segment::new(
+            Pose::new(
                 Vector::new(
                     350.0 + 400.0 * (0.31 * k).sin(),
                     200.0 + 250.0 * (k * 0.7).cos(),
                 ),
                 k * 0.41,
             ),
-            start_time: (k * 3.7) % 300.0,
-            duration: 20.0 + k % 60.0,
-            speed: [2.5, 5.0][i as usize % 2],
-            turn_rate: [0.004, -0.05, 0.02][i as usize % 3],
-        };
+            (k * 3.7) % 300.0,
+            20.0 + k % 60.0,
+            [2.5, 5.0][i as usize % 2],
+            [0.004, -0.05, 0.02][i as usize % 3],
+        );
         let told = whole_space_time_error(&desired, &[segment], q);
         let off = (told - space_time_error(&desired, &segment, q)).abs() / (1.0 + told);
         if off > most.0 {
@@ -93,16 +93,16 @@ fn one_leg_in_closed_form_is_the_sum_by_halves() {
         let k = f64::from(i);
         let points = [(-40.0, 10.0), (900.0, 300.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[1.0 + (i % 5) as f64]).expect("valid");
-        let segment = Segment {
-            start: Pose::new(
+        let segment = Segment::new(
+            Pose::new(
                 Vector::new(400.0 + 600.0 * (0.31 * k).sin(), 150.0 * (k * 0.7).cos()),
                 k * 0.41,
             ),
-            start_time: (k * 3.7) % 300.0,
-            duration: 80.0 * (k * 0.19).sin().powi(4),
-            speed: [0.0, 2.5, 5.0, 6.0][i as usize % 4],
-            turn_rate: [0.0, 0.05, -0.06, 0.003, -1e-7][i as usize % 5],
-        };
+            (k * 3.7) % 300.0,
+            80.0 * (k * 0.19).sin().powi(4),
+            [0.0, 2.5, 5.0, 6.0][i as usize % 4],
+            [0.0, 0.05, -0.06, 0.003, -1e-7][i as usize % 5],
+        );
         let q = [0.5, 25.0, 400.0][i as usize % 3];
         let integrand = Integrand {
             near: None,
@@ -153,13 +153,12 @@ fn lines_near_several_legs_are_the_dense_sum() {
         } else {
             60.0 * (0.9 * k).cos()
         };
-        let segment = Segment {
-            start: Pose::new(on_path + Vector::new(0.3, 1.0) * aside, k * 0.41),
-            start_time: (k * 3.7) % 200.0,
-            duration: 120.0 * (k * 0.19).sin().powi(4),
-            speed: [0.0, 2.5, 1.0, 6.0][i as usize % 4],
-            turn_rate: 0.0,
-        };
+        let segment = Segment::straight(
+            Pose::new(on_path + Vector::new(0.3, 1.0) * aside, k * 0.41),
+            (k * 3.7) % 200.0,
+            120.0 * (k * 0.19).sin().powi(4),
+            [0.0, 2.5, 1.0, 6.0][i as usize % 4],
+        );
         let q = [0.5, 25.0, 0.0, 400.0][(i as usize / 4) % 4];
         let Some(found) = line_error::integral(&desired, &segment, q) else {
             continue;
@@ -178,13 +177,8 @@ fn lines_near_several_legs_are_the_dense_sum() {
 fn the_desired_motion_costs_nothing_and_a_constant_lag_its_square() {
     let straight = [(0.0, 0.0), (1500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
     let desired = DesiredTrajectory::new(&straight, &[5.0]).expect("valid");
-    let run = |from: f64| Segment {
-        start: Pose::new(Vector::new(from, 0.0), 0.0),
-        start_time: 60.0,
-        duration: 150.0,
-        speed: 5.0,
-        turn_rate: 0.0,
-    };
+    let run =
+        |from: f64| Segment::straight(Pose::new(Vector::new(from, 0.0), 0.0), 60.0, 150.0, 5.0);
     assert!(space_time_error(&desired, &run(300.0), 25.0) < 1e-18);
     let lag = space_time_error(&desired, &run(260.0), 25.0);
     assert!((lag - 0.5 * 1600.0 * 150.0 / 300.0).abs() < 1e-9);
@@ -201,13 +195,13 @@ fn legs_left_out_are_never_nearest() {
     let desired = DesiredTrajectory::new(&points, &[4.0; 39]).expect("valid");
     for k in 0..200_usize {
         let f = k as f64;
-        let segment = Segment {
-            start: Pose::new(place(k % 40) + Vector::new(20.0 * f.sin(), 5.0), f),
-            start_time: 3.0 * f,
-            duration: 5.0 + (k % 7) as f64 * 20.0,
-            speed: 4.0,
-            turn_rate: 0.04,
-        };
+        let segment = Segment::new(
+            Pose::new(place(k % 40) + Vector::new(20.0 * f.sin(), 5.0), f),
+            3.0 * f,
+            5.0 + (k % 7) as f64 * 20.0,
+            4.0,
+            0.04,
+        );
         let pieces = (segment.turn_rate * segment.duration / SEARCH_SUBDIVISION.arc).ceil();
         let integrand = Integrand {
             desired: &desired,

@@ -121,10 +121,7 @@ impl<'a> Graph<'a> {
                 Place::On { distance, .. } => distance,
                 Place::At(_) => length,
             };
-            let there = PathTime {
-                distance,
-                time: node.time,
-            };
+            let there = PathTime::new(distance, node.time);
             if self.sailable(here, there)
                 && self
                     .measure
@@ -144,16 +141,13 @@ impl<'a> Graph<'a> {
             due: false,
             mark: Mark::Arrival,
         };
-        let mut there = PathTime {
-            distance: length,
-            time: arrival,
-        };
+        let mut there = PathTime::new(length, arrival);
         // farthest position that own ship reaches before the horizon
         if scene.aim == Aim::Last && arrival > scene.horizon {
-            there = PathTime {
-                distance: here.distance + (scene.horizon - here.time) * scene.max_speed,
-                time: scene.horizon,
-            };
+            there = PathTime::new(
+                here.distance + (scene.horizon - here.time) * scene.max_speed,
+                scene.horizon,
+            );
             node.place = Place::On {
                 leg,
                 distance: there.distance,
@@ -244,10 +238,7 @@ impl<'a> Graph<'a> {
                     Place::On { distance, .. } => distance,
                     Place::At(_) => length,
                 };
-                let there = PathTime {
-                    distance,
-                    time: to.time,
-                };
+                let there = PathTime::new(distance, to.time);
                 let via = state.via.unwrap_or(there);
                 let first = self.scene.barrier(leg, here, via);
                 first.or_else(|| match state.via {
@@ -273,17 +264,11 @@ impl Space for Graph<'_> {
                 for &leg in network.onward(point) {
                     self.along(from, leg, out);
                 }
-                let here = PathTime {
-                    distance: 0.0,
-                    time: self.nodes[from].time,
-                };
+                let here = PathTime::new(0.0, self.nodes[from].time);
                 let first = self.at[point].partition_point(|n| self.nodes[*n].time <= here.time);
                 for &to in &self.at[point][first..] {
                     if !self.settled[to] {
-                        let there = PathTime {
-                            distance: 0.0,
-                            time: self.nodes[to].time,
-                        };
+                        let there = PathTime::new(0.0, self.nodes[to].time);
                         self.offer(from, to, None, &[here, there], out);
                     }
                 }

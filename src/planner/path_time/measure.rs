@@ -55,13 +55,8 @@ impl<'a> Measure<'a> {
                     }
                     Place::At(point) => (scene.network.place(point), 0.0),
                 };
-                let segment = Segment {
-                    start: Pose::new(start, heading),
-                    start_time: from.time,
-                    duration: time,
-                    speed: way / time,
-                    turn_rate: 0.0,
-                };
+                let segment =
+                    Segment::straight(Pose::new(start, heading), from.time, time, way / time);
                 space_time_error(self.problem.desired, &segment, self.problem.time_weight)
             }
         }
@@ -146,15 +141,9 @@ impl<'a> Measure<'a> {
         }
         let behind = due.lag(from) >= 0.0 && due.lag(at) >= 0.0;
         let via = if behind {
-            PathTime {
-                distance: at.distance,
-                time: from.time + sailing,
-            }
+            PathTime::new(at.distance, from.time + sailing)
         } else {
-            PathTime {
-                distance: from.distance,
-                time: from.time + idle,
-            }
+            PathTime::new(from.distance, from.time + idle)
         };
         let lag = due.lag(via);
         let ahead = due.lag(from) <= 0.0 && due.lag(at) <= 0.0;

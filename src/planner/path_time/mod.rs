@@ -309,10 +309,7 @@ fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Optio
 fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
     match node.place {
         // on a closed leg, choose the end
-        Place::At(_) => Some(PathTime {
-            distance: scene.tracks[leg].length,
-            time: node.time,
-        }),
+        Place::At(_) => Some(PathTime::new(scene.tracks[leg].length, node.time)),
         Place::On { .. } => node.on(scene, leg),
     }
 }
@@ -324,10 +321,7 @@ fn starts_inside(problem: &Problem, scene: &Scene) -> Option<NoPlan> {
     let set = &problem.obstacles[obstacle];
     let depth = -set.signed_distance(problem.own.pose.position, 0.0).distance;
     let leg = *scene.network.onward(point).first()?;
-    let at = PathTime {
-        distance: 0.0,
-        time: 0.0,
-    };
+    let at = PathTime::new(0.0, 0.0);
     Some(NoPlan::StartCovered {
         target: set.name().to_owned(),
         depth: depth.max(0.0),
@@ -359,15 +353,15 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
         };
         let from = node.on(scene, leg)?;
         let length = scene.tracks[leg].length;
-        let to = PathTime {
-            distance: length,
-            time: from.time + (length - from.distance) / scene.max_speed,
-        };
+        let to = PathTime::new(
+            length,
+            from.time + (length - from.distance) / scene.max_speed,
+        );
         let (obstacle, share) = scene.nearest_barrier(leg, from, to, true)?;
-        let met = PathTime {
-            distance: from.distance + share * (to.distance - from.distance),
-            time: from.time + share * (to.time - from.time),
-        };
+        let met = PathTime::new(
+            from.distance + share * (to.distance - from.distance),
+            from.time + share * (to.time - from.time),
+        );
         Some(NoPlan::Barred {
             target: problem.obstacles[obstacle].name().to_owned(),
             to_go: node.left(scene) - (met.distance - from.distance),
@@ -393,10 +387,7 @@ fn first_met(scene: &Scene) -> Option<usize> {
         };
         let leg = *(network.onward(point).iter()).min_by(|a, b| on(a).total_cmp(&on(b)))?;
         let length = scene.tracks[leg].length;
-        let at = |distance: f64| PathTime {
-            distance,
-            time: time + distance / scene.max_speed,
-        };
+        let at = |distance: f64| PathTime::new(distance, time + distance / scene.max_speed);
         if let Some((obstacle, _)) = scene.nearest_barrier(leg, at(0.0), at(length), true) {
             return Some(obstacle);
         }
@@ -408,10 +399,7 @@ fn first_met(scene: &Scene) -> Option<usize> {
 /// Converts the line into a state to segments.
 fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segment> {
     let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
-    let still = |time| PathTime {
-        distance: 0.0,
-        time,
-    };
+    let still = |time| PathTime::new(0.0, time);
     let ends = match state.leg {
         Some(leg) => from.on(scene, leg).zip(ahead(scene, to, leg)),
         None => Some((still(from.time), still(to.time))),
@@ -433,13 +421,12 @@ fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segme
         .map(|p| {
             let duration = p[1].time - p[0].time;
             let way = p[1].distance - p[0].distance;
-            Segment {
-                start: Pose::new(place(p[0]), heading),
-                start_time: p[0].time,
+            Segment::straight(
+                Pose::new(place(p[0]), heading),
+                p[0].time,
                 duration,
-                speed: if duration > 0.0 { way / duration } else { 0.0 },
-                turn_rate: 0.0,
-            }
+                if duration > 0.0 { way / duration } else { 0.0 },
+            )
         })
         .collect()
 }

@@ -67,10 +67,7 @@ impl Node {
             }
             Place::At(_) => None,
         }?;
-        Some(PathTime {
-            distance,
-            time: self.time,
-        })
+        Some(PathTime::new(distance, self.time))
     }
 
     /// Shortest distance to the end in metres.

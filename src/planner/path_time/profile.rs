@@ -26,10 +26,7 @@ pub(crate) struct Profile {
 impl Profile {
     /// Creates a profile that stays at the start.
     pub(crate) fn new() -> Self {
-        let start = PathTime {
-            distance: 0.0,
-            time: 0.0,
-        };
+        let start = PathTime::new(0.0, 0.0);
         Self {
             legs: Vec::new(),
             begins: Vec::new(),
@@ -74,10 +71,10 @@ impl Profile {
                 break;
             }
             let share = ((time - from.time) / (to.time - from.time)).min(1.0);
-            let at = PathTime {
-                distance: from.distance + share * (to.distance - from.distance),
-                time: to.time.min(time),
-            };
+            let at = PathTime::new(
+                from.distance + share * (to.distance - from.distance),
+                to.time.min(time),
+            );
             if to.distance > from.distance {
                 begun.sail(scene, leg, from, at);
             } else {
@@ -167,9 +164,8 @@ impl Profile {
             if low > high || (way > 0.0 && low == high) {
                 continue;
             }
-            let at = |distance: f64, time: f64| PathTime {
-                distance: (distance - begin).clamp(0.0, length),
-                time,
+            let at = |distance: f64, time: f64| {
+                PathTime::new((distance - begin).clamp(0.0, length), time)
             };
             let ends = if way > 0.0 {
                 [time_at(low), time_at(high)]
@@ -225,13 +221,7 @@ impl Profile {
         let heading = |leg: usize| heading_of(scene.tracks[leg].direction);
         // own ship turns when it moves off
         let mut facing = start.heading;
-        let still = Segment {
-            start,
-            start_time: 0.0,
-            duration: 0.0,
-            speed: 0.0,
-            turn_rate: 0.0,
-        };
+        let still = Segment::straight(start, 0.0, 0.0, 0.0);
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let way = to.distance - from.distance;
@@ -253,13 +243,12 @@ impl Profile {
                 {
                     segments.push(still);
                 }
-                segments.push(Segment {
-                    start: Pose::new(scene.tracks[leg].at(a.distance), facing),
-                    start_time: a.time,
-                    duration: b.time - a.time,
+                segments.push(Segment::straight(
+                    Pose::new(scene.tracks[leg].at(a.distance), facing),
+                    a.time,
+                    b.time - a.time,
                     speed,
-                    turn_rate: 0.0,
-                });
+                ));
             }
         }
         if segments.is_empty() {

@@ -26,10 +26,7 @@ pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     // latest arrival: a profile leaves a later schedule for it
     for (leg, ends) in scene.network.legs().iter().map(|leg| leg.ends).enumerate() {
         if scene.network.is_end(ends[1]) {
-            let last = PathTime {
-                distance: scene.tracks[leg].length,
-                time: scene.horizon,
-            };
+            let last = PathTime::new(scene.tracks[leg].length, scene.horizon);
             known.add(scene, leg, last, None, Mark::Corner);
         }
     }
@@ -49,22 +46,10 @@ fn sources(scene: &Scene, known: &Known, root: &Node) -> Vec<(usize, PathTime)> 
     let mut sources = Vec::new();
     for node in nodes.filter(|n| n.mark == Mark::Corner) {
         match node.place {
-            Place::On { leg, distance } => sources.push((
-                leg,
-                PathTime {
-                    distance,
-                    time: node.time,
-                },
-            )),
+            Place::On { leg, distance } => sources.push((leg, PathTime::new(distance, node.time))),
             Place::At(point) => {
                 for &(leg, distance) in scene.touching(point) {
-                    sources.push((
-                        leg,
-                        PathTime {
-                            distance,
-                            time: node.time,
-                        },
-                    ));
+                    sources.push((leg, PathTime::new(distance, node.time)));
                 }
             }
         }
@@ -81,14 +66,8 @@ fn sources(scene: &Scene, known: &Known, root: &Node) -> Vec<(usize, PathTime)> 
 /// Adds the schedule at the ends of a leg and its intersections with obstacles.
 fn schedule(scene: &Scene, leg: usize, due: &Due, known: &mut Known) {
     let length = scene.tracks[leg].length;
-    let from = PathTime {
-        distance: 0.0,
-        time: due.start,
-    };
-    let to = PathTime {
-        distance: length,
-        time: due.start + length / due.speed,
-    };
+    let from = PathTime::new(0.0, due.start);
+    let to = PathTime::new(length, due.start + length / due.speed);
     // own ship cannot follow a schedule above its maximum speed
     if due.speed > scene.max_speed * (1.0 + tolerance::LIMIT) {
         return;
@@ -98,10 +77,7 @@ fn schedule(scene: &Scene, leg: usize, due: &Due, known: &mut Known) {
     for seen in &scene.seen[leg] {
         if let Some(shares) = seen.body.inside(from, to, 0.0) {
             for share in shares.into_iter().filter(|s| *s > 0.0 && *s < 1.0) {
-                let at = PathTime {
-                    distance: length * share,
-                    time: from.time + (to.time - from.time) * share,
-                };
+                let at = PathTime::new(length * share, from.time + (to.time - from.time) * share);
                 known.add(scene, leg, at, Some(seen.obstacle), Mark::Due);
             }
         }
@@ -129,10 +105,7 @@ impl Ray<'_> {
         } else {
             // rest until on schedule
             let time = due.start + at.distance / due.speed;
-            let to = PathTime {
-                distance: at.distance,
-                time: time.clamp(0.0, self.scene.horizon),
-            };
+            let to = PathTime::new(at.distance, time.clamp(0.0, self.scene.horizon));
             self.end(leg, at, to, forward, to.time == time, known);
         }
     }
@@ -158,9 +131,11 @@ impl Ray<'_> {
             } else {
                 at.distance
             };
-            let sailed = |way: f64| PathTime {
-                distance: at.distance + sign * way,
-                time: at.time + sign * way / scene.max_speed,
+            let sailed = |way: f64| {
+                PathTime::new(
+                    at.distance + sign * way,
+                    at.time + sign * way / scene.max_speed,
+                )
             };
             let mut to = sailed(way);
             let mut due_there = false;
@@ -187,10 +162,7 @@ impl Ray<'_> {
                 let starts = distance == 0.0;
                 let same_schedule = behind.is_none() || self.scene.dues[next].is_some();
                 if starts == forward && next != leg && same_schedule {
-                    let at = PathTime {
-                        distance,
-                        time: to.time,
-                    };
+                    let at = PathTime::new(distance, to.time);
                     open.push((next, at));
                 }
             }
@@ -217,10 +189,10 @@ impl Ray<'_> {
                 true
             }
             Some((obstacle, share)) => {
-                let met = PathTime {
-                    distance: from.distance + share * (until.distance - from.distance),
-                    time: from.time + share * (until.time - from.time),
-                };
+                let met = PathTime::new(
+                    from.distance + share * (until.distance - from.distance),
+                    from.time + share * (until.time - from.time),
+                );
                 known.add(scene, leg, met, Some(obstacle), Mark::Passed);
                 false
             }

@@ -244,8 +244,8 @@ fn covered(part: &Piece, duration: f64) -> Window {
         }
     };
     let (east, north) = (Vector::new(1.0, 0.0), Vector::new(0.0, 1.0));
-    Window {
-        low: -Vector::new(reach(-east), reach(-north)),
-        high: Vector::new(reach(east), reach(north)),
-    }
+    Window::new(
+        -Vector::new(reach(-east), reach(-north)),
+        Vector::new(reach(east), reach(north)),
+    )
 }

@@ -41,13 +41,13 @@ impl Chain {
         if length <= tolerance::LENGTH_M {
             return;
         }
-        let segment = Segment {
-            start: self.pose,
-            start_time: self.time,
-            duration: length / self.speed,
-            speed: self.speed,
-            turn_rate: curvature * self.speed,
-        };
+        let segment = Segment::new(
+            self.pose,
+            self.time,
+            length / self.speed,
+            self.speed,
+            curvature * self.speed,
+        );
         (self.pose, self.time) = (segment.end(), segment.end_time());
         self.segments.push(segment);
     }

@@ -158,13 +158,7 @@ fn has_arrived(problem: &Problem) -> bool {
 
 /// Plan of a ship that has arrived.
 fn arrived_plan(problem: &Problem) -> Option<Plan> {
-    let arrived_plan = Segment {
-        start: problem.own.pose,
-        start_time: 0.0,
-        duration: 0.0,
-        speed: problem.own.max_speed(),
-        turn_rate: 0.0,
-    };
+    let arrived_plan = Segment::straight(problem.own.pose, 0.0, 0.0, problem.own.max_speed());
     Plan::measured(problem, vec![arrived_plan], None)
 }
 

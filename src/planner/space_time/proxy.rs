@@ -315,7 +315,7 @@ mod tests {
     use super::*;
     use crate::frame::direction;
     use crate::geometry::{ConvexPolygon, outer_disc};
-    use crate::planner::fixtures::own_ship;
+    use crate::vessel::fixtures::own_ship;
     use rand::{Rng, SeedableRng};
 
     /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with

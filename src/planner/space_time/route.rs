@@ -71,13 +71,7 @@ impl RoutePiece {
 }
 
 fn segment(start: Pose, start_time: f64, length: f64, speed: f64, curvature: f64) -> Segment {
-    Segment {
-        start,
-        start_time,
-        duration: length / speed,
-        speed,
-        turn_rate: curvature * speed,
-    }
+    Segment::new(start, start_time, length / speed, speed, curvature * speed)
 }
 
 /// Straight stretch of the route on one leg.
@@ -404,13 +398,7 @@ impl Route {
             let pose = piece.pose_after(at - piece.distance);
             let late = time - self.due_at(at);
             if speed == 0.0 {
-                let wait = Segment {
-                    start: pose,
-                    start_time: time,
-                    duration: -late,
-                    speed,
-                    turn_rate: 0.0,
-                };
+                let wait = Segment::straight(pose, time, -late, speed);
                 time += wait.duration;
                 out.push(wait);
                 continue;

@@ -236,10 +236,7 @@ impl Similarity {
             own: OwnShip {
                 pose: Pose::new(Vector::zeros(), 0.0),
                 speed: rounded(own.speed / speed),
-                hull: Hull {
-                    length: own.hull.length / self.length,
-                    beam: own.hull.beam / self.length,
-                },
+                hull: Hull::new(own.hull.length / self.length, own.hull.beam / self.length),
                 turning_radius: rounded(own.turning_radius / self.length),
                 speeds: own.speeds.iter().map(|u| rounded(u / speed)).collect(),
                 safety_margin: own.safety_margin / self.length,
@@ -301,29 +298,24 @@ impl Similarity {
                 }
             }
         });
-        let initial = match &sets.initial {
+        let initial: ConvexSet = match &sets.initial {
             ConvexSet::Polygon(set) => self.places(set, horizon).into(),
             ConvexSet::Ellipse(set) => ellipse(set, self.place(set.center()), self.length).into(),
         };
         let velocities = velocities.collect();
-        Obstacle::new(
-            obstacle.name(),
-            Uncertainty {
-                initial,
-                velocities,
-            },
-        )
-        .ok()
+        Obstacle::new(obstacle.name(), Uncertainty::new(initial, velocities)).ok()
     }
 
     /// Motion in the normalised problem, rounded: an initial guess, not a plan.
     pub(crate) fn motion(&self, motion: &[Segment]) -> Vec<Segment> {
-        let segment = |s: &Segment| Segment {
-            start: self.pose(s.start),
-            start_time: s.start_time / self.time,
-            duration: number_on_grid(s.duration / self.time, DURATION_GRID_S),
-            speed: rounded(s.speed / self.speed()),
-            turn_rate: self.mirror * s.turn_rate * self.time,
+        let segment = |s: &Segment| {
+            Segment::new(
+                self.pose(s.start),
+                s.start_time / self.time,
+                number_on_grid(s.duration / self.time, DURATION_GRID_S),
+                rounded(s.speed / self.speed()),
+                self.mirror * s.turn_rate * self.time,
+            )
         };
         motion.iter().map(segment).collect()
     }
@@ -367,13 +359,13 @@ impl Similarity {
         // exactly one of own ship's speeds
         let known = self.speeds.iter().copied();
         let known = known.min_by(|a, b| (a - speed).abs().total_cmp(&(b - speed).abs()));
-        Segment {
-            start: self.restored_pose(s.start),
-            start_time: s.start_time * self.time,
-            duration: s.duration * self.time,
-            speed: known.unwrap_or(speed),
-            turn_rate: self.mirror * s.turn_rate / self.time,
-        }
+        Segment::new(
+            self.restored_pose(s.start),
+            s.start_time * self.time,
+            s.duration * self.time,
+            known.unwrap_or(speed),
+            self.mirror * s.turn_rate / self.time,
+        )
     }
 
     fn plan(&self, plan: Plan) -> Option<Plan> {

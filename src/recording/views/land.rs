@@ -21,10 +21,7 @@ pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()
             .with_radii([style::points(1.2)]),
     )?;
 
-    let window = Window {
-        low: canvas.bounds.low,
-        high: canvas.bounds.high,
-    };
+    let window = Window::new(canvas.bounds.low, canvas.bounds.high);
     let mut corners: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for piece in land.map.pieces_within(&window) {

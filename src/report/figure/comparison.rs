@@ -193,10 +193,10 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .flat_map(|(_, line)| line)
         .filter(|p| p.y <= top);
     let end = near.map(|p| p.x).fold(1.0, f64::max);
-    let window = PlotWindow {
-        low: Vector::new(0.0, 0.0),
-        high: Vector::new(end, if top > 0.0 { top } else { 1.0 }),
-    };
+    let window = PlotWindow::new(
+        Vector::new(0.0, 0.0),
+        Vector::new(end, if top > 0.0 { top } else { 1.0 }),
+    );
     let title = format!("{}: distance from the nearest target", scenario.title);
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
@@ -231,13 +231,13 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         right = right.max(p.x);
         top = top.max(p.y);
     }
-    let window = PlotWindow {
-        low: Vector::zeros(),
-        high: Vector::new(
+    let window = PlotWindow::new(
+        Vector::zeros(),
+        Vector::new(
             if right > 0.0 { right * 1.05 } else { 1.0 },
             if top > 0.0 { top * 1.08 } else { 1.0 },
         ),
-    };
+    );
     let title = format!("{}: cost of safety", scenario.title);
     let mut panel = Panel::free(
         title,

@@ -5,9 +5,7 @@
 use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
-use super::outline::{
-    Approaching, area, curve, mark, outer_velocities_within, sampled_boundary, square,
-};
+use super::outline::{Approaching, area, curve, mark, outer_velocities_within, sampled_boundary};
 use super::sections::PLAN;
 use super::{Panel, PlotWindow, Stroke};
 use crate::frame::Vector;
@@ -103,7 +101,11 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     let top = step * count as f64;
     panel.plots.push(scale(window, top, "dCPA [m]"));
     let far = ColorMap::Viridis.map(1.0 - 0.5 / count as f64);
-    panel.plots.extend(area(&square(limit), &far, 1.0));
+    panel.plots.extend(area(
+        &ConvexPolygon::rectangle(Vector::zeros(), limit, limit),
+        &far,
+        1.0,
+    ));
     for level in (0..count).rev() {
         for target in targets {
             let distance = step * level as f64;

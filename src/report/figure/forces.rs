@@ -63,10 +63,7 @@ fn over_time(
     let shown = PlotWindow::around(curves.iter().flatten().copied(), 0.0);
     let size = shown.size();
     let air = Vector::new(0.02 * size.x, 0.08 * size.y.max(LEAST_SPAN));
-    let window = PlotWindow {
-        low: shown.low - air,
-        high: shown.high + air,
-    };
+    let window = PlotWindow::new(shown.low - air, shown.high + air);
     let axis = format!("{title} [{unit}]");
     let mut panel = Panel::free(title.to_owned(), ["Time [s]", &axis], window);
     for ((label, stroke, _), points) in quantities.iter().zip(&curves) {

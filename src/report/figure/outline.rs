@@ -143,37 +143,31 @@ fn disc(radius: f64) -> Ellipse {
     Ellipse::from_axes(Vector::zeros(), axes)
 }
 
-/// Square of all velocities within `limit` east and north.
-pub fn square(limit: f64) -> ConvexPolygon {
-    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    ConvexPolygon::from_ccw(corners.map(|(x, y)| Vector::new(x, y) * limit).to_vec())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::obstacle::SpaceTimeObstacle;
     use crate::target::{TimedVelocitySet, Uncertainty};
 
-    fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
-        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-        let corners = corners.map(|(x, y)| center + Vector::new(x * length, y * beam));
-        ConvexPolygon::from_ccw(corners.to_vec())
-    }
-
     /// Compares the drawn regions with the exact closest approach.
     #[test]
     fn the_velocities_drawn_are_those_that_come_so_near() {
         let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));
-        let timed = [(70.0, 0.2), (f64::INFINITY, 0.9)]
-            .map(|(until, wide)| TimedVelocitySet::new(until, rectangle(way, wide, wide)));
-        let changing = Uncertainty::new(rectangle(place, 30.0, 10.0), timed.to_vec());
+        let timed = [(70.0, 0.2), (f64::INFINITY, 0.9)].map(|(until, wide)| {
+            TimedVelocitySet::new(until, ConvexPolygon::rectangle(way, wide, wide))
+        });
+        let changing =
+            Uncertainty::new(ConvexPolygon::rectangle(place, 30.0, 10.0), timed.to_vec());
         let ellipse = |center: Vector, a: f64, b: f64| {
             Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
         };
         let targets: [Obstacle; 3] = [
-            PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
-                .into(),
+            PolytopeObstacle::new(
+                "",
+                ConvexPolygon::rectangle(place, 30.0, 10.0),
+                ConvexPolygon::rectangle(way, 0.4, 0.2),
+            )
+            .into(),
             EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
             Obstacle::new("", changing).expect("increasing"),
         ];
@@ -201,8 +195,11 @@ mod tests {
 
     #[test]
     fn an_area_is_the_polygon_that_it_fills() {
-        let Some(Plot::Band(band)) = area(&rectangle(Vector::zeros(), 2.0, 1.0), "#000000", 1.0)
-        else {
+        let Some(Plot::Band(band)) = area(
+            &ConvexPolygon::rectangle(Vector::zeros(), 2.0, 1.0),
+            "#000000",
+            1.0,
+        ) else {
             panic!("a band");
         };
         assert_eq!(band.x, [-2.0, 2.0]);

@@ -51,10 +51,10 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     } else {
         horizon
     };
-    let window = PlotWindow {
-        low: Vector::zeros(),
-        high: Vector::new(diagram.map_or(1.0, PathTimeDiagram::length), top),
-    };
+    let window = PlotWindow::new(
+        Vector::zeros(),
+        Vector::new(diagram.map_or(1.0, PathTimeDiagram::length), top),
+    );
     let axes = ["Distance along the path [m]", "Time [s]"];
     let mut panel = Panel::free(title.to_owned(), axes, window);
     let mut named: Vec<usize> = Vec::new();

@@ -103,10 +103,10 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
     let [west, east] = [side(0), side(1)];
     let shown = PlotWindow::around(west.iter().chain(&east).copied(), 0.0);
     let margin = Vector::new(MARGIN * shown.size().x, 0.0);
-    let window = PlotWindow {
-        low: shown.low - margin,
-        high: shown.high + margin + Vector::new(0.0, 0.04 * end),
-    };
+    let window = PlotWindow::new(
+        shown.low - margin,
+        shown.high + margin + Vector::new(0.0, 0.04 * end),
+    );
     let axes = ["East [m]", "Time [s]"];
     let mut panel = Panel::free(title.to_owned(), axes, window);
     for boundary in [&west, &east] {

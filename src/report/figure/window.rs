@@ -12,6 +12,11 @@ pub struct PlotWindow {
 }
 
 impl PlotWindow {
+    /// The rectangle between two corners.
+    pub fn new(low: Vector, high: Vector) -> Self {
+        Self { low, high }
+    }
+
     /// Bounding box of points, with a margin of `share` of its longer side. Without finite points,
     /// a window of size 1 around the origin.
     pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {

@@ -12,10 +12,7 @@ const SPEED_SPREAD: f64 = 0.5;
 const COURSE_SPREAD_DEG: f64 = 5.0;
 
 /// Hull of a ship whose format has no size: 100 × 20 m, as published runs of Imazu's cases assume.
-pub(super) const USUAL_HULL: Hull = Hull {
-    length: 100.0,
-    beam: 20.0,
-};
+pub(super) const USUAL_HULL: Hull = Hull::new(100.0, 20.0);
 
 /// Own ship's turning radius in own lengths: a tactical diameter of five lengths, the largest that
 /// IMO resolution MSC.137(76) allows.
@@ -130,17 +127,14 @@ impl Assumed {
 
     /// Hull of a ship whose format has no size.
     pub(super) fn usual_hull(&self) -> Hull {
-        Hull {
-            length: self.length.unwrap_or(USUAL_HULL.length),
-            beam: self.beam.unwrap_or(USUAL_HULL.beam),
-        }
+        Hull::new(
+            self.length.unwrap_or(USUAL_HULL.length),
+            self.beam.unwrap_or(USUAL_HULL.beam),
+        )
     }
 
     /// Hull of a ship whose file lacks its size: only if the user gave one.
     pub(super) fn asked_hull(&self) -> Option<Hull> {
-        Some(Hull {
-            length: self.length?,
-            beam: self.beam?,
-        })
+        Some(Hull::new(self.length?, self.beam?))
     }
 }

@@ -1,8 +1,8 @@
 //! Import of files of other programs. The contents of a file tell its format, not its name. Each
 //! format is read into a [`Situation`], and every situation becomes a scenario in one way.
 //!
-//! A new format needs a file here that makes a [`Situation`], a variant of [`Format`] with its
-//! detection in [`Contents::parse`], and its name in `cli/input/scenes.rs`.
+//! A new format needs a file here that makes a [`Situation`], and its detection in
+//! [`Contents::parse`].
 
 mod assumed;
 mod commonocean;
@@ -22,30 +22,14 @@ use std::path::Path;
 use super::limits;
 use crate::input::{Fault, Faults, Field, InputError, from_json, read_text};
 
-/// Format of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// A DNV traffic situation.
-    Dnv,
-    /// Imazu's cases.
-    Imazu,
-    /// A CommonOcean scenario.
-    CommonOcean,
-}
-
 /// Contents of a file.
 #[derive(Debug)]
 pub enum Contents {
     /// A scenario file, or a text that can only be meant as one; to be read by
     /// [`Scenario::read`](super::Scenario::read).
     Scenario,
-    /// Situations of another program, in order, each good or with its own faults.
-    Situations {
-        /// The format.
-        format: Format,
-        /// At least one.
-        situations: Vec<Result<Situation, Vec<Fault>>>,
-    },
+    /// Situations of another program, in order, at least one, each good or with its own faults.
+    Situations(Vec<Result<Situation, Vec<Fault>>>),
     /// A result document or a map, which is not a scenario: its kind.
     Other(&'static str),
 }
@@ -77,10 +61,7 @@ fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
         let allowed = "a CommonOcean scenario (commonOcean)";
         return Err(vec![Fault::new(root, found, allowed)]);
     }
-    Ok(Contents::Situations {
-        format: Format::CommonOcean,
-        situations: commonocean::situations(&document)?,
-    })
+    Ok(Contents::Situations(commonocean::situations(&document)?))
 }
 
 fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
@@ -90,17 +71,12 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
     let has = |key: &str| value.get(key).is_some();
     let text_at = |key: &str| value.get(key).and_then(|v| v.as_text()).unwrap_or_default();
     if has("ownShip") || has("targetShips") {
-        return Ok(Contents::Situations {
-            format: Format::Dnv,
-            situations: vec![dnv::situation(&root, &faults)],
-        });
+        let situation = dnv::situation(&root, &faults);
+        return Ok(Contents::Situations(vec![situation]));
     }
     if has("cases") || has("own_ship") {
         let situations = imazu::situations(&root, &faults, assumed.variants())?;
-        return Ok(Contents::Situations {
-            format: Format::Imazu,
-            situations,
-        });
+        return Ok(Contents::Situations(situations));
     }
     if text_at("format").starts_with("searoom-") || (has("runs") && has("summary")) {
         return Ok(Contents::Other("a result document"));

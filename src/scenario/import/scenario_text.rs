@@ -1,12 +1,10 @@
 //! A situation as the text of a scenario file: the only way from an imported file to a scenario, so
 //! that importing a file and running it directly are the same.
 
-use std::fmt::{Display, Write};
-
 use super::assumed::{Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
 use super::situation::{GivenHull, Other, Own, Situation};
 use super::track::{Spread, Track};
-use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
+use crate::frame::{Geographic, Pose, Vector, course_deg_from_heading, deg_from_radians};
 use crate::geometry::{ConvexPolygon, outer_disc};
 use crate::input::Fault;
 use crate::scenario::{Scenario, limits};
@@ -81,22 +79,20 @@ impl<'a> Writing<'a> {
         }
     }
 
-    fn line(&mut self, line: impl Display) {
-        // writing to a string cannot fail
-        let _ = writeln!(self.text, "{line}");
+    fn add(&mut self, text: &str) {
+        self.text += text;
     }
 
     fn situation(&mut self) {
         let situation = self.situation;
         let own = &situation.own;
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
-        self.line(format_args!("title = {}", quoted(&situation.name)));
-        self.line(format_args!("horizon_s = {horizon:?}"));
+        let name = quoted(&situation.name);
+        self.add(&format!("title = {name}\nhorizon_s = {horizon:?}\n"));
         if let Some(earth) = situation.earth {
-            let origin = earth.origin();
-            self.line(format_args!(
-                "origin = {{ lat_deg = {:?}, lon_deg = {:?} }}",
-                origin.lat_deg, origin.lon_deg
+            let Geographic { lat_deg, lon_deg } = earth.origin();
+            self.add(&format!(
+                "origin = {{ lat_deg = {lat_deg:?}, lon_deg = {lon_deg:?} }}\n"
             ));
         }
         let Some(hull) = self.hull("own ship", &own.hull) else {
@@ -107,13 +103,8 @@ impl<'a> Writing<'a> {
             match other {
                 Other::Ship { name, hull, track } => {
                     if let Some(theirs) = self.hull(name, hull) {
-                        self.ship(
-                            name,
-                            theirs,
-                            track,
-                            hull_clearance(&hull_of(own, self.assumed), self.assumed),
-                            horizon,
-                        );
+                        let clearance = hull_clearance(&hull_of(own, self.assumed), self.assumed);
+                        self.ship(name, theirs, track, clearance, horizon);
                     }
                 }
                 Other::Fixed {
@@ -128,52 +119,38 @@ impl<'a> Writing<'a> {
                         self.assumed.safety_margin(own.length)
                     };
                     let disc = outer_disc(own.half_diagonal() + margin, 0.0);
-                    self.line(format_args!("\n[[targets]]\nname = {}", quoted(name)));
                     let set = vertices(&shape.minkowski_sum(&disc));
-                    self.line(format_args!("initial_set = {{ vertices_m = {set} }}"));
-                    self.line("velocity_set = { vertices_mps = [[0.0, 0.0]] }");
+                    self.add(&format!(
+                        "\n[[targets]]\nname = {}\ninitial_set = {{ vertices_m = {set} }}\n\
+                         velocity_set = {{ vertices_mps = [[0.0, 0.0]] }}\n",
+                        quoted(name)
+                    ));
                 }
             }
         }
     }
 
     fn own_ship(&mut self, own: &Own, hull: Hull) {
-        self.line("\n[own_ship]");
-        self.line(format_args!("position = {}", position(own.pose.position)));
-        self.line(format_args!(
-            "course_deg = {:?}",
-            course_deg_from_heading(own.pose.heading)
+        let Hull { length, beam } = hull;
+        self.add(&format!(
+            "\n[own_ship]\n{}length_m = {length:?}\nbeam_m = {beam:?}\n\
+             turning_radius_m = {:?}\nsafety_margin_m = {:?}\n",
+            under_way(&own.pose, own.speed),
+            TURNING_LENGTHS * length,
+            self.assumed.safety_margin(length),
         ));
-        self.line(format_args!("speed_mps = {:?}", own.speed));
-        self.line(format_args!(
-            "length_m = {:?}\nbeam_m = {:?}",
-            hull.length, hull.beam
-        ));
-        self.line(format_args!(
-            "turning_radius_m = {:?}",
-            TURNING_LENGTHS * hull.length
-        ));
-        let margin = self.assumed.safety_margin(hull.length);
-        self.line(format_args!("safety_margin_m = {margin:?}"));
         if own.speed == 0.0 {
             // the default speeds of a scenario file are fractions of own speed
-            let speeds: Vec<f64> = own
-                .leg_speeds
-                .iter()
-                .flat_map(|v| [0.5 * v, *v, 1.2 * v])
-                .collect();
-            self.line(format_args!("speeds_mps = {speeds:?}"));
+            let speeds = own.leg_speeds.iter();
+            let speeds: Vec<f64> = speeds.flat_map(|v| [0.5 * v, *v, 1.2 * v]).collect();
+            self.add(&format!("speeds_mps = {speeds:?}\n"));
         }
-        let route: Vec<String> = own
-            .route
-            .iter()
-            .map(|p| format!("    {},\n", position(*p)))
-            .collect();
-        self.line(format_args!(
-            "\n[mission]\nwaypoints = [\n{}]",
-            route.concat()
+        let route = own.route.iter();
+        let route: String = route.map(|p| format!("    {},\n", position(*p))).collect();
+        self.add(&format!(
+            "\n[mission]\nwaypoints = [\n{route}]\nleg_speeds_mps = {:?}\n",
+            own.leg_speeds
         ));
-        self.line(format_args!("leg_speeds_mps = {:?}", own.leg_speeds));
     }
 
     /// The given or assumed hull; a fault if there is none.
@@ -211,45 +188,34 @@ impl<'a> Writing<'a> {
             speed: self.assumed.speed_spread(),
             course: self.assumed.course_spread(),
         };
-        self.line(format_args!("\n[[targets]]\nname = {}", quoted(name)));
+        self.add(&format!("\n[[targets]]\nname = {}\n", quoted(name)));
         if let Some(steady) = track.steady(&spread) {
-            self.line(format_args!(
-                "position = {}",
-                position(steady.pose.position)
-            ));
-            self.line(format_args!(
-                "course_deg = {:?}",
-                course_deg_from_heading(steady.pose.heading)
-            ));
-            self.line(format_args!("speed_mps = {:?}", steady.speed));
-            self.line(format_args!(
-                "length_m = {:?}\nbeam_m = {:?}",
-                hull.length, hull.beam
-            ));
-            self.line(format_args!("speed_spread_mps = {:?}", steady.spread.speed));
+            let Hull { length, beam } = hull;
             let course_spread =
                 deg_from_radians(steady.spread.course).min(limits::COURSE_SPREAD.high);
-            self.line(format_args!("course_spread_deg = {course_spread:?}"));
+            self.add(&format!(
+                "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
+                 course_spread_deg = {course_spread:?}\n",
+                under_way(&steady.pose, steady.speed),
+                steady.spread.speed
+            ));
         } else {
             // explicit sets have no hull: the initial set contains both hulls and the margin
             let around = outer_disc(hull.half_diagonal() + clearance, 0.0);
             let initial = vertices(&around.translated(track.start()));
-            self.line(format_args!(
-                "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = ["
+            self.add(&format!(
+                "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = [\n"
             ));
             let sets = track.outer_velocity_sets(&spread, horizon, limits::VELOCITY_SETS);
             for (until, velocities) in sets {
-                let velocities = vertices(&velocities);
-                let until = if until.is_finite() {
-                    format!("until_s = {until:?}, ")
-                } else {
-                    String::new()
+                let until = match until {
+                    f64::INFINITY => String::new(),
+                    until => format!("until_s = {until:?}, "),
                 };
-                self.line(format_args!(
-                    "    {{ {until}vertices_mps = {velocities} }},"
-                ));
+                let velocities = vertices(&velocities);
+                self.add(&format!("    {{ {until}vertices_mps = {velocities} }},\n"));
             }
-            self.line("]");
+            self.add("]\n");
             self.notes.push(format!(
                 "{name}: a track with changes, as velocity sets one after another; \
                  margin and hulls on any heading are in its set"
@@ -283,11 +249,15 @@ fn quoted(text: &str) -> String {
 }
 
 fn position(point: Vector) -> String {
-    format!(
-        "{{ east_m = {:?}, north_m = {:?} }}",
-        point.x + 0.0,
-        point.y + 0.0
-    )
+    let (east, north) = (point.x + 0.0, point.y + 0.0);
+    format!("{{ east_m = {east:?}, north_m = {north:?} }}")
+}
+
+/// Position, course and speed, a line each.
+fn under_way(pose: &Pose, speed: f64) -> String {
+    let course = course_deg_from_heading(pose.heading);
+    let position = position(pose.position);
+    format!("position = {position}\ncourse_deg = {course:?}\nspeed_mps = {speed:?}\n")
 }
 
 fn vertices(polygon: &ConvexPolygon) -> String {

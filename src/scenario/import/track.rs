@@ -73,10 +73,7 @@ impl Stretch {
         ShipTrack {
             pose: Pose::new(Vector::zeros(), self.course),
             speed: 0.5 * (self.slow + self.fast),
-            hull: Hull {
-                length: 0.0,
-                beam: 0.0,
-            },
+            hull: Hull::new(0.0, 0.0),
             position_std: 0.0,
             speed_spread: 0.5 * (self.fast - self.slow) + spread.speed,
             course_spread: self.half + spread.course,

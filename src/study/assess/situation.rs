@@ -33,12 +33,6 @@ impl OwnSituation<'_> {
 
     /// Motion at constant course and speed over the horizon.
     pub fn held(&self) -> Segment {
-        Segment {
-            start: self.pose,
-            start_time: 0.0,
-            duration: self.horizon,
-            speed: self.speed,
-            turn_rate: 0.0,
-        }
+        Segment::straight(self.pose, 0.0, self.horizon, self.speed)
     }
 }

@@ -127,13 +127,12 @@ pub(super) fn baseline(
     let least = (scenario.desired.end() - own.pose.position - direction(heading) * along).norm();
     let arrival = if speed > 0.0 { along / speed } else { -1.0 };
     let arrived = least <= tolerance::ARRIVAL_M && arrival > 0.0 && arrival <= scenario.horizon;
-    let segment = Segment {
-        start: Pose::new(own.pose.position, heading),
-        start_time: 0.0,
-        duration: if arrived { arrival } else { scenario.horizon },
+    let segment = Segment::straight(
+        Pose::new(own.pose.position, heading),
+        0.0,
+        if arrived { arrival } else { scenario.horizon },
         speed,
-        turn_rate: 0.0,
-    };
+    );
     let trajectory = Trajectory::from(segment);
     let mut evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
     super::count_alike(&mut evaluation, scenario, &trajectory);

@@ -23,13 +23,7 @@ pub fn chain(from: &Pose, time: f64, speed: f64, radius: f64, pieces: &[Piece]) 
             Piece::Run(length) => (length, 0.0),
         };
         if length > 1e-9 {
-            let segment = Segment {
-                start: pose,
-                start_time: now,
-                duration: length / speed,
-                speed,
-                turn_rate: turn * speed / radius,
-            };
+            let segment = Segment::new(pose, now, length / speed, speed, turn * speed / radius);
             (pose, now) = (segment.end(), segment.end_time());
             segments.push(segment);
         }

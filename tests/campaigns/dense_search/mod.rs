@@ -227,13 +227,13 @@ impl Scene<'_> {
         let mut steps = Vec::with_capacity(9);
         for &speed in &own.speeds {
             for turn in [0.0, -1.0, 1.0] {
-                steps.push(Segment {
-                    start: *pose,
-                    start_time: time,
-                    duration: step,
+                steps.push(Segment::new(
+                    *pose,
+                    time,
+                    step,
                     speed,
-                    turn_rate: turn * speed / own.turning_radius,
-                });
+                    turn * speed / own.turning_radius,
+                ));
             }
         }
         steps
@@ -404,13 +404,7 @@ impl Scene<'_> {
         for (speed, duration) in [(speed, Some(recover)), (leg.speed, None)] {
             let duration = duration.unwrap_or((leg.length - along) / speed);
             if duration > 1e-9 {
-                let segment = Segment {
-                    start: pose,
-                    start_time: now,
-                    duration,
-                    speed,
-                    turn_rate: 0.0,
-                };
+                let segment = Segment::straight(pose, now, duration, speed);
                 (pose, now, along) = (segment.end(), segment.end_time(), along + speed * duration);
                 back.push(segment);
             }

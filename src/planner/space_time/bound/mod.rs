@@ -234,6 +234,7 @@ mod tests {
     use crate::frame::Vector;
     use crate::planner::cost::space_time_error;
     use crate::trajectory::Segment;
+    use crate::vessel::fixtures::own_ship;
     use rand::{Rng, SeedableRng};
 
     /// Random lines and arcs, then a path to the end: compares the bound at every joint with the
@@ -251,17 +252,7 @@ mod tests {
         for round in 0..3000 {
             let points = if round % 3 == 0 { &bent } else { &straight };
             let desired = DesiredTrajectory::new(points, &[5.0, 5.0]).expect("valid");
-            let own = OwnShip {
-                pose: Pose::new(Vector::zeros(), 0.0),
-                speed: 5.0,
-                hull: crate::vessel::Hull {
-                    length: 0.0,
-                    beam: 0.0,
-                },
-                turning_radius: 100.0,
-                speeds: vec![6.0],
-                safety_margin: 0.0,
-            };
+            let own = own_ship(&[6.0]);
             let bound = Heuristic::new(&desired, 25.0, &own, ObstacleBound::none());
             let mut pose = Pose::new(
                 Vector::new(
@@ -276,13 +267,7 @@ mod tests {
                 let speed = [2.5, 5.0, 6.0][rng.random_range(0..3)];
                 let turn_rate = [0.0, speed / 100.0, -speed / 100.0][rng.random_range(0..3)];
                 let duration = rng.random_range(1.0..40.0);
-                let s = Segment {
-                    start: pose,
-                    start_time: time,
-                    duration,
-                    speed,
-                    turn_rate,
-                };
+                let s = Segment::new(pose, time, duration, speed, turn_rate);
                 nodes.push((pose, time, space_time_error(&desired, &s, 25.0)));
                 (pose, time) = (s.end(), s.end_time());
             }
@@ -300,13 +285,7 @@ mod tests {
             let path = crate::vessel::dubins::shortest(&pose, &target, 100.0).expect("finite");
             for piece in path.pieces {
                 let turn_rate = piece.turn.map_or(0.0, |s| s.turn_sign() * speed / 100.0);
-                let s = Segment {
-                    start: pose,
-                    start_time: time,
-                    duration: piece.length / speed,
-                    speed,
-                    turn_rate,
-                };
+                let s = Segment::new(pose, time, piece.length / speed, speed, turn_rate);
                 nodes.push((pose, time, space_time_error(&desired, &s, 25.0)));
                 (pose, time) = (s.end(), s.end_time());
             }

@@ -172,8 +172,8 @@ impl CostToGoGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::fixtures::{own_ship, problem};
     use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::fixtures::own_ship;
     use std::time::Duration;
 
     #[test]
@@ -181,7 +181,7 @@ mod tests {
         let points = [Vector::zeros(), Vector::new(1000.0, 0.0)];
         let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
         let own = own_ship(&[5.0]);
-        let problem = problem(&own, &desired, &[], 400.0);
+        let problem = Problem::new(&own, &desired, &[], 400.0);
         let within = |time| CostToGoGrid::of(&problem, &[], Clock::new(time));
         assert!(within(Duration::ZERO).is_none());
         let grid = within(Duration::from_secs(60)).expect("a grid");

@@ -333,12 +333,8 @@ fn evasive_turns(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
 
 /// Arc and line until the horizon; a wait where the speed is zero.
 fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
-    let line = |start, start_time: f64| Segment {
-        start,
-        start_time,
-        duration: (horizon - start_time).max(0.0),
-        speed,
-        turn_rate: 0.0,
+    let line = |start, start_time: f64| {
+        Segment::straight(start, start_time, (horizon - start_time).max(0.0), speed)
     };
     if turn == 0.0 || speed == 0.0 {
         return vec![line(own.pose, 0.0)];
@@ -444,7 +440,7 @@ fn append(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::fixtures::own_ship;
+    use crate::vessel::fixtures::own_ship;
     use std::cell::Cell;
 
     #[test]

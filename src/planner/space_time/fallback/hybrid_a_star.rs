@@ -83,13 +83,9 @@ impl State {
                 chain.line(line);
                 chain.segments
             }
-            Some(Primitive::Wait { duration }) => vec![Segment {
-                start: pose,
-                start_time: time,
-                duration,
-                speed: 0.0,
-                turn_rate: 0.0,
-            }],
+            Some(Primitive::Wait { duration }) => {
+                vec![Segment::straight(pose, time, duration, 0.0)]
+            }
             None => Vec::new(),
         }
     }

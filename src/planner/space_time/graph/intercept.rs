@@ -352,6 +352,7 @@ impl Interceptor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::fixtures::random_vector;
     use rand::{Rng, SeedableRng};
 
     #[test]
@@ -368,11 +369,8 @@ mod tests {
             };
             let interceptor =
                 Interceptor::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
-            let origin = Vector::new(
-                rng.random_range(-900.0..900.0),
-                rng.random_range(-900.0..900.0),
-            );
-            let velocity = Vector::new(rng.random_range(-7.0..7.0), rng.random_range(-7.0..7.0));
+            let origin = random_vector(&mut rng, 900.0);
+            let velocity = random_vector(&mut rng, 7.0);
             let limits = Limits {
                 turn: 2.0,
                 time: interceptor.time + 300.0,

@@ -272,13 +272,12 @@ impl<'a> Graph<'a> {
                     if speed > 0.0 {
                         self.route.run(at, departure, goal - at, speed, &mut motion);
                     } else {
-                        motion.push(Segment {
-                            start: pose,
-                            start_time: departure,
-                            duration: corner.time - departure,
+                        motion.push(Segment::straight(
+                            pose,
+                            departure,
+                            corner.time - departure,
                             speed,
-                            turn_rate: 0.0,
-                        });
+                        ));
                     }
                     let at = if speed > 0.0 { goal } else { at };
                     motion.extend(self.route.follow(at, corner.time));

@@ -98,14 +98,7 @@ mod tests {
             let mut at = pose;
             for (length, bend) in [(back.first, true), (back.line, false), (back.last, true)] {
                 let curvature = if bend { length.signum() / 100.0 } else { 0.0 };
-                at = crate::trajectory::Segment {
-                    start: at,
-                    start_time: 0.0,
-                    duration: length.abs(),
-                    speed: 1.0,
-                    turn_rate: curvature,
-                }
-                .end();
+                at = crate::trajectory::Segment::new(at, 0.0, length.abs(), 1.0, curvature).end();
             }
             let ahead = crate::frame::direction(heading);
             assert!(cross(ahead, at.position - origin).abs() < 1e-9, "{back:?}");

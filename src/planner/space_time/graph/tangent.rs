@@ -370,6 +370,7 @@ fn wrap_difference(apart: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::frame::Pose;
+    use crate::geometry::fixtures::random_vector;
     use crate::geometry::{ConvexPolygon, outer_disc};
     use crate::planner::space_time::piece::{Body, Piece};
     use rand::{Rng, SeedableRng};
@@ -382,10 +383,7 @@ mod tests {
         let (mut found, mut missed) = (0, 0);
         for _ in 0..400 {
             let drift = direction(rng.random_range(-3.1..3.1)) * rng.random_range(0.0..7.0);
-            let centre = Vector::new(
-                rng.random_range(-900.0..900.0),
-                rng.random_range(-900.0..900.0),
-            );
+            let centre = random_vector(&mut rng, 900.0);
             let spread: Vec<Vector> = (0..5)
                 .map(|k| drift + direction(f64::from(k)) * rng.random_range(0.1..1.0))
                 .collect();

@@ -270,7 +270,7 @@ impl Span {
     }
 }
 
-/// OwnTerms ship's velocity at a minimum on the edge of a time window: there the instant is fixed,
+/// Own ship's velocity at a minimum on the edge of a time window: there the instant is fixed,
 /// not the fraction of the segment.
 fn velocity_at_edge<F>(proxy: &Proxy, rollout: &Rollout, least: &Minimum<F>) -> Option<Vector> {
     let window = proxy.window?;

@@ -223,8 +223,8 @@ pub(crate) mod tests {
     use crate::frame::{Side, Vector};
     use crate::geometry::outer_disc;
     use crate::obstacle::PolytopeObstacle;
+    use crate::planner::Problem;
     use crate::planner::clock::Clock;
-    use crate::planner::fixtures::{own_ship, problem};
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::proxy::Proxy;
     use crate::planner::space_time::refinement::InitialGuess;
@@ -234,6 +234,7 @@ pub(crate) mod tests {
     use crate::planner::space_time::route::Route;
     use crate::planner::space_time::selection::initial_guess::{Conflict, EvasiveManoeuvre};
     use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::fixtures::own_ship;
 
     /// Runs a check on three manoeuvres near a target with all segment variables in use: two that
     /// return and one that ends at the goal.
@@ -251,7 +252,7 @@ pub(crate) mod tests {
             velocity.expect("finite"),
         )
         .into()];
-        let problem = problem(&own, &desired, &obstacles, 900.0);
+        let problem = Problem::new(&own, &desired, &obstacles, 900.0);
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];

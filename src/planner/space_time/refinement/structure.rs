@@ -291,13 +291,7 @@ impl Cursor {
             from = to;
         }
         if from == 0.0 {
-            let segment = Segment {
-                start: self.pose,
-                start_time: self.time,
-                duration: 0.0,
-                speed,
-                turn_rate: 0.0,
-            };
+            let segment = Segment::straight(self.pose, self.time, 0.0, speed);
             rollout.legs.push(Leg {
                 segment,
                 ahead: self.ahead,
@@ -324,13 +318,13 @@ impl Cursor {
             _ => 0.0,
         };
         let speed = variable.speed();
-        let segment = Segment {
-            start: self.pose,
-            start_time: self.time,
-            duration: length / speed,
+        let segment = Segment::new(
+            self.pose,
+            self.time,
+            length / speed,
             speed,
-            turn_rate: curvature * speed,
-        };
+            curvature * speed,
+        );
         rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,

@@ -54,10 +54,7 @@ fn one(entry: &Xml) -> Option<Shape> {
                 Some(angle) => angle.number(ANGLE.in_unit("rad"))?,
                 None => 0.0,
             };
-            let hull = Hull {
-                length: length?,
-                beam: width?,
-            };
+            let hull = Hull::new(length?, width?);
             hull.polygon(&Pose::new(center, angle))
         }
         "circle" => {

@@ -282,10 +282,7 @@ fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
         );
         return None;
     };
-    Some(GivenHull::Known(Hull {
-        length: only.length,
-        beam: only.width,
-    }))
+    Some(GivenHull::Known(Hull::new(only.length, only.width)))
 }
 
 /// Track with a leg between consecutive states, at the speed that it takes.

@@ -108,10 +108,7 @@ fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
 fn place(field: &Field) -> Option<Geographic> {
     let lat_deg = field.required_number("lat", limits::LATITUDE.in_unit("degrees north"));
     let lon_deg = field.required_number("lon", limits::LONGITUDE.in_unit("degrees east"));
-    Some(Geographic {
-        lat_deg: lat_deg?,
-        lon_deg: lon_deg?,
-    })
+    Some(Geographic::new(lat_deg?, lon_deg?))
 }
 
 fn waypoints<'a>(ship: &Field<'a>, least: usize) -> Option<Vec<Field<'a>>> {

@@ -139,7 +139,7 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
     });
     let [length, width] = [lengths[0]?, lengths[1]?];
     Some(match (length, width) {
-        (Some(length), Some(beam)) => GivenHull::Known(Hull { length, beam }),
+        (Some(length), Some(beam)) => GivenHull::Known(Hull::new(length, beam)),
         (None, _) => GivenHull::Missing(format!("{}.length", field.path())),
         (_, None) => GivenHull::Missing(format!("{}.width", field.path())),
     })
