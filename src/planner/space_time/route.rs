@@ -507,9 +507,11 @@ fn past(at: f64, step: f64) -> f64 {
     (at + step).max(at.next_up())
 }
 
-/// True where the rules ask for plain manoeuvres.
+/// True where own ship is in an encounter from before, and the rules ask for plain manoeuvres: it is
+/// near its route then, and rarely exactly on it.
 fn asks_for_plain(problem: &Problem) -> bool {
-    !problem.encountered.is_empty() || problem.under_way.is_some()
+    let mut encountered = problem.encountered.iter();
+    encountered.any(|e| e.risk_since < 0.0) || problem.under_way.is_some()
 }
 
 /// Candidate joining points on the path: `(leg, metres along it)`.
