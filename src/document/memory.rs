@@ -19,7 +19,7 @@ use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{DomainKind, Motion, ShipTrack, Uncertainty};
 use crate::tolerance::{self, POSITION_SIGMAS};
 use crate::trajectory::Segment;
-use crate::vessel::Hull;
+use crate::vessel::{Hull, OwnShip};
 
 /// Own ship may be this far from where the previous plan has it: own lengths, and degrees.
 const OFF_PLAN_LENGTHS: f64 = 1.0;
@@ -304,7 +304,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             first_heading: manoeuvre.first_heading,
             turn: manoeuvre.turn,
             heading: steered.end().heading,
-            speed: steered.speed,
+            speed: nearest_speed(own, steered.speed),
             aside: aside(&remainder, manoeuvre),
             is_returning: manoeuvre.returns <= 0.0,
         }),
@@ -321,6 +321,13 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
         manoeuvres,
         targets,
     })
+}
+
+/// The nearest of own ship's speeds, which may have changed.
+fn nearest_speed(own: &OwnShip, speed: f64) -> f64 {
+    let off = |u: &f64| (u - speed).abs();
+    let nearest = own.moving_speeds().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.unwrap_or(speed)
 }
 
 /// Seconds on the course that own ship steers or turns to, until it turns again before its return;
