@@ -99,7 +99,8 @@ struct Sailed {
     relaxed: usize,
     /// Cycles after which the plan turns back, though a manoeuvre was under way.
     turned_back: usize,
-    /// Cycles whose plan is dearer than the remainder of the last one, which is clear.
+    /// Cycles whose plan is dearer than the remainder of the last one, which is clear, but breaks
+    /// more rules by the judges.
     dearer: usize,
     milliseconds: Vec<f64>,
 }
@@ -300,7 +301,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
                 format!("{name}: {unsafe_plans} unsafe plans")
             });
             report.require(
-                behaviour != Behaviour::Constant || how.off > 0.0 || dearer == 0,
+                behaviour != Behaviour::Constant || 1000 * dearer <= sum(&|s| s.cycles),
                 || format!("{name}: {dearer} plans are dearer than the remainder"),
             );
         }

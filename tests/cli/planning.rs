@@ -543,14 +543,16 @@ fn sets_are_of_the_kind_that_was_asked_for() {
     }
 }
 
-/// The head-on scene 60 s later, own ship in the middle of its manoeuvre by the plan.
-fn a_minute_later(scenario: &str, plan: &Value) -> String {
+/// The head-on scene 60 s later, own ship in the middle of its manoeuvre, metres beside the plan.
+fn a_minute_later(scenario: &str, plan: &Value, beside: f64) -> String {
     let samples = plan["trajectory"]["samples"].as_array().expect("samples");
     let now = samples.iter().find(|s| s["t_s"] == 60.0).expect("a sample");
     let place = "position = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0";
     let there = format!(
         "position = {{ east_m = {}, north_m = {} }}\ncourse_deg = {}",
-        now["east_m"], now["north_m"], now["course_deg"]
+        now["east_m"].as_f64().expect("metres") + beside,
+        now["north_m"],
+        now["course_deg"]
     );
     let later = scenario
         .replace("horizon_s", "time_s = 60.0\nhorizon_s")
@@ -570,7 +572,7 @@ fn a_plan_goes_on_from_the_previous_one() {
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
     let previous = write(folder.path(), "first.json", first.to_string());
-    let later = a_minute_later(&scenario, &first);
+    let later = a_minute_later(&scenario, &first, 0.0);
     let file = write(folder.path(), "later.toml", later.clone());
     let go_on = |file: &str| searoom(&["plan", file, "--previous", &previous, "--json"]);
     let second = document(&go_on(&file).success());
@@ -586,6 +588,17 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert_ne!(anew["encounters"][0]["breaches"], Value::Array(vec![]));
     let verified = write(folder.path(), "second.json", second.to_string());
     searoom(&["verify", &verified]).success();
+
+    // a metre beside the plan its remainder is of no use, but the manoeuvre goes on
+    let beside = write(
+        folder.path(),
+        "beside.toml",
+        a_minute_later(&scenario, &first, 1.0),
+    );
+    let third = document(&go_on(&beside).success());
+    assert!((begins(&first) - 60.0 - begins(&third)).abs() < 1e-9);
+    assert_eq!(third["memory"]["keeps_plan"], false);
+    assert_eq!(third["encounters"][0]["breaches"], Value::Array(vec![]));
 
     let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
     let turned = write(folder.path(), "turned.toml", turned);
@@ -606,7 +619,7 @@ fn a_previous_plan_that_does_not_fit_is_named() {
     let mut altered = first.clone();
     altered["own_ship"]["length_m"] = 31.0.into();
     let altered = write(folder.path(), "altered.json", altered.to_string());
-    let later = a_minute_later(&scenario, &first);
+    let later = a_minute_later(&scenario, &first, 0.0);
     for (old, new, message) in [
         (
             "time_s = 60.0",
