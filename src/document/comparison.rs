@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::alteration::largest_alteration;
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
 use super::plan::{cost_of, finite, minimised, objective, position, stats, timing};
 use crate::evaluation::{Safety, outcome_word};
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Inapplicable};
+use crate::trajectory::largest_alteration;
 
 /// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
 /// steps.

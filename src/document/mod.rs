@@ -4,7 +4,6 @@
 //! Non-finite numbers are written as null.
 #![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
-mod alteration;
 mod assessment;
 mod comparison;
 mod control;

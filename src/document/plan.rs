@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
 use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
@@ -23,7 +22,7 @@ use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
 use crate::scenario::Scenario;
 use crate::tolerance;
-use crate::trajectory::{Segment, Steered, Trajectory};
+use crate::trajectory::{Alteration, Segment, Steered, Trajectory, first_alteration};
 
 /// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -296,7 +295,7 @@ pub(super) fn cost_of(
     }
 }
 
-fn turn(turn: Turn) -> TurnDocument {
+fn turn(turn: Alteration) -> TurnDocument {
     TurnDocument {
         side: turn.side.to_string(),
         turn_deg: turn.degrees,

@@ -1,5 +1,6 @@
 //! Trajectories: lines and arcs in time, the desired trajectory, and the network of paths.
 
+mod alteration;
 mod desired;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -7,6 +8,7 @@ mod network;
 mod segment;
 mod steered;
 
+pub(crate) use alteration::{Alteration, first_alteration, largest_alteration};
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;

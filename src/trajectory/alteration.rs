@@ -1,14 +1,14 @@
 //! Course alterations of a motion.
 
+use super::Trajectory;
 use crate::frame::{Side, deg_from_radians, wrap};
-use crate::trajectory::Trajectory;
 
 /// Angle in degrees below which an alteration is not visible and does not count as a turn.
 const LEAST_TURN_DEG: f64 = 0.5;
 
 /// Alteration of course to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turn {
+pub(crate) struct Alteration {
     pub side: Side,
     /// Angle in degrees, positive.
     pub degrees: f64,
@@ -17,13 +17,13 @@ pub(crate) struct Turn {
 }
 
 /// First alteration of course. Corners of a path do not count.
-pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
+pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Alteration> {
     turns(trajectory, None).into_iter().next()
 }
 
 /// Largest alteration of course to one side. Corners of the path count, and so does the initial
 /// turn from the course `before`, in radians.
-pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
+pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Alteration> {
     let all = turns(trajectory, Some(before)).into_iter();
     all.reduce(|most, turn| {
         if turn.degrees > most.degrees {
@@ -37,7 +37,7 @@ pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option
 /// Lists all visible turns in order of time. Consecutive arcs to one side form one turn; a straight
 /// segment ends it. Under forces, turns are swings of the heading. Corners between segments count
 /// if a course `before` the start is given.
-fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
+fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Alteration> {
     if let Some(motion) = trajectory.steered() {
         let swings = motion.swings().into_iter();
         return swings
@@ -73,10 +73,10 @@ fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
 }
 
 /// Converts a heading change in radians to a turn; `None` if it is not visible.
-fn visible(turned: f64, start: f64) -> Option<Turn> {
+fn visible(turned: f64, start: f64) -> Option<Alteration> {
     let degrees = deg_from_radians(turned.abs());
     let side = Side::of_turn(turned)?;
-    (degrees >= LEAST_TURN_DEG).then_some(Turn {
+    (degrees >= LEAST_TURN_DEG).then_some(Alteration {
         side,
         degrees,
         start,
@@ -132,7 +132,7 @@ mod tests {
             });
             Trajectory::from(Steered::new(nodes.collect()).expect("in order"))
         };
-        let found = |turn: Option<Turn>| turn.map(|t| (t.side, t.degrees.round()));
+        let found = |turn: Option<Alteration>| turn.map(|t| (t.side, t.degrees.round()));
         for (courses, first, largest) in [
             (vec![10.0, 12.0, 9.0, 13.0, 8.5], None, None),
             // two degrees to port first, and again at the end
