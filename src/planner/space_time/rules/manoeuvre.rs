@@ -7,7 +7,8 @@
 //! ```
 //!
 //! A manoeuvre has at most five parameters. For the latest departure that has a clear manoeuvre,
-//! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few changes of speed by construction.
+//! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few
+//! changes of speed by construction. Of a manoeuvre under way only what has not been done is open.
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, ON_COURSE, Role, SMALL_TURN,
@@ -83,9 +84,9 @@ const EARLIER_S: f64 = 60.0;
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
 
-/// A manoeuvre of the family.
+/// Parameters of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Manoeuvre {
+struct Parameters {
     /// Seconds at which the route is left.
     leave: f64,
     first: FirstAlteration,
@@ -108,7 +109,7 @@ enum FirstAlteration {
 pub(super) struct Found {
     /// The manoeuvre that it goes on with.
     pub begun: Option<UnderWay>,
-    manoeuvre: Manoeuvre,
+    manoeuvre: Parameters,
     pub motion: Vec<Segment>,
     /// Seconds at which own ship turns back or changes its speed back.
     returns: f64,
@@ -533,7 +534,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The cheapest clear manoeuvre that begins at a time.
     fn cheapest(&self, leave: f64) -> Option<Found> {
-        let mut candidates: Vec<(f64, usize, Manoeuvre)> = Vec::new();
+        let mut candidates: Vec<(f64, usize, Parameters)> = Vec::new();
         let outs = self
             .clear_outward_legs(leave)
             .take_while(|_| !self.clock.is_up());
@@ -546,7 +547,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 };
                 let rank = self.rank(&first, &motion, joined);
                 if rank.is_finite() {
-                    let manoeuvre = Manoeuvre {
+                    let manoeuvre = Parameters {
                         leave,
                         first,
                         after,
@@ -615,7 +616,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// A manoeuvre, if it is clear and cheaper than a rank.
-    fn found(&self, manoeuvre: &Manoeuvre, below: f64) -> Option<Found> {
+    fn found(&self, manoeuvre: &Parameters, below: f64) -> Option<Found> {
         let before = until(self.nominal_motion, manoeuvre.leave);
         let out = self.out(&before, manoeuvre.leave, manoeuvre.first)?;
         let (motion, joined) = self.completed(&out, (manoeuvre.after, manoeuvre.back))?;
@@ -857,7 +858,7 @@ impl OutwardLeg {
     }
 }
 
-impl Manoeuvre {
+impl Parameters {
     /// One parameter changed by a step; `None` where it has none.
     fn stepped(&self, parameter: usize, step: f64, unit: f64) -> Option<Self> {
         let mut next = *self;
