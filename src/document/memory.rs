@@ -237,7 +237,9 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
     if !(metres <= most && degrees <= OFF_PLAN_DEG) {
         return Err(Fault::new(
             "trajectory.segments",
-            format_args!("own ship {metres:.1} m and {degrees:.1} degrees away now"),
+            format_args!(
+                "own ship {metres:.1} m and {degrees:.1} degrees from where the plan has it"
+            ),
             format_args!("at most {most} m, own length, and {OFF_PLAN_DEG} degrees"),
         ));
     }

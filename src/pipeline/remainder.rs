@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::relaxation::Attempt;
 use super::rules;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{Outcome, Plan, Planned, PlannedManoeuvre, Problem};
+use crate::planner::{Minimises, Outcome, Plan, Planned, PlannedManoeuvre, Problem};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -29,6 +29,10 @@ pub(super) fn better_remainder(
     problem: &Problem,
     attempt: &Attempt,
 ) -> Option<Remainder> {
+    // motions under forces are not of lines and arcs
+    if matches!(scenario.planner.facts().minimises, Minimises::Own(_)) {
+        return None;
+    }
     let plan = remainder(scenario, problem, &attempt.obstacles)?;
     let breaks = |plan: &Plan| match scenario.compliance {
         Compliance::Rules => rules::breaks(scenario, &plan.trajectory),

@@ -543,10 +543,13 @@ fn sets_are_of_the_kind_that_was_asked_for() {
     }
 }
 
-/// The head-on scene 60 s later, own ship in the middle of its manoeuvre, metres beside the plan.
-fn a_minute_later(scenario: &str, plan: &Value, beside: f64) -> String {
+/// The head-on scene some whole seconds later, own ship metres beside its plan.
+fn later_on(scenario: &str, plan: &Value, seconds: u32, beside: f64) -> String {
     let samples = plan["trajectory"]["samples"].as_array().expect("samples");
-    let now = samples.iter().find(|s| s["t_s"] == 60.0).expect("a sample");
+    let now = samples
+        .iter()
+        .find(|s| s["t_s"] == f64::from(seconds))
+        .expect("a sample");
     let place = "position = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0";
     let there = format!(
         "position = {{ east_m = {}, north_m = {} }}\ncourse_deg = {}",
@@ -555,14 +558,17 @@ fn a_minute_later(scenario: &str, plan: &Value, beside: f64) -> String {
         now["course_deg"]
     );
     let later = scenario
-        .replace("horizon_s", "time_s = 60.0\nhorizon_s")
+        .replace("horizon_s", &format!("time_s = {seconds}.0\nhorizon_s"))
         .replace(place, &there)
         .replace("[mission]", "[mission]\nstart_s = 0.0")
         .replace(
             "position = { east_m = 1500.0, north_m = 0.0 }",
-            "position = { east_m = 1200.0, north_m = 0.0 }",
+            &format!(
+                "position = {{ east_m = {}.0, north_m = 0.0 }}",
+                1500 - 5 * seconds
+            ),
         );
-    assert!(later.contains(&there) && later.contains("east_m = 1200.0"));
+    assert!(later.contains(&there));
     later
 }
 
@@ -572,7 +578,7 @@ fn a_plan_goes_on_from_the_previous_one() {
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
     let previous = write(folder.path(), "first.json", first.to_string());
-    let later = a_minute_later(&scenario, &first, 0.0);
+    let later = later_on(&scenario, &first, 60, 0.0);
     let file = write(folder.path(), "later.toml", later.clone());
     let go_on = |file: &str| searoom(&["plan", file, "--previous", &previous, "--json"]);
     let second = document(&go_on(&file).success());
@@ -593,12 +599,22 @@ fn a_plan_goes_on_from_the_previous_one() {
     let beside = write(
         folder.path(),
         "beside.toml",
-        a_minute_later(&scenario, &first, 1.0),
+        later_on(&scenario, &first, 60, 1.0),
     );
     let third = document(&go_on(&beside).success());
     assert!((begins(&first) - 60.0 - begins(&third)).abs() < 1e-9);
     assert_eq!(third["memory"]["keeps_plan"], false);
     assert_eq!(third["encounters"][0]["breaches"], Value::Array(vec![]));
+
+    // on the way back a little beside the plan, it sails no circle
+    let times = (168..=236).step_by(4);
+    for (seconds, beside) in times.flat_map(|s| [3e-4, -4e-4, 0.01].map(|beside| (s, beside))) {
+        let file = later_on(&scenario, &first, seconds, beside);
+        let file = write(folder.path(), "back.toml", file);
+        let back = document(&go_on(&file).success());
+        let delay = back["cost"]["delay_s"].as_f64().expect("seconds");
+        assert!(delay < 10.0, "{seconds} {beside}: {delay}");
+    }
 
     let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
     let turned = write(folder.path(), "turned.toml", turned);
@@ -619,7 +635,7 @@ fn a_previous_plan_that_does_not_fit_is_named() {
     let mut altered = first.clone();
     altered["own_ship"]["length_m"] = 31.0.into();
     let altered = write(folder.path(), "altered.json", altered.to_string());
-    let later = a_minute_later(&scenario, &first, 0.0);
+    let later = later_on(&scenario, &first, 60, 0.0);
     for (old, new, message) in [
         (
             "time_s = 60.0",

@@ -1,6 +1,8 @@
 //! Route: the desired path as own ship can sail it, from its own pose to the last waypoint, with a
 //! schedule and the policy that follows it.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::colregs::{ON_COURSE, SMALL_TURN};
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::planner::Problem;
@@ -33,9 +35,9 @@ const LEAST_ALTERNATION_M: f64 = 50.0;
 /// Seconds of the least change of speed where the rules ask for plain manoeuvres.
 pub(crate) const LEAST_CHANGE_S: f64 = 3.0;
 
-/// Factor of the cost of a route that joins the path by turns that are seen, but small, where the
-/// rules ask for plain manoeuvres.
-const SMALL_TURNS_PRICE: f64 = 1e3;
+/// Factor of the cost of a route that joins the path by turns that are seen, but small, or very
+/// large, where the rules ask for plain manoeuvres.
+const ODD_TURNS_PRICE: f64 = 1e3;
 
 /// Line or arc of the route.
 #[derive(Debug, Clone, Copy)]
@@ -127,9 +129,9 @@ impl Route {
                 }
                 let cost = problem.error_of(&route.follow(0.0, 0.0));
                 let late = route.arrival(0.0, 0.0) > problem.horizon;
-                let unplain = route.joins_by_small_turns() || !route.joins_at(desired, leg);
+                let unplain = route.joins_by_odd_turns() || !route.joins_at(desired, leg);
                 let price = match asks_for_plain(problem) && unplain {
-                    true => SMALL_TURNS_PRICE,
+                    true => ODD_TURNS_PRICE,
                     false => 1.0,
                 };
                 let rank = if late { cost + 1e12 } else { cost * price };
@@ -150,11 +152,12 @@ impl Route {
         best.map(|(_, route)| route)
     }
 
-    /// True where own ship joins the path by a turn that is seen, but not readily apparent.
-    fn joins_by_small_turns(&self) -> bool {
+    /// True where own ship joins the path by a turn that is seen, but not readily apparent, or by a
+    /// turn about.
+    fn joins_by_odd_turns(&self) -> bool {
         let joining = self.pieces.iter().take_while(|p| p.leg.is_none());
         let mut turns = joining.map(|p| (p.curvature * p.length).abs());
-        turns.any(|turn| turn > ON_COURSE && turn < SMALL_TURN)
+        turns.any(|turn| turn > ON_COURSE && turn < SMALL_TURN || turn > FRAC_PI_2)
     }
 
     /// True where own ship joins a leg at its speed, or by a turn that is seen.

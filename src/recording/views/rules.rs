@@ -94,9 +94,10 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
     }
     for (index, name, conduct) in judged(model) {
         let mut roles = Lane::default();
-        for state in &conduct.roles {
+        // the recording begins with the plan
+        for state in conduct.roles.iter().filter(|state| state.until >= 0.0) {
             let text = format!("{name}: {}", state.role.name());
-            roles.add(state.from, text, style::target(index));
+            roles.add(state.from.max(0.0), text, style::target(index));
             roles.end(state.until);
         }
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
