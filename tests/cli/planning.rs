@@ -618,6 +618,19 @@ fn a_plan_goes_on_from_the_previous_one() {
         );
     }
 
+    // a target that moved within its spread keeps to the velocities of both plans
+    let moved = later.replace("course_deg = 270.0", "course_deg = 274.0");
+    let moved = document(&go_on(&write(folder.path(), "moved.toml", moved)).success());
+    assert!(moved["targets"][0]["ship"]["kept_velocities"].is_object());
+    let moved = write(folder.path(), "moved.json", moved.to_string());
+    searoom(&["verify", &moved]).success();
+
+    // a remainder at a speed that is no longer own ship's is not kept
+    let slower = later.replace("[2.5, 5.0, 6.0]", "[2.5, 6.0]");
+    assert_ne!(slower, later);
+    let slower = document(&go_on(&write(folder.path(), "slower.toml", slower)).success());
+    assert_eq!(slower["memory"]["keeps_plan"], false);
+
     let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
     let turned = write(folder.path(), "turned.toml", turned);
     let turned = document(&go_on(&turned).success());

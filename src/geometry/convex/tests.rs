@@ -150,3 +150,50 @@ fn the_farthest_vertex_is_beyond_an_edge_that_rounding_hides() {
         assert_eq!(*found, polygon.support(*n), "{n}");
     }
 }
+
+/// Every point of both sets is in the outer intersection, and every vertex of it is in both.
+#[test]
+fn the_outer_intersection_is_what_two_sets_share() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(91);
+    let (mut shared, mut apart) = (0, 0);
+    for _ in 0..400 {
+        let mut set = |near: f64| {
+            let points: Vec<Vector> = (0..rng.random_range(3..9))
+                .map(|_| {
+                    Vector::new(
+                        near + rng.random_range(-3.0..3.0),
+                        rng.random_range(-3.0..3.0),
+                    )
+                })
+                .collect();
+            ConvexPolygon::hull(&points).expect("finite")
+        };
+        let (a, b) = (set(0.0), set(2.5));
+        let both = a.outer_intersection(&b);
+        for _ in 0..200 {
+            let p = Vector::new(rng.random_range(-3.0..6.0), rng.random_range(-3.0..3.0));
+            if a.contains(p) && b.contains(p) {
+                shared += 1;
+                assert!(both.as_ref().is_some_and(|both| both.contains(p)));
+            }
+        }
+        match both {
+            Some(both) => assert!(
+                both.vertices()
+                    .iter()
+                    .all(|p| { a.signed_distance(*p) < 1e-6 && b.signed_distance(*p) < 1e-6 })
+            ),
+            None => apart += 1,
+        }
+    }
+    assert!(shared > 1000 && apart > 10, "{shared} {apart}");
+    let square = ConvexPolygon::hull(
+        &[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Vector::new(x, y)),
+    );
+    let square = square.expect("finite");
+    let point = ConvexPolygon::point(Vector::new(0.5, 0.5));
+    assert_eq!(square.outer_intersection(&square), Some(square.clone()));
+    assert_eq!(square.outer_intersection(&point), Some(point.clone()));
+    let outside = ConvexPolygon::point(Vector::new(2.0, 0.5));
+    assert_eq!(square.outer_intersection(&outside), None);
+}
