@@ -67,6 +67,21 @@ pub struct ShipTrack {
 }
 
 impl ShipTrack {
+    /// A ship whose state is known and that keeps it, without a ship domain; metres, radians, m/s.
+    pub fn exact(pose: Pose, speed: f64, hull: Hull) -> Self {
+        Self {
+            pose,
+            speed,
+            hull,
+            position_std: 0.0,
+            speed_spread: 0.0,
+            course_spread: 0.0,
+            turn_rate: 0.0,
+            kept_velocities: None,
+            domain: DomainKind::Hull,
+        }
+    }
+
     /// Estimated velocity, m/s.
     pub fn velocity(&self) -> Vector {
         self.pose.ahead() * self.speed

@@ -132,10 +132,7 @@ pub fn first_risk(
             return None;
         }
         let own = steady_on(leg, time);
-        let target = SteadyShip {
-            pose: target.pose_at(time),
-            speed: target.speed,
-        };
+        let target = SteadyShip::on_track(target, time);
         raw_role(&own, &target).map(|role| Risk {
             role,
             time,

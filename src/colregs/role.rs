@@ -1,6 +1,7 @@
 //! Roles of two ships that meet: docs/colregs.md 1.3.
 
 use crate::frame::{Pose, Vector, radians_from_deg, relative_bearing};
+use crate::target::ShipTrack;
 
 /// Limits that separate the roles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,6 +90,14 @@ pub struct SteadyShip {
 }
 
 impl SteadyShip {
+    /// A target on its nominal track at a time, seconds.
+    pub fn on_track(track: &ShipTrack, time: f64) -> Self {
+        Self {
+            pose: track.pose_at(time),
+            speed: track.speed,
+        }
+    }
+
     /// m/s.
     pub fn velocity(&self) -> Vector {
         self.pose.ahead() * self.speed

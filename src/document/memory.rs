@@ -21,11 +21,13 @@ use crate::tolerance::{self, POSITION_SIGMAS};
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
 
-/// Own ship may be this far from where the previous plan has it: own lengths, and degrees.
+/// Own ship may be this far from where the previous plan has it: own lengths, and degrees. Farther
+/// off, the manoeuvre under way is not the one that own ship carries out.
 const OFF_PLAN_LENGTHS: f64 = 1.0;
 const OFF_PLAN_DEG: f64 = 20.0;
 
-/// Degrees. A target whose course has changed by more may give own ship another role.
+/// Degrees. A target whose course has changed by more may give own ship another role: a smaller
+/// alteration is not seen as one, [`crate::colregs::SMALL_TURN`].
 const NEW_COURSE_DEG: f64 = 20.0;
 
 /// Metres per second, and metres: rounding of a target's state in a file.
@@ -34,7 +36,7 @@ const ASSUMED: f64 = 1e-6;
 /// Where the velocities of all plans have more vertices, those of the last plan alone are used.
 const MOST_VERTICES: usize = 40;
 
-/// Seconds of motion that are kept before the first role.
+/// Seconds of motion that are kept before the first role: two samples, which begin a role.
 const BEFORE_S: f64 = 2.0;
 
 /// What is known from before the plan. Times count from the plan, and are negative.
@@ -434,7 +436,7 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
             .map(|state| steady(state, elapsed))
             .collect();
     }
-    if let Some(ship) = ship_then(previous, name).map(|ship| steady_ship(&ship)) {
+    if let Some(ship) = ship_then(previous, name).map(|ship| SteadyShip::on_track(&ship, 0.0)) {
         // a target that keeps course and speed is where it was thought to be
         let thought = memory.at(-elapsed).filter(|_| elapsed > 0.0);
         let is_there = thought.is_some_and(|thought| {
@@ -465,7 +467,9 @@ fn role_now(
             let known = memory.role.filter(|risk| risk.time == interval.from);
             known.unwrap_or_else(|| {
                 let begun = encounter.samples().iter().find(|s| s.time >= interval.from);
-                let (own, target) = begun.map_or((now, steady_ship(ship)), |s| (s.own, s.target));
+                let (own, target) = begun.map_or((now, SteadyShip::on_track(ship, 0.0)), |s| {
+                    (s.own, s.target)
+                });
                 Risk {
                     role: interval.role,
                     time: interval.from,
@@ -490,19 +494,12 @@ fn role_now(
                     role,
                     time: 0.0,
                     own: now,
-                    target: steady_ship(ship),
+                    target: SteadyShip::on_track(ship, 0.0),
                 },
                 _ => risk,
             })
         }
         other => other,
-    }
-}
-
-fn steady_ship(ship: &ShipTrack) -> SteadyShip {
-    SteadyShip {
-        pose: ship.pose,
-        speed: ship.speed,
     }
 }
 

@@ -56,10 +56,7 @@ fn asking<'a>(
     both.filter_map(|(target, sets)| {
         let track = target.ship()?;
         let role = sets.encounter.role;
-        let ship = SteadyShip {
-            pose: track.pose,
-            speed: track.speed,
-        };
+        let ship = SteadyShip::on_track(track, 0.0);
         let risk = sets.encounter.risk?;
         let tcpa = if risk.time < 0.0 {
             risk.with_ships_at(0.0, scenario.own_ship.pose.position, ship)

@@ -39,7 +39,7 @@ fn paths(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn what_is_left_out_takes_the_defaults_of_the_contract() {
+fn what_is_left_out_takes_its_default() {
     let scenario = Scenario::parse(&format!("{SCENARIO}{SHIP}")).expect("valid");
     let own = &scenario.own_ship;
     assert_eq!(own.speeds, [2.5, 5.0, 6.0]);

@@ -268,10 +268,7 @@ impl OwnSamples {
         memory: Option<&TargetMemory>,
         far: f64,
     ) -> EncounterSamples {
-        let nominal = |time: f64| SteadyShip {
-            pose: target.pose_at(time),
-            speed: target.speed,
-        };
+        let nominal = |time: f64| SteadyShip::on_track(target, time);
         let near = || match memory {
             None if far.is_finite() => self.nearest(target),
             _ => None,
@@ -330,10 +327,7 @@ impl OwnSamples {
             (target.pose_at(*time).position - own.pose.position).norm()
         };
         let sample = |index: usize| {
-            let there = SteadyShip {
-                pose: target.pose_at(self.ships[index].0),
-                speed: target.speed,
-            };
+            let there = SteadyShip::on_track(target, self.ships[index].0);
             self.sample(index, &target.hull, there)
         };
         let mut best = sample(0);
@@ -528,7 +522,6 @@ mod tests {
     use super::super::{ComplianceReport, EncounterSamples};
     use super::*;
     use crate::frame::Pose;
-    use crate::target::DomainKind;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -584,17 +577,7 @@ mod tests {
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {
             let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
-            let target = ShipTrack {
-                pose,
-                speed,
-                hull,
-                position_std: 0.0,
-                speed_spread: 0.0,
-                course_spread: 0.0,
-                turn_rate: 0.0,
-                kept_velocities: None,
-                domain: DomainKind::Hull,
-            };
+            let target = ShipTrack::exact(pose, speed, hull);
             let whole = EncounterSamples::along(&own, hull, 6.0, &target);
             let samples = ComplianceReport::samples(&track, &target, None, standard());
             let found = ComplianceReport::judge(&samples, standard());

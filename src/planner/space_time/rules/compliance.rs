@@ -8,7 +8,7 @@ use crate::colregs::{
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
-use crate::target::{DomainKind, ShipTrack};
+use crate::target::ShipTrack;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -48,17 +48,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
     let thresholds = Thresholds::standard();
     let own = OwnSamples::along(&[], &trajectory, problem.own.hull, problem.own.speed);
     let samples = problem.encountered.iter().map(|e| {
-        let track = ShipTrack {
-            pose: e.ship.pose,
-            speed: e.ship.speed,
-            hull: e.hull,
-            position_std: 0.0,
-            speed_spread: 0.0,
-            course_spread: 0.0,
-            turn_rate: 0.0,
-            kept_velocities: None,
-            domain: DomainKind::Hull,
-        };
+        let track = ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull);
         // a role that has begun before the plan is kept
         let known = (e.risk_since <= 0.0).then(|| TargetMemory {
             role: Some(Risk {
