@@ -22,6 +22,7 @@ fn body() -> PolytopeObstacle {
         speed_spread: 0.4,
         course_spread: 0.08,
         turn_rate: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Hull,
     };

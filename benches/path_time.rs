@@ -62,6 +62,7 @@ fn scene(targets: usize, legs: usize) -> Scene {
             turning_radius: 50.0,
             speeds: vec![SPEED],
             safety_margin: 10.0,
+            tracking_margin: 0.0,
         },
         desired,
         obstacles,

@@ -53,9 +53,12 @@ enum Campaign {
         /// What the targets do
         #[arg(long, value_enum, default_value = "constant")]
         targets: replanning::Behaviour,
-        /// Own ship is up to this far from its plan when the next is made, metres each way
+        /// Own ship is up to this far off its plan when the next is made: its tracking margin, metres
         #[arg(long, default_value_t = 0.0)]
         off: f64,
+        /// The targets are measured anywhere within three standard deviations of their positions
+        #[arg(long)]
+        noise: bool,
         /// Every plan begins anew
         #[arg(long)]
         no_memory: bool,
@@ -125,12 +128,14 @@ fn run(campaign: Campaign) -> Report {
             far,
             targets,
             off,
+            noise,
             no_memory,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             let how = replanning::How {
                 behaviour: targets,
                 off,
+                noise,
                 memory: !no_memory,
             };
             replanning::run(scenes.of_each(5), &meeting, &how)

@@ -24,6 +24,7 @@ fn main() -> Result<(), FigureError> {
         turning_radius: 1.0,
         speeds: vec![1.5],
         safety_margin: 0.0,
+        tracking_margin: 0.0,
     };
     let desired = DesiredTrajectory::new(&path, &[1.5]).expect("a leg");
     let obstacles = [shared::figure_1()];

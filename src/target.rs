@@ -6,7 +6,8 @@ mod uncertainty;
 pub use uncertainty::{TimedVelocitySet, Uncertainty};
 
 use crate::frame::{Pose, Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, DISC_SIDES};
+use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_disc};
+use crate::tolerance::POSITION_SIGMAS;
 use crate::vessel::Hull;
 
 /// Half the angle between two tangents of the outer arc, radians: 5°.
@@ -59,6 +60,8 @@ pub struct ShipTrack {
     /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
     /// within `course_spread + turn_rate t`.
     pub turn_rate: f64,
+    /// Positions at t = 0 about the estimate that earlier plans allow, metres; `None` for any.
+    pub kept_positions: Option<ConvexPolygon>,
     /// Velocities that the ship is known to keep to, from before t = 0; `None` for any, and for a
     /// ship that may turn.
     pub kept_velocities: Option<ConvexPolygon>,
@@ -77,6 +80,7 @@ impl ShipTrack {
             speed_spread: 0.0,
             course_spread: 0.0,
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Hull,
         }
@@ -104,6 +108,16 @@ impl ShipTrack {
         };
         // `min` of a NaN and a number is the number: every heading
         (self.course_spread + turned).min(std::f64::consts::PI)
+    }
+
+    /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of
+    /// three standard deviations, less what earlier plans exclude.
+    pub fn outer_positions(&self) -> ConvexPolygon {
+        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.pose.heading);
+        match &self.kept_positions {
+            Some(kept) => all.outer_intersection(kept).unwrap_or(all),
+            None => all,
+        }
     }
 
     /// An outer polygon of the hull at t = 0 for every possible heading until `time`.

@@ -52,6 +52,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             // a moored vessel needs no ship domain
             domain: if at_rest {
@@ -117,6 +118,7 @@ fn scene(
             turning_radius: RADIUS_LENGTHS * ship.hull.length,
             speeds: vec![0.5 * ship.speed, ship.speed, 1.2 * ship.speed],
             safety_margin: MARGIN_M,
+            tracking_margin: 0.0,
         },
         desired: DesiredTrajectory::new(&[Vector::zeros(), end], &[ship.speed])?,
         targets: targets.collect(),

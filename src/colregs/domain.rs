@@ -65,12 +65,15 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
 
 /// [`shapes`] for a target at the origin.
 fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
-    let around = outer_disc(
-        own.hull.half_diagonal()
-            + own.safety_margin
-            + tolerance::POSITION_SIGMAS * target.position_std,
-        target.pose.heading,
-    );
+    let reach = own.hull.half_diagonal() + own.safety_margin;
+    let around = match &target.kept_positions {
+        // the same polygon as below where nothing is excluded
+        Some(_) => outer_disc(reach, target.pose.heading).minkowski_sum(&target.outer_positions()),
+        None => outer_disc(
+            reach + tolerance::POSITION_SIGMAS * target.position_std,
+            target.pose.heading,
+        ),
+    };
     let hull = target.outer_hull(horizon);
     let hard = hull.minkowski_sum(&around);
     if target.domain == DomainKind::Hull {

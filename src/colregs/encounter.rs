@@ -281,6 +281,7 @@ mod tests {
             speed_spread: 0.0,
             course_spread: 0.0,
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Colregs,
         }
@@ -297,6 +298,7 @@ mod tests {
             turning_radius: 100.0,
             speeds: vec![3.0, 6.0],
             safety_margin: 20.0,
+            tracking_margin: 0.0,
         }
     }
 

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{SegmentDocument, StartDocument, VelocitySetDocument};
+use super::parts::{InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument};
 use super::plan::{PlanDocument, segment_document, start};
 use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
@@ -44,6 +44,10 @@ const BEFORE_S: f64 = 2.0;
 pub struct MemoryDocument {
     /// True where the plan is the remainder of the previous one.
     pub keeps_plan: bool,
+    /// Distance of own ship from the previous plan, at most the tracking margin. The plan begins on
+    /// the previous one.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub off_plan_m: f64,
     /// Names of the targets that are outside the sets which the previous plan assumed.
     pub outside_sets: Vec<String>,
     pub sailed: Vec<SegmentDocument>,
@@ -114,6 +118,7 @@ impl MemoryDocument {
         let targets = run.scenario.targets.iter().zip(&memory.targets);
         known.then(|| Self {
             keeps_plan: run.planned.is_remainder,
+            off_plan_m: memory.off_plan,
             outside_sets: memory.outside_sets.clone(),
             sailed: memory.sailed.iter().map(segment_document).collect(),
             targets: targets
@@ -163,37 +168,79 @@ impl From<&PlannedManoeuvreDocument> for PlannedManoeuvre {
 /// Roles last until the target is past and clear; a role that has begun since is found on the
 /// motion so far. A target whose course has changed by more than 20 degrees gives own ship the role
 /// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)). A target
-/// that does not turn keeps to the velocities of both plans; one that has left them is named, and
-/// its set begins anew. The fault says why the plan is not one that own ship follows.
+/// that does not turn keeps to the places and velocities of both plans; one that has left them is
+/// named, and its set begins anew. Own ship within its tracking margin of the plan is put on it:
+/// the next plan goes on from there. The fault says why the plan is not one that own ship follows.
 /// O(seconds sailed × targets).
 pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), Fault> {
-    let memory = memory_after(previous, scenario)?;
+    let elapsed = scenario.time - previous.time_s;
+    let plan = remaining_plan(previous, scenario, elapsed)?;
+    let own = &mut scenario.own_ship;
+    let off = (plan.now.position - own.pose.position).norm();
+    let turned = wrap(plan.now.heading - own.pose.heading).abs();
+    let is_on = off <= tolerance::JOINT_M && turned <= tolerance::joint_rad(own.turning_radius);
+    let is_near = own.tracking_margin > 0.0 && off <= own.tracking_margin;
+    if is_on || is_near {
+        own.pose = plan.now;
+    }
+    let mut memory = memory_after(previous, scenario, plan)?;
+    if is_near && !is_on {
+        memory.off_plan = off;
+    }
     for target in &mut scenario.targets {
         let then = ship_then(previous, &target.name);
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
-            // a wider spread says that less is known
-            && ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
-            && ship.course_spread <= then.course_spread * (1.0 + ASSUMED)
             && !memory.outside_sets.contains(&target.name)
         {
-            let kept = then.outer_velocity_set();
-            ship.kept_velocities = Some(match kept.vertices().len() <= MOST_VERTICES {
-                true => kept,
-                false => ShipTrack {
-                    kept_velocities: None,
-                    ..then
-                }
-                .outer_velocity_set(),
-            });
+            keep_sets(ship, then, elapsed);
         }
     }
     scenario.memory = memory;
     Ok(())
 }
 
-fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, Fault> {
+/// Restricts a ship to the places and the velocities that the previous plan assumed.
+fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
+    let velocities = then.outer_velocity_set();
+    let moved = then.outer_positions();
+    let moved = moved.minkowski_sum(&velocities.scaled(elapsed));
+    let moved = moved.translated(then.pose.position - ship.pose.position);
+    let measured = ship.outer_positions();
+    let both = measured.outer_intersection(&moved);
+    ship.kept_positions =
+        both.filter(|both| *both != measured && both.vertices().len() <= MOST_VERTICES);
+    // a wider spread says that less is known
+    if ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
+        && ship.course_spread <= then.course_spread * (1.0 + ASSUMED)
+    {
+        ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
+            true => velocities,
+            false => ShipTrack {
+                kept_velocities: None,
+                ..then
+            }
+            .outer_velocity_set(),
+        });
+    }
+}
+
+/// What remains of the previous plan at the scenario's time.
+struct RemainingPlan {
+    /// The whole plan. Its times count from the previous plan.
+    planned: Vec<Segment>,
+    /// What remains of it. Its times count from the scenario.
+    remainder: Vec<Segment>,
+    /// Where it has own ship.
+    now: Pose,
+}
+
+fn remaining_plan(
+    previous: &PlanDocument,
+    scenario: &Scenario,
+    elapsed: f64,
+) -> Result<RemainingPlan, Fault> {
     if previous.scenario != scenario.title {
         let found = format_args!("a plan of \"{}\"", previous.scenario);
         let allowed = format_args!("a plan of \"{}\"", scenario.title);
@@ -211,7 +258,6 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             "lines and arcs: a plan of the space-time or path-time planner",
         ));
     };
-    let elapsed = scenario.time - previous.time_s;
     if !(elapsed >= 0.0 && elapsed <= last.end_time()) {
         let until = previous.time_s + last.end_time();
         return Err(Fault::new(
@@ -223,18 +269,14 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             ),
         ));
     }
-    let shifted = |s: Segment| Segment {
-        start_time: s.start_time - elapsed,
-        ..s
-    };
     let remainder: Vec<Segment> = (planned.iter())
         .filter(|s| s.end_time() > elapsed)
-        .map(|s| shifted(s.between(elapsed, s.end_time())))
+        .map(|s| shifted(s.between(elapsed, s.end_time()), elapsed))
         .collect();
     let own = &scenario.own_ship;
-    let then = remainder.first().map_or(last.end(), |s| s.start);
-    let metres = (then.position - own.pose.position).norm();
-    let degrees = deg_from_radians(wrap(then.heading - own.pose.heading).abs());
+    let now = remainder.first().map_or(last.end(), |s| s.start);
+    let metres = (now.position - own.pose.position).norm();
+    let degrees = deg_from_radians(wrap(now.heading - own.pose.heading).abs());
     let most = OFF_PLAN_LENGTHS * own.hull.length;
     if !(metres <= most && degrees <= OFF_PLAN_DEG) {
         return Err(Fault::new(
@@ -245,6 +287,30 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
             format_args!("at most {most} m, own length, and {OFF_PLAN_DEG} degrees"),
         ));
     }
+    Ok(RemainingPlan {
+        planned,
+        remainder,
+        now,
+    })
+}
+
+/// A segment with times that count from `elapsed` seconds later.
+fn shifted(s: Segment, elapsed: f64) -> Segment {
+    Segment {
+        start_time: s.start_time - elapsed,
+        ..s
+    }
+}
+
+fn memory_after(
+    previous: &PlanDocument,
+    scenario: &Scenario,
+    plan: RemainingPlan,
+) -> Result<Memory, Fault> {
+    let (elapsed, own) = (scenario.time - previous.time_s, &scenario.own_ship);
+    let RemainingPlan {
+        planned, remainder, ..
+    } = plan;
     if !previous.memory.iter().all(MemoryDocument::is_past) {
         return Err(Fault::new(
             "memory",
@@ -253,9 +319,9 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
         ));
     }
     let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
-    let mut sailed: Vec<Segment> = before.map(segment).map(shifted).collect();
+    let mut sailed: Vec<Segment> = before.map(|s| shifted(segment(s), elapsed)).collect();
     for s in planned.iter().filter(|s| s.start_time < elapsed) {
-        let s = shifted(s.between(s.start_time, elapsed));
+        let s = shifted(s.between(s.start_time, elapsed), elapsed);
         match sailed.last_mut().filter(|last| continues(last, &s)) {
             Some(last) => last.duration += s.duration,
             None => sailed.push(s),
@@ -322,6 +388,7 @@ fn memory_after(previous: &PlanDocument, scenario: &Scenario) -> Result<Memory, 
         outside_sets,
         sailed,
         remainder,
+        off_plan: 0.0,
         manoeuvres,
         targets,
     })
@@ -369,12 +436,13 @@ enum Assumed {
 fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) -> Option<Assumed> {
     let then = ship_then(previous, name)?;
     let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
-    let set = Uncertainty::new(ConvexPolygon::point(then.pose.position), velocities);
+    let places = then.outer_positions().translated(then.pose.position);
+    let set = Uncertainty::new(places, velocities);
     let mut sets = set.velocities.iter();
     let now = sets.find(|timed| timed.until > elapsed)?;
     let now = now.velocities.as_polygon()?;
     let reached = set.outer_section(elapsed);
-    let known = POSITION_SIGMAS * (then.position_std + ship.position_std);
+    let known = POSITION_SIGMAS * ship.position_std;
     let off = reached.signed_distance(ship.pose.position);
     // negated on purpose: a NaN is outside
     if !(off <= known + ASSUMED * (1.0 + elapsed)) {
@@ -410,18 +478,21 @@ fn track(ship: &ShipDocument) -> ShipTrack {
         speed_spread: ship.speed_spread_mps,
         course_spread: radians_from_deg(ship.course_spread_deg),
         turn_rate: radians_from_deg(ship.turn_rate_deg_per_s),
+        kept_positions: match &ship.kept_positions {
+            Some(InitialSetDocument::Polygon { vertices_m }) => polygon(vertices_m),
+            _ => None,
+        },
         kept_velocities: match &ship.kept_velocities {
-            Some(VelocitySetDocument::Polygon { vertices_mps }) => {
-                let points: Vec<Vector> = vertices_mps
-                    .iter()
-                    .map(|[x, y]| Vector::new(*x, *y))
-                    .collect();
-                ConvexPolygon::hull(&points).ok()
-            }
+            Some(VelocitySetDocument::Polygon { vertices_mps }) => polygon(vertices_mps),
             _ => None,
         },
         domain: DomainKind::Hull,
     }
+}
+
+fn polygon(vertices: &[[f64; 2]]) -> Option<ConvexPolygon> {
+    let points: Vec<Vector> = vertices.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+    ConvexPolygon::hull(&points).ok()
 }
 
 /// What the previous plan knows of a target.

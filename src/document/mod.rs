@@ -48,6 +48,10 @@ pub use suite::{
 pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};
 
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// The JSON text of a document, indented, with a line end.
 pub fn json(document: &impl serde::Serialize) -> serde_json::Result<String> {
     let mut text = serde_json::to_string_pretty(document)?;

@@ -20,6 +20,8 @@ pub struct OwnShipDocument {
     pub turning_radius_m: f64,
     pub speeds_mps: Vec<f64>,
     pub safety_margin_m: f64,
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub tracking_margin_m: f64,
     pub land_margin_m: f64,
 }
 

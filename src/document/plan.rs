@@ -48,7 +48,7 @@ pub struct PlanDocument {
     pub time_weight_m2_per_s2: f64,
     pub max_risk: f64,
     /// The present on the clock of the scenario file. All other times count from it.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "super::is_zero")]
     pub time_s: f64,
     pub horizon_s: f64,
     pub own_ship: OwnShipDocument,
@@ -233,6 +233,7 @@ fn own_ship(run: &Run) -> OwnShipDocument {
         turning_radius_m: own.turning_radius,
         speeds_mps: own.speeds.clone(),
         safety_margin_m: own.safety_margin,
+        tracking_margin_m: own.tracking_margin,
         land_margin_m: run.scenario.land.as_ref().map_or(0.0, |land| land.margin),
     }
 }
@@ -309,10 +310,6 @@ pub(super) fn stats(run: &Run) -> SearchStatsDocument {
         generated: run.planned.stats.generated,
         edges_checked: run.planned.stats.edges_checked,
     }
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 pub(super) fn start(pose: Pose, time: f64) -> StartDocument {

@@ -34,6 +34,8 @@ pub struct ShipDocument {
     pub course_spread_deg: f64,
     pub turn_rate_deg_per_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept_positions: Option<InitialSetDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_velocities: Option<VelocitySetDocument>,
 }
 
@@ -78,6 +80,8 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         speed_spread_mps: track.speed_spread,
         course_spread_deg: deg_from_radians(track.course_spread),
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
+        kept_positions: (track.kept_positions.as_ref())
+            .map(|set| initial_set(&ConvexSet::from(set.clone()))),
         kept_velocities: (track.kept_velocities.as_ref())
             .map(|set| velocity_set(&ConvexSet::from(set.clone()))),
     }

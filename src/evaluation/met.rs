@@ -9,7 +9,7 @@ use crate::evaluation::distance::turn::{Turn, least_while_turning};
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::evaluation::sets::space_time_set::since;
 use crate::frame::{Side, cross, direction};
-use crate::geometry::{ConvexPolygon, ConvexSet, outer_disc, outer_enclosing_ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 
@@ -57,10 +57,7 @@ pub(super) fn passage<P: Piece>(
             let hull = ship.hull.polygon(&ship.pose);
             let held = Uncertainty::constant(hull, ConvexPolygon::point(ship.velocity()));
             let nominal = MovingSlabs::new(&held);
-            let unknown = outer_disc(
-                tolerance::POSITION_SIGMAS * ship.position_std,
-                ship.pose.heading,
-            );
+            let unknown = ship.outer_positions();
             let turned = |until: f64| {
                 let hull = TurnedHull::of(ship, until).outer_polygon();
                 hull.minkowski_sum(&unknown)

@@ -90,6 +90,7 @@ fn ship(y: f64, speed: f64) -> Target {
             speed_spread: 0.5,
             course_spread: 0.02,
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Hull,
         }),

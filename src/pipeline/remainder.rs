@@ -73,12 +73,9 @@ pub(super) fn better_remainder(
 fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> Option<Plan> {
     let mut motion = scenario.memory.remainder.clone();
     let (own, first) = (&scenario.own_ship, motion.first_mut()?);
-    let off = (first.start.position - own.pose.position).norm();
-    let turned = crate::frame::wrap(first.start.heading - own.pose.heading).abs();
-    if !(off <= tolerance::JOINT_M && turned <= tolerance::joint_rad(own.turning_radius)) {
+    if first.start != own.pose {
         return None;
     }
-    first.start = own.pose;
     first.start_time = 0.0;
     let last = motion.last()?;
     let arrives = (last.end().position - problem.desired.end()).norm() <= tolerance::ARRIVAL_M;

@@ -43,6 +43,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
             turning_radius: 100.0,
             speeds: vec![2.5, 5.0, 6.0],
             safety_margin: 20.0,
+            tracking_margin: 0.0,
         },
         desired: DesiredTrajectory::new(&points, &[5.0]).expect("valid"),
         alternatives: Vec::new(),
@@ -78,6 +79,7 @@ fn track(x: f64, y: f64, heading: f64, speed: f64) -> ShipTrack {
         speed_spread: 0.5,
         course_spread: 0.08,
         turn_rate: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Colregs,
     }

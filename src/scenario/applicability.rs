@@ -31,6 +31,18 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
             "nothing: it chooses its way; or the path-time planner",
         ));
     }
+    let own = &scenario.own_ship;
+    let land_margin = scenario.land.as_ref().map(|land| land.margin);
+    let room = own.safety_margin.min(land_margin.unwrap_or(f64::INFINITY));
+    if own.tracking_margin > room {
+        faults.push(Fault::new(
+            "own_ship.tracking_margin_m",
+            own.tracking_margin,
+            format_args!(
+                "at most {room}: a part of safety_margin_m, and of land_margin_m with a map"
+            ),
+        ));
+    }
     if !planner.keeps_off_land && scenario.land.is_some() {
         faults.push(Fault::new(
             "map",

@@ -153,6 +153,7 @@ fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     let turning_radius = table.required_number("turning_radius_m", limits::LENGTH);
     let speeds = own_speeds(&mut table, speed);
     let margin = table.number("safety_margin_m", limits::DISTANCE);
+    let tracking_margin = table.number("tracking_margin_m", limits::DISTANCE);
     let land_margin = if table.has("land_margin_m") {
         table.number("land_margin_m", limits::DISTANCE)
     } else {
@@ -168,6 +169,7 @@ fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
             turning_radius: turning_radius?,
             speeds: speeds?,
             safety_margin: margin.unwrap_or(hull.length),
+            tracking_margin: tracking_margin.unwrap_or(0.0),
         })
     };
     OwnShipFields {

@@ -14,6 +14,9 @@ pub struct Memory {
     pub sailed: Vec<Segment>,
     /// The remainder of the plan that own ship follows, from t = 0 on; empty without one.
     pub remainder: Vec<Segment>,
+    /// Metres from the remainder to where own ship is, within its tracking margin. The plan goes on
+    /// from the remainder, not from there.
+    pub off_plan: f64,
     /// The manoeuvres of the remainder.
     pub manoeuvres: Vec<PlannedManoeuvre>,
     /// The escape of the remainder, where own ship still holds course and speed.

@@ -175,6 +175,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         speed_spread: speed_spread.unwrap_or(0.0),
         course_spread: radians_from_deg(course_spread.unwrap_or(0.0)),
         turn_rate: radians_from_deg(turn_rate.unwrap_or(0.0)),
+        kept_positions: None,
         kept_velocities: None,
         domain: domain?,
     })

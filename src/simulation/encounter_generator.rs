@@ -303,6 +303,7 @@ fn scene(
                 turning_radius: TURNING_RADIUS,
                 speeds: OWN_SPEEDS.to_vec(),
                 safety_margin: SAFETY_MARGIN,
+                tracking_margin: 0.0,
             },
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED])?,
             alternatives: Vec::new(),
@@ -362,6 +363,7 @@ fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<
         speed_spread,
         course_spread,
         turn_rate: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Colregs,
     };

@@ -10,6 +10,7 @@ fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
         speed_spread: rng.random_range(0.0..3.0),
         course_spread: rng.random_range(0.0..1.0),
         turn_rate: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Hull,
     }

@@ -294,6 +294,7 @@ fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
         turning_radius: positive("own_ship.turning_radius_m", own.turning_radius_m)?,
         speeds: own.speeds_mps.clone(),
         safety_margin: not_negative("own_ship.safety_margin_m", own.safety_margin_m)?,
+        tracking_margin: 0.0,
     })
 }
 
@@ -354,12 +355,8 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
                     ship.turn_rate_deg_per_s,
                 )?),
                 // The ship domain is no part of the proof.
-                kept_velocities: match &ship.kept_velocities {
-                    Some(set) => plane_set(&at("kept_velocities"), set)?
-                        .as_polygon()
-                        .cloned(),
-                    None => None,
-                },
+                kept_positions: kept(&at("kept_positions"), ship.kept_positions.as_ref())?,
+                kept_velocities: kept(&at("kept_velocities"), ship.kept_velocities.as_ref())?,
                 domain: DomainKind::Hull,
             })
         }
@@ -379,6 +376,18 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
         motion,
         representation,
     })
+}
+
+/// A polygon that earlier plans leave of a ship's positions or velocities.
+fn kept(path: &str, set: Option<&SetFile>) -> Result<Option<ConvexPolygon>, ClaimError> {
+    let Some(set) = set else {
+        return Ok(None);
+    };
+    let read = plane_set(path, set)?;
+    match read.as_polygon() {
+        Some(polygon) => Ok(Some(polygon.clone())),
+        None => Err(fault(path, "an ellipse", "a polygon")),
+    }
 }
 
 fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion, ClaimError> {

@@ -194,8 +194,10 @@ fn of_ellipses(
         let short = match &target.motion {
             Motion::Ship(ship) => {
                 let hull = TurnedHull::of(ship, claim.file.horizon_s);
+                let (reach, places) = reach(claim, ship);
                 let corners = hull.outer_points(TANGENT_SPACING);
-                largest(corners.map(|p| initial.signed_distance(p).distance)) + reach(claim, ship)
+                let places = corners.flat_map(|p| places.vertices().iter().map(move |at| p + at));
+                largest(places.map(|p| initial.signed_distance(p).distance)) + reach
             }
             Motion::Sets(known) => beyond(initial, &known.initial),
         };

@@ -61,6 +61,7 @@ pub(super) struct ShipFile {
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
     pub turn_rate_deg_per_s: f64,
+    pub kept_positions: Option<SetFile>,
     pub kept_velocities: Option<SetFile>,
 }
 

@@ -4,7 +4,7 @@ use super::claim::Claim;
 use super::coverage::{largest, scaled_about};
 use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
-use crate::geometry::{ConvexSet, Ellipse, outer_enclosing_ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet};
 use crate::tolerance;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -21,11 +21,17 @@ pub(super) fn in_order(directions: impl Iterator<Item = Vector>) -> Vec<Vector> 
     normals.into_iter().map(|(_, normal)| normal).collect()
 }
 
-/// Required distance of own ship's centre from a target's hull, metres.
-pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> f64 {
-    claim.own.hull.half_diagonal()
-        + claim.own.safety_margin
-        + tolerance::POSITION_SIGMAS * ship.position_std
+/// Required distance of own ship's centre from a target's hull, metres, and the places about the
+/// estimate at which the hull may be.
+pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> (f64, ConvexPolygon) {
+    let own = claim.own.hull.half_diagonal() + claim.own.safety_margin;
+    match &ship.kept_positions {
+        Some(_) => (own, ship.outer_positions()),
+        None => (
+            own + tolerance::POSITION_SIGMAS * ship.position_std,
+            ConvexPolygon::point(Vector::zeros()),
+        ),
+    }
 }
 
 /// Velocity sets of a target at a risk level, in order of time. Each is scaled about the centre
@@ -86,9 +92,10 @@ impl<'a> Known<'a> {
         let (initial, across) = match &target.motion {
             Motion::Ship(ship) => {
                 let hull = TurnedHull::of(ship, claim.file.horizon_s);
-                let reach = reach(claim, ship);
-                let supports = normals.iter().map(|n| hull.support(*n) + reach);
-                let across = 2.0 * (ship.hull.half_diagonal() + reach);
+                let (reach, places) = reach(claim, ship);
+                let support = |n: &Vector| hull.support(*n) + places.support(*n) + reach;
+                let supports = normals.iter().map(support);
+                let across = 2.0 * (ship.hull.half_diagonal() + places.reach() + reach);
                 (supports.collect(), across)
             }
             Motion::Sets(sets) => supports(&sets.initial),

@@ -12,5 +12,6 @@ pub(crate) fn own_ship(speeds: &[f64]) -> OwnShip {
         turning_radius: 100.0,
         speeds: speeds.to_vec(),
         safety_margin: 20.0,
+        tracking_margin: 0.0,
     }
 }

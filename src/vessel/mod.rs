@@ -64,6 +64,9 @@ pub struct OwnShip {
     pub speeds: Vec<f64>,
     /// Required distance between hulls, metres.
     pub safety_margin: f64,
+    /// Own ship may be this far off its plan, metres: a part of the safety margin, and of the
+    /// distance from land. The hulls keep the rest of it.
+    pub tracking_margin: f64,
 }
 
 impl OwnShip {

@@ -108,6 +108,7 @@ pub fn own_ship() -> OwnShip {
         turning_radius: 2.0,
         speeds: vec![0.1, 0.2, 0.24],
         safety_margin: 0.0,
+        tracking_margin: 0.0,
     }
 }
 

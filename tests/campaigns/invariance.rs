@@ -130,6 +130,7 @@ impl Placing {
                 turning_radius: own.turning_radius * self.length,
                 speeds: own.speeds.iter().map(|u| u * speed).collect(),
                 safety_margin: own.safety_margin * self.length,
+                tracking_margin: 0.0,
             },
             desired: DesiredTrajectory::new(&waypoints, &speeds).expect("a path"),
             targets: scene.targets.iter().map(target).collect(),
@@ -188,6 +189,7 @@ pub fn scene(seed: u64) -> Scenario {
             speed_spread: rng.random_range(0.0..0.2),
             course_spread: rng.random_range(0.0..0.07),
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Hull,
         };
@@ -209,6 +211,7 @@ pub fn scene(seed: u64) -> Scenario {
             turning_radius: rng.random_range(100.0..400.0),
             speeds: vec![0.5 * speed, speed, 1.2 * speed],
             safety_margin: rng.random_range(30.0..150.0),
+            tracking_margin: 0.0,
         },
         desired,
         targets,

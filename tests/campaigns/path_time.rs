@@ -135,6 +135,7 @@ pub fn own(path: &Path, speed: f64) -> OwnShip {
         turning_radius: 50.0,
         speeds: vec![speed],
         safety_margin: 5.0,
+        tracking_margin: 0.0,
     }
 }
 

@@ -10,7 +10,7 @@ use searoom::colregs::{
     compliance::{ComplianceReport, EncounterSamples},
 };
 use searoom::document::{PlanDocument, remember};
-use searoom::frame::Vector;
+use searoom::frame::{Vector, direction};
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
@@ -18,7 +18,7 @@ use searoom::planner::cost::whole_space_time_error;
 use searoom::scenario::{Compliance, Memory, Scenario};
 use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
 use searoom::target::{Motion, ShipTrack};
-use searoom::tolerance::TOUCH_M;
+use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};
 use searoom::trajectory::Segment;
 
 use super::statistics::{failure_bound, quantile};
@@ -74,8 +74,10 @@ impl Behaviour {
 #[derive(Debug, Clone, Copy)]
 pub struct How {
     pub behaviour: Behaviour,
-    /// Own ship is up to this far east and north of its plan when the next is made, metres.
+    /// Own ship is up to this far off its plan when the next is made: its tracking margin, metres.
     pub off: f64,
+    /// True where the targets are measured anywhere within three standard deviations.
+    pub noise: bool,
     /// False where every plan begins anew.
     pub memory: bool,
 }
@@ -113,16 +115,19 @@ fn later(
     (elapsed, step): (f64, f64),
     now: SteadyShip,
     how: &How,
-    off: Vector,
+    rng: &mut ChaCha8Rng,
 ) -> Option<Scenario> {
     let plan = run.planned.outcome.plan()?;
     let mut scenario = first.clone();
     scenario.time = elapsed;
     scenario.desired = first.desired.remaining(elapsed);
     scenario.own_ship.pose = plan.trajectory.pose_at(step);
-    scenario.own_ship.pose.position += off;
+    scenario.own_ship.pose.position += within(how.off, rng);
     if let Motion::Ship(ship) = &mut scenario.targets[0].motion {
         ship.pose.position = now.pose.position;
+        if how.noise {
+            ship.pose.position += within(POSITION_SIGMAS * ship.position_std, rng);
+        }
         if how.behaviour != Behaviour::Extreme {
             (ship.pose.heading, ship.speed) = (now.pose.heading, now.speed);
         }
@@ -131,6 +136,15 @@ fn later(
         remember(&PlanDocument::of(run), &mut scenario).expect("it fits");
     }
     Some(scenario)
+}
+
+/// A place in the disc of a radius, metres.
+fn within(radius: f64, rng: &mut ChaCha8Rng) -> Vector {
+    if radius == 0.0 {
+        return Vector::zeros();
+    }
+    let angle = rng.random_range(0.0..std::f64::consts::TAU);
+    direction(angle) * radius * rng.random_range(0.0_f64..1.0).sqrt()
 }
 
 /// True for a plan that costs more than the remainder of the last plan, though that is clear of the
@@ -201,9 +215,7 @@ fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         if end <= STEP_S || elapsed >= LONGEST_S {
             break;
         }
-        let mut off = || how.off * rng.random_range(-1.0..=1.0);
-        let off = Vector::new(off(), off());
-        let scenario = later(first, &run, (elapsed, step), now, how, off)?;
+        let scenario = later(first, &run, (elapsed, step), now, how, &mut rng)?;
         let begun = scenario.memory.under_way;
         let next = pipeline::run(scenario);
         sailed.cycles += 1;
@@ -215,7 +227,7 @@ fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         let goes_on = |m: &PlannedManoeuvre| begun.is_none_or(|b| b.begins == m.begins);
         let goes_on = next.planned.manoeuvres.first().is_some_and(goes_on);
         sailed.turned_back += usize::from(begun.is_some() && !goes_on);
-        sailed.dearer += usize::from(how.off == 0.0 && is_dearer(&next));
+        sailed.dearer += usize::from(is_dearer(&next));
         run = next;
     }
     let cost = whole_space_time_error(&first.desired, &motion, first.time_weight);
@@ -247,6 +259,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
                 let mut scenario = drawn.expect("drawn").scenario;
                 scenario.compliance = Compliance::Rules;
                 scenario.memory = Memory::default();
+                scenario.own_ship.tracking_margin = how.off;
                 sail(&scenario, seed, how)
             })
             .collect();
@@ -287,7 +300,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
             quantile(&times, 0.5),
             quantile(&times, 0.99),
         );
-        if behaviour == Behaviour::Constant && how.off == 0.0 {
+        if behaviour == Behaviour::Constant {
             report.require(content as f64 >= CONTENT * all.len() as f64, || {
                 format!(
                     "{name}: both judges content with {content} of {}",

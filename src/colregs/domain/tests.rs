@@ -33,6 +33,7 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
         turning_radius: 100.0,
         speeds: vec![3.0, 6.0],
         safety_margin,
+        tracking_margin: 0.0,
     }
 }
 
@@ -48,6 +49,7 @@ fn track(position: Vector, heading: f64, speed: f64) -> ShipTrack {
         speed_spread: 0.5,
         course_spread: 0.1,
         turn_rate: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Colregs,
     }

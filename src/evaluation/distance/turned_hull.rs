@@ -124,6 +124,7 @@ mod tests {
                     _ => rng.random_range(0.0..0.4),
                 },
                 turn_rate: [0.0, 0.01, 0.2][case % 3],
+                kept_positions: None,
                 kept_velocities: None,
                 domain: DomainKind::Hull,
             };

@@ -240,6 +240,7 @@ impl Similarity {
                 turning_radius: rounded(own.turning_radius / self.length),
                 speeds: own.speeds.iter().map(|u| rounded(u / speed)).collect(),
                 safety_margin: own.safety_margin / self.length,
+                tracking_margin: 0.0,
             },
             desired: DesiredTrajectory::new(&self.waypoints(problem), &speeds).ok()?,
             obstacles: obstacles.collect::<Option<_>>()?,

@@ -78,6 +78,7 @@ impl Stretch {
             speed_spread: 0.5 * (self.fast - self.slow) + spread.speed,
             course_spread: self.half + spread.course,
             turn_rate: 0.0,
+            kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Colregs,
         }

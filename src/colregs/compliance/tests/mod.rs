@@ -59,6 +59,7 @@ fn track(pose: Pose, speed: f64) -> ShipTrack {
         course_spread: 0.0,
         turn_rate: 0.0,
         position_std: 0.0,
+        kept_positions: None,
         kept_velocities: None,
         domain: DomainKind::Hull,
     }
