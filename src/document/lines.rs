@@ -79,8 +79,23 @@ fn memory_lines(
     if !goes_on.is_empty() {
         add("goes on", goes_on.join("; "));
     }
-    for name in &memory.outside_sets {
-        let left = format!("'{name}' is outside the set that the previous plan assumed; a new set");
+    if memory.off_plan_m > 0.0 {
+        let (off, most) = (memory.off_plan_m, plan.own_ship.tracking_margin_m);
+        let text = format!("{off:.1} m off the plan; its tracking margin is {most} m");
+        add("own ship", text);
+    }
+    for name in &memory.outside_velocities {
+        let left =
+            format!("'{name}' left the velocities that the previous plan assumed; a new set");
+        add("assumption", left);
+    }
+    for name in &memory.outside_places {
+        let left = format!("'{name}' is where it could not be; it counts as another ship");
+        add("assumption", left);
+    }
+    for name in &memory.missing {
+        let left =
+            format!("'{name}' of the previous plan is not in this file; its role is forgotten");
         add("assumption", left);
     }
 }

@@ -48,8 +48,15 @@ pub struct MemoryDocument {
     /// the previous one.
     #[serde(default, skip_serializing_if = "super::is_zero")]
     pub off_plan_m: f64,
-    /// Names of the targets that are outside the sets which the previous plan assumed.
-    pub outside_sets: Vec<String>,
+    /// Names of the targets that have a velocity outside the set which the previous plan assumed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_velocities: Vec<String>,
+    /// Names of the targets at a place which they could not reach by the previous plan.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_places: Vec<String>,
+    /// Names of the previous plan's targets that the scenario has not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<String>,
     pub sailed: Vec<SegmentDocument>,
     pub targets: Vec<TargetMemoryDocument>,
 }
@@ -119,7 +126,9 @@ impl MemoryDocument {
         known.then(|| Self {
             keeps_plan: run.planned.is_remainder,
             off_plan_m: memory.off_plan,
-            outside_sets: memory.outside_sets.clone(),
+            outside_velocities: memory.outside_velocities.clone(),
+            outside_places: memory.outside_places.clone(),
+            missing: memory.missing.clone(),
             sailed: memory.sailed.iter().map(segment_document).collect(),
             targets: targets
                 .map(|(target, known)| TargetMemoryDocument {
@@ -192,7 +201,7 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
-            && !memory.outside_sets.contains(&target.name)
+            && !memory.is_outside(&target.name)
         {
             keep_sets(ship, then, elapsed);
         }
@@ -339,7 +348,7 @@ fn memory_after(
     let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S;
     let is_off_route = manoeuvres.iter().any(|m| begun(&m));
     let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
-    let mut outside_sets = Vec::new();
+    let (mut outside_velocities, mut outside_places) = (Vec::new(), Vec::new());
     let known = scenario.targets.iter().enumerate().map(|(index, target)| {
         let Some(ship) = target.ship() else {
             return TargetMemory::default();
@@ -347,11 +356,10 @@ fn memory_after(
         let mut memory = target_memory(previous, &target.name, elapsed);
         match assumed(previous, &target.name, ship, elapsed) {
             None | Some(Assumed::Inside) => {}
-            Some(outside) => {
-                outside_sets.push(target.name.clone());
-                if outside == Assumed::OutsidePlaces {
-                    memory = TargetMemory::default();
-                }
+            Some(Assumed::OutsideVelocities) => outside_velocities.push(target.name.clone()),
+            Some(Assumed::OutsidePlaces) => {
+                outside_places.push(target.name.clone());
+                memory = TargetMemory::default();
             }
         }
         // the domain stays as it is until own ship is on its route again
@@ -367,6 +375,8 @@ fn memory_after(
     });
     let mut targets: Vec<TargetMemory> = known.collect();
     forget(&mut sailed, &mut targets);
+    let missing = (previous.targets.iter().map(|then| then.name.clone()))
+        .filter(|name| scenario.targets.iter().all(|target| target.name != *name));
     let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
     Ok(Memory {
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
@@ -385,7 +395,9 @@ fn memory_after(
                 turn: -radians_from_deg(escape.turn_deg),
                 speed: escape.speed_mps,
             }),
-        outside_sets,
+        outside_velocities,
+        outside_places,
+        missing: missing.collect(),
         sailed,
         remainder,
         off_plan: 0.0,

@@ -41,7 +41,7 @@ pub(super) fn better_remainder(
     let memory = &scenario.memory;
     let returns = |m: &PlannedManoeuvre| m.returns <= 0.0 && m.joins > 0.0;
     let outside = (scenario.targets.iter().zip(&memory.targets))
-        .any(|(target, known)| known.role.is_some() && memory.outside_sets.contains(&target.name));
+        .any(|(target, known)| known.role.is_some() && memory.is_outside(&target.name));
     // another manoeuvre would begin before the last one is finished
     let another = memory.under_way.is_some_and(|begun| {
         let goes_on = |m: &PlannedManoeuvre| m.begins == begun.begins;

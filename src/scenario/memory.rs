@@ -23,13 +23,23 @@ pub struct Memory {
     pub escape: Option<Escape>,
     /// The manoeuvre that own ship carries out.
     pub under_way: Option<UnderWay>,
-    /// Names of the targets that are outside the sets which the last plan assumed.
-    pub outside_sets: Vec<String>,
+    /// Names of the targets that have a velocity outside the set which the last plan assumed.
+    pub outside_velocities: Vec<String>,
+    /// Names of the targets at a place which they could not reach by the last plan.
+    pub outside_places: Vec<String>,
+    /// Names of the last plan's targets that the scenario has not; their roles are forgotten.
+    pub missing: Vec<String>,
     /// One per target in the scenario's order, or none at all.
     pub targets: Vec<TargetMemory>,
 }
 
 impl Memory {
+    /// True for a target that is outside the sets which the last plan assumed.
+    pub fn is_outside(&self, name: &str) -> bool {
+        let mut outside = self.outside_velocities.iter().chain(&self.outside_places);
+        outside.any(|outside| outside == name)
+    }
+
     /// Returns the memory of a target; `None` without one.
     pub fn target(&self, index: usize) -> Option<&TargetMemory> {
         self.targets.get(index)

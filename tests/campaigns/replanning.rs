@@ -101,6 +101,8 @@ struct Sailed {
     relaxed: usize,
     /// Cycles after which the plan turns back, though a manoeuvre was under way.
     turned_back: usize,
+    /// Cycles in which the remainder of the last plan enters a hard set.
+    lost: usize,
     /// Cycles whose plan is dearer than the remainder of the last one, which is clear, but breaks
     /// more rules by the judges.
     dearer: usize,
@@ -147,6 +149,15 @@ fn within(radius: f64, rng: &mut ChaCha8Rng) -> Vector {
     direction(angle) * radius * rng.random_range(0.0_f64..1.0).sqrt()
 }
 
+/// True where the remainder of the last plan enters a hard set.
+fn is_lost(run: &Run) -> bool {
+    let enters = |s: &Segment| {
+        let mut hard = run.targets.iter().map(|target| &target.sets.hard);
+        hard.any(|set| set.first_contact(s, TOUCH_M).is_some())
+    };
+    run.scenario.memory.remainder.iter().any(enters)
+}
+
 /// True for a plan that costs more than the remainder of the last plan, though that is clear of the
 /// same sets.
 fn is_dearer(run: &Run) -> bool {
@@ -190,6 +201,7 @@ fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         unsafe_plans: 0,
         relaxed: 0,
         turned_back: 0,
+        lost: 0,
         dearer: 0,
         milliseconds: Vec::new(),
     };
@@ -227,6 +239,7 @@ fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         let goes_on = |m: &PlannedManoeuvre| begun.is_none_or(|b| b.begins == m.begins);
         let goes_on = next.planned.manoeuvres.first().is_some_and(goes_on);
         sailed.turned_back += usize::from(begun.is_some() && !goes_on);
+        sailed.lost += usize::from(is_lost(&next));
         sailed.dearer += usize::from(is_dearer(&next));
         run = next;
     }
@@ -248,9 +261,9 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
     let mut report = Report::default();
     println!("{seeds:?} of each kind, a plan every {STEP_S} s, targets: {behaviour:?}\n");
     println!(
-        "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | dearer | plan 50/99 %, ms |"
+        "| kind | both judges | at least | first plan | least apart, m | turns 50/95 %/most | speeds 50/95 %/most | J / J of the first plan 50/95 % | cycles | unsafe | relaxed | turned back | remainder lost | dearer | plan 50/99 %, ms |"
     );
-    println!("|{}", " --- |".repeat(14));
+    println!("|{}", " --- |".repeat(15));
     for kind in EncounterKind::ALL {
         let name = kind.name();
         let all: Vec<Option<Sailed>> = (seeds.clone().into_par_iter())
@@ -280,7 +293,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
         let speeds = |p| share(p, &|s| s.speed_changes as f64);
         let times: Vec<f64> = all.iter().flat_map(|s| s.milliseconds.clone()).collect();
         println!(
-            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {} | {:.1}/{:.1} |",
+            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {} | {} | {:.1}/{:.1} |",
             all.len(),
             100.0 * bound,
             share(0.0, &|s| s.apart),
@@ -296,11 +309,14 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
             sum(&|s| s.unsafe_plans),
             sum(&|s| s.relaxed),
             sum(&|s| s.turned_back),
+            sum(&|s| s.lost),
             sum(&|s| s.dearer),
             quantile(&times, 0.5),
             quantile(&times, 0.99),
         );
-        if behaviour == Behaviour::Constant {
+        // noise moves the targets across the limits of the rules
+        let is_known = behaviour == Behaviour::Constant && !how.noise;
+        if is_known {
             report.require(content as f64 >= CONTENT * all.len() as f64, || {
                 format!(
                     "{name}: both judges content with {content} of {}",
@@ -310,13 +326,16 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
         }
         if behaviour != Behaviour::Turns {
             let (unsafe_plans, dearer) = (sum(&|s| s.unsafe_plans), sum(&|s| s.dearer));
+            let lost = sum(&|s| s.lost);
+            report.require(lost == 0 || !how.memory, || {
+                format!("{name}: {lost} remainders are no longer clear")
+            });
             report.require(unsafe_plans == 0, || {
                 format!("{name}: {unsafe_plans} unsafe plans")
             });
-            report.require(
-                behaviour != Behaviour::Constant || 1000 * dearer <= sum(&|s| s.cycles),
-                || format!("{name}: {dearer} plans are dearer than the remainder"),
-            );
+            report.require(!is_known || 1000 * dearer <= sum(&|s| s.cycles), || {
+                format!("{name}: {dearer} plans are dearer than the remainder")
+            });
         }
         let mut broken: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
         for s in &all {

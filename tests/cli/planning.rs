@@ -605,6 +605,27 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert_eq!(third["memory"]["keeps_plan"], false);
     assert_eq!(third["encounters"][0]["breaches"], Value::Array(vec![]));
 
+    // within its tracking margin own ship goes on from the plan
+    let first_ship = |margin: &str, beside| {
+        let text = later_on(&scenario, &first, 60, beside);
+        let text = text.replace(
+            "[own_ship]",
+            &format!("[own_ship]\ntracking_margin_m = {margin}"),
+        );
+        write(folder.path(), "near.toml", text)
+    };
+    let near = document(&go_on(&first_ship("1.5", 1.0)).success());
+    assert_eq!(near["own_ship"]["position"], second["own_ship"]["position"]);
+    assert_eq!(near["trajectory"], second["trajectory"]);
+    assert_eq!(near["memory"]["off_plan_m"], 1.0);
+    let far = document(&go_on(&first_ship("1.5", 1.6)).success());
+    assert_eq!(far["memory"]["off_plan_m"], Value::Null);
+    assert_eq!(far["memory"]["keeps_plan"], false);
+    let refused = searoom(&["check", &first_ship("31.0", 1.0)]).code(2);
+    refused.stderr(contains(
+        "own_ship.tracking_margin_m: found 31; allowed: at most 20",
+    ));
+
     // on the way back a little beside the plan, it sails no circle
     let times = (160..=224).step_by(4);
     for (seconds, beside) in times.flat_map(|s| [3e-4, -4e-4, 0.01].map(|beside| (s, beside))) {
@@ -635,10 +656,17 @@ fn a_plan_goes_on_from_the_previous_one() {
     let turned = write(folder.path(), "turned.toml", turned);
     let turned = document(&go_on(&turned).success());
     assert_eq!(
-        turned["memory"]["outside_sets"],
+        turned["memory"]["outside_velocities"],
         Value::from(vec!["target"])
     );
     assert_eq!(turned["targets"][0]["ship"]["kept_velocities"], Value::Null);
+
+    let renamed = later.replace("name = \"target\"", "name = \"other\"");
+    let renamed = write(folder.path(), "renamed.toml", renamed);
+    let renamed = searoom(&["plan", &renamed, "--previous", &previous]);
+    renamed.stdout(contains(
+        "'target' of the previous plan is not in this file",
+    ));
 }
 
 #[test]

@@ -29,14 +29,15 @@ fn plans_keep_to_the_rules() {
 
 #[test]
 fn plans_made_again_and_again_keep_to_the_rules() {
-    for (behaviour, off) in [
-        (Behaviour::Constant, 0.0),
-        (Behaviour::Extreme, 0.0),
-        (Behaviour::Constant, 1.0),
+    for (behaviour, off, noise) in [
+        (Behaviour::Constant, 0.0, false),
+        (Behaviour::Constant, 1.0, true),
+        (Behaviour::Extreme, 0.0, true),
     ] {
         let how = How {
             behaviour,
             off,
+            noise,
             memory: true,
         };
         replanning::run(0..10, &Meeting::NEAR, &how).assert_met();
