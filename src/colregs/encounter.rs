@@ -103,7 +103,7 @@ pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
 
 /// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
 /// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
-/// [`risk_distance`] and [`Thresholds::risk_time`] seconds. Searched from 0 to the horizon or the desired arrival,
+/// the risk distance and the risk time of the thresholds. Searched from 0 to the horizon or the desired arrival,
 /// whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
 /// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
@@ -113,9 +113,14 @@ pub fn first_risk(
     desired: &DesiredTrajectory,
     target: &ShipTrack,
     horizon: f64,
+    thresholds: &Thresholds,
 ) -> Option<Risk> {
-    let allowed = risk_distance(own, target);
-    let soon = Thresholds::STANDARD.risk_time(own.hull.length);
+    let length = own.hull.length.max(target.hull.length);
+    let allowed = thresholds
+        .risk
+        .distance(length)
+        .max(0.5 * own.safety_margin);
+    let soon = thresholds.risk_time(own.hull.length);
     desired.legs().iter().find_map(|leg| {
         let from = leg.start_time;
         let until = leg.end_time().min(horizon);
@@ -149,10 +154,11 @@ pub fn encounter(
     desired: &DesiredTrajectory,
     target: &Target,
     horizon: f64,
+    thresholds: &Thresholds,
 ) -> Encounter {
     let risk = target
         .ship()
-        .and_then(|ship| first_risk(own, desired, ship, horizon));
+        .and_then(|ship| first_risk(own, desired, ship, horizon, thresholds));
     let mut found = Encounter {
         role: risk.map_or(Role::None, |risk| risk.role),
         risk,
@@ -319,7 +325,13 @@ mod tests {
     fn the_fixtures_collide_after_120_seconds() {
         let (own, desired) = (own_ship(), line(&[(0.0, 0.0), (2000.0, 0.0)], 6.0));
         for (other, role, _) in fixtures() {
-            let found = encounter(&own, &desired, &named(track(&other, 50.0)), 400.0);
+            let found = encounter(
+                &own,
+                &desired,
+                &named(track(&other, 50.0)),
+                400.0,
+                &Thresholds::STANDARD,
+            );
             assert_eq!(found.role, role);
             // the hulls overlap most when the centres meet
             assert!(found.undisturbed_dcpa <= -10.0 + 1e-6, "{found:?}");
@@ -346,7 +358,7 @@ mod tests {
                 50.0,
             );
             let horizon = 200.0;
-            let risk = first_risk(&own, &desired, &other, horizon);
+            let risk = first_risk(&own, &desired, &other, horizon, &Thresholds::STANDARD);
             let scan = (0..20_000)
                 .map(|i| f64::from(i) * 0.01)
                 .take_while(|t| *t < desired.duration())
@@ -389,7 +401,13 @@ mod tests {
                 ),
                 80.0,
             );
-            let found = encounter(&own, &desired, &named(other.clone()), 150.0);
+            let found = encounter(
+                &own,
+                &desired,
+                &named(other.clone()),
+                150.0,
+                &Thresholds::STANDARD,
+            );
             let scan = (0..=15_000)
                 .map(|i| {
                     let t = f64::from(i) * 0.01;
@@ -426,7 +444,7 @@ mod tests {
             representation: Representation::Polytope,
         };
         let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
-        let found = encounter(&own_ship(), &desired, &target, 400.0);
+        let found = encounter(&own_ship(), &desired, &target, 400.0, &Thresholds::STANDARD);
         assert_eq!(found.role, Role::None);
         // past its growing corner, which comes nearer still: own way relative to the corner is a
         // line

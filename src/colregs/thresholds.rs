@@ -1,6 +1,6 @@
 //! Thresholds of encounters, scores and monitors: three published sets, and files of a user's own.
 //!
-//! The planner and the encounter generator use the numbers of [`Thresholds::STANDARD`].
+//! The planner uses [`Thresholds::STANDARD`], and the limits that a scenario sets instead.
 
 use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_6;
@@ -38,6 +38,8 @@ pub struct RiskLimits {
     pub time: f64,
     /// Longest distance of the centres at the closest approach, in lengths.
     pub lengths: f64,
+    /// The same in metres, instead; of a scenario alone.
+    pub distance: Option<f64>,
     /// Distance of the hulls, in lengths, at which a target that opens is past and clear.
     pub release_lengths: f64,
     /// Consecutive samples that must agree.
@@ -112,10 +114,17 @@ pub struct MonitorLimits {
 }
 
 impl RiskLimits {
+    /// Longest distance of the centres at the closest approach, metres; `length` is that of the
+    /// longer ship.
+    pub fn distance(&self, length: f64) -> f64 {
+        self.distance.unwrap_or(self.lengths * length)
+    }
+
     /// Part of [`Thresholds::STANDARD`].
     pub const STANDARD: Self = Self {
         time: 420.0,
         lengths: 2.0,
+        distance: None,
         release_lengths: 1.5,
         evaluations: 2,
     };
@@ -278,7 +287,7 @@ static PUBLISHED: [Thresholds; 3] = [
 ];
 
 impl Thresholds {
-    /// The set that judges unless another is asked for, and whose numbers the planner uses.
+    /// The set by which plans are made and judged unless another is asked for.
     pub const STANDARD: Self = Self::published(
         "searoom",
         "scaled by length; weights of an evaluator of the NTNU lineage (evaluator.yaml of the SFI AutoShip simulator)",

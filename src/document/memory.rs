@@ -349,6 +349,7 @@ fn memory_after(
     let is_off_route = manoeuvres.iter().any(|m| begun(&m));
     let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
     let (mut outside_velocities, mut outside_places) = (Vec::new(), Vec::new());
+    let limits = &scenario.limits;
     let known = scenario.targets.iter().enumerate().map(|(index, target)| {
         let Some(ship) = target.ship() else {
             return TargetMemory::default();
@@ -365,7 +366,7 @@ fn memory_after(
         // the domain stays as it is until own ship is on its route again
         let lasting = memory.role.filter(|_| is_off_route);
         let given = scenario.memory.target(index).and_then(|known| known.role);
-        let role = lasting.or_else(|| role_now(&samples, now, ship, &memory));
+        let role = lasting.or_else(|| role_now(&samples, now, ship, &memory, limits));
         // the same role goes on, with the course at its beginning
         let same = |given: Risk| role.filter(|role| role.role == given.role).unwrap_or(given);
         let role = given.map(same).or(role);
@@ -540,8 +541,8 @@ fn role_now(
     now: SteadyShip,
     ship: &ShipTrack,
     memory: &TargetMemory,
+    thresholds: &Thresholds,
 ) -> Option<Risk> {
-    let thresholds = Thresholds::standard();
     let encounter = ComplianceReport::samples(samples, ship, Some(memory), thresholds);
     let last = roles(&encounter, thresholds).into_iter().next_back();
     let lasting = last

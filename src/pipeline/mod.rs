@@ -130,6 +130,7 @@ pub fn problem<'a>(
         desired: &scenario.desired,
         alternatives: &scenario.alternatives,
         objective: scenario.objective,
+        thresholds: &scenario.limits,
         obstacles,
         land_obstacle,
         horizon: scenario.horizon,

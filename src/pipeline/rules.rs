@@ -77,9 +77,9 @@ fn asking<'a>(
     })
 }
 
-/// Number of rules and monitors that a trajectory violates by the standard thresholds.
+/// Number of rules and monitors that a trajectory violates by the planner's limits.
 pub(super) fn breaks(scenario: &Scenario, trajectory: &Trajectory) -> usize {
-    let reports = conduct(scenario, Some(trajectory), Thresholds::standard());
+    let reports = conduct(scenario, Some(trajectory), &scenario.limits);
     reports.iter().flatten().map(|r| r.broken().count()).sum()
 }
 

@@ -94,11 +94,11 @@ pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
 fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets {
     let own = &scenario.own_ship;
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
-    let mut encounter = colregs::encounter(own, desired, target, horizon);
+    let mut encounter = colregs::encounter(own, desired, target, horizon, &scenario.limits);
     if let Some(known) = scenario.memory.target(index) {
         // a role lasts; another begins where own ship is, not where the desired trajectory has it
         let from_here = desired.from(own.pose.position);
-        let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon);
+        let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon, &scenario.limits);
         let begins = || match known.track.is_empty() {
             true => encounter.risk,
             false => begins(target.ship()?),

@@ -1,7 +1,7 @@
 //! Which sets are used, what is given up, and what the evaluation sees.
 
 use super::*;
-use crate::colregs::Role;
+use crate::colregs::{Role, Thresholds};
 use crate::frame::{Pose, Vector};
 use crate::obstacle::PolytopeObstacle;
 use crate::planner::path_time::PathTimePlanner;
@@ -60,6 +60,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         time_weight: 25.0,
         max_risk: 0.0,
         deadline: 5.0,
+        limits: std::sync::Arc::new(Thresholds::STANDARD),
         thresholds: None,
         earth: None,
         land: None,

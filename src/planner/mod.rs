@@ -18,7 +18,7 @@ pub use no_plan::NoPlan;
 
 use std::time::Duration;
 
-use crate::colregs::{Duty, Encountered};
+use crate::colregs::{Duty, Encountered, Thresholds};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{LandObstacle, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -122,6 +122,8 @@ pub struct Problem<'a> {
     pub alternatives: &'a [Vec<Vector>],
     /// Minimised quantity. The space-time planner supports the space-time error only.
     pub objective: Objective,
+    /// Thresholds of manoeuvres by the rules.
+    pub thresholds: &'a Thresholds,
     /// Sets to avoid, inflated by own ship's footprint.
     pub obstacles: &'a [Obstacle],
     /// Land to avoid, inflated by own ship's footprint.
@@ -158,6 +160,7 @@ impl<'a> Problem<'a> {
             desired,
             alternatives: &[],
             objective: Objective::SpaceTimeError,
+            thresholds: Thresholds::standard(),
             obstacles,
             land_obstacle: LandObstacle::none(),
             horizon,

@@ -1,6 +1,7 @@
 //! Scenario file → [`Scenario`], noting every fault.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::plane::{POSITION, Plane};
 use super::planner::{PlannerTable, planner};
@@ -109,6 +110,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         compliance: planner.compliance.unwrap_or(default_compliance),
         max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
+        limits: Arc::new(planner.limits(length)),
         thresholds: None,
         earth: plane.earth(),
         land,

@@ -75,7 +75,9 @@ pub struct Scenario {
     pub max_risk: f64,
     /// Wall-clock budget of one plan, seconds.
     pub deadline: f64,
-    /// Thresholds of the compliance monitors, without effect on plans; `None` for the standard set.
+    /// The thresholds by which roles are found and manoeuvres planned.
+    pub limits: Arc<Thresholds>,
+    /// Thresholds of the judges, without effect on plans; `None` for those of the plan.
     pub thresholds: Option<Arc<Thresholds>>,
     /// Place of the plane on the earth, if it is known.
     pub earth: Option<Georeference>,
@@ -94,9 +96,9 @@ impl Scenario {
         Self::parse_beside(&text, folder).map_err(|faults| ScenarioError::faults(file, faults))
     }
 
-    /// Thresholds of the compliance monitors.
+    /// Thresholds of the judges.
     pub fn judged_by(&self) -> &Thresholds {
-        self.thresholds.as_deref().unwrap_or(Thresholds::standard())
+        self.thresholds.as_deref().unwrap_or(&self.limits)
     }
 
     /// Every reason why the scenario's planner cannot plan it; faults without lines.

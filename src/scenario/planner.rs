@@ -1,6 +1,7 @@
 //! The tables `[planner]` and `[planner.optimal_control]`.
 
 use super::{Compliance, limits};
+use crate::colregs::Thresholds;
 use crate::input::{Field, Range, Table};
 use crate::planner::{
     ControlSettings, Objective, Planner, PlannerSettings, SearchKind, planner_words,
@@ -18,6 +19,25 @@ pub(super) struct PlannerTable {
     pub(super) time_weight: Option<f64>,
     pub(super) max_risk: Option<f64>,
     pub(super) deadline: Option<f64>,
+    ample_time: Option<f64>,
+    risk_time: Option<f64>,
+    risk_distance: Option<f64>,
+}
+
+impl PlannerTable {
+    /// The standard thresholds with the limits of the file, for an own ship of `length` metres.
+    pub(super) fn limits(&self, length: f64) -> Thresholds {
+        let mut limits = Thresholds::STANDARD;
+        let factor = limits.time_factor(length);
+        let [ample, risk] = [self.ample_time, self.risk_time].map(|t| t.map(|t| t / factor));
+        limits.score.ample_time = ample.unwrap_or(limits.score.ample_time);
+        limits.risk.time = risk.unwrap_or(limits.risk.time);
+        limits.risk.distance = self.risk_distance;
+        if limits != Thresholds::STANDARD {
+            limits.name = "searoom, with the limits of the scenario".into();
+        }
+        limits
+    }
 }
 
 /// Reads the table `[planner]` for an own ship of `length` metres.
@@ -32,6 +52,9 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
         time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
         max_risk: table.number("max_risk", limits::RISK),
         deadline: table.number("deadline_s", limits::DURATION),
+        ample_time: table.number("ample_time_s", limits::BEFORE_CPA),
+        risk_time: table.number("tcpa_limit_s", limits::BEFORE_CPA),
+        risk_distance: table.number("cpa_limit_m", limits::DISTANCE),
     };
     table.finish();
     fields

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::colregs::{Role, Sectors};
+use crate::colregs::{Role, Sectors, Thresholds};
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
@@ -317,6 +317,7 @@ fn scene(
             arrival_hold: 60.0,
             max_risk: 0.0,
             deadline: DEADLINE,
+            limits: std::sync::Arc::new(Thresholds::STANDARD),
             thresholds: None,
             earth: None,
             land: None,

@@ -711,6 +711,43 @@ fn a_previous_plan_that_does_not_fit_is_named() {
 }
 
 #[test]
+fn limits_of_risk_and_of_ample_time_can_be_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = fs::read_to_string("scenarios/colregs/give-way.toml").expect("a scenario");
+    let plan = |limit: &str| {
+        let text = scenario.replace("[planner]", &format!("[planner]\n{limit}"));
+        let file = write(folder.path(), "limits.toml", text);
+        document(&searoom(&["plan", &file, "--json"]).success())
+    };
+    let lead = |plan: &Value| plan["encounters"][0]["manoeuvre"]["lead_s"].as_f64();
+    let early = plan("");
+    assert_eq!(early["thresholds"], "searoom");
+    let late = plan("ample_time_s = 110.0");
+    assert_eq!(
+        late["thresholds"],
+        "searoom, with the limits of the scenario"
+    );
+    assert!(lead(&early) > Some(125.0) && lead(&late) > Some(105.0));
+    assert!(lead(&late) < Some(115.0));
+    // collision is risk at any distance; ships that pass at 60 m are not at a limit of 50 m
+    assert_eq!(
+        plan("cpa_limit_m = 0.0")["encounters"][0]["role"],
+        "give-way"
+    );
+    let aside = |limit: &str| {
+        let text = scenario
+            .replace("[planner]", &format!("[planner]\n{limit}"))
+            .replace("safety_margin_m = 20.0", "safety_margin_m = 2.0")
+            .replace("north_m = -750.0", "north_m = -600.0");
+        assert!(text.contains("-600.0"), "the target is moved");
+        let file = write(folder.path(), "aside.toml", text);
+        document(&searoom(&["plan", &file, "--json"]).success())["encounters"][0]["role"].clone()
+    };
+    assert_eq!(aside("cpa_limit_m = 50.0"), "none");
+    assert_eq!(aside("cpa_limit_m = 150.0"), "give-way");
+}
+
+#[test]
 fn roles_of_a_file_last() {
     let folder = tempfile::tempdir().expect("a folder");
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");

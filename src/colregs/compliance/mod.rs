@@ -120,7 +120,7 @@ impl ComplianceReport {
         thresholds: &Thresholds,
     ) -> EncounterSamples {
         let risk = &thresholds.risk;
-        let near = risk.lengths * track.hull().length.max(target.hull.length);
+        let near = risk.distance(track.hull().length.max(target.hull.length));
         let factor = thresholds.time_factor(track.hull().length);
         let soon = factor * risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);

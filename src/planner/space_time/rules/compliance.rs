@@ -2,9 +2,7 @@
 //! their nominal tracks.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
-use crate::colregs::{
-    Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory, Thresholds,
-};
+use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
@@ -45,7 +43,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
     let Ok(trajectory) = Trajectory::new(motion.to_vec()) else {
         return usize::MAX;
     };
-    let thresholds = Thresholds::standard();
+    let thresholds = problem.thresholds;
     let own = OwnSamples::along(&[], &trajectory, problem.own.hull, problem.own.speed);
     let samples = problem.encountered.iter().map(|e| {
         let track = ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull);

@@ -12,7 +12,6 @@
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, ON_COURSE, Role, SMALL_TURN,
-    Thresholds,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -334,7 +333,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     /// Latest time of the first alteration that is in ample time for every target, and after which
     /// a turn can soon be seen, seconds.
     fn ample(&self) -> f64 {
-        let (limits, own) = (Thresholds::standard(), self.problem().own);
+        let (limits, own) = (self.problem().thresholds, self.problem().own);
         let ample = limits.ample_time(own.hull.length);
         let soon = limits.time_factor(own.hull.length) * limits.monitor.response();
         let turning = SMALL_TURN * own.turning_radius / ManoeuvreSpeeds::of(self.problem()).normal;
@@ -350,7 +349,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     /// First time at which a stand-on ship may act on the nominal motion: Rule 17(a)(ii), or in
     /// extremis, when the hulls would soon meet.
     fn may_act(&self) -> f64 {
-        let limits = Thresholds::standard();
+        let limits = self.problem().thresholds;
         let own_length = self.problem().own.hull.length;
         let times = self.passing.iter().map(|p| {
             let e = p.encountered;
