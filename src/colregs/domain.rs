@@ -138,7 +138,9 @@ fn keeps_the_design_inequality(
         return true;
     };
     let centre = target.pose.position;
-    let reach = |n: Vector| with_domain.support(n) - n.dot(&centre);
+    // the places of the target need not lie evenly about its estimate
+    let places = target.outer_positions();
+    let reach = |n: Vector| with_domain.support(n) - n.dot(&centre) - places.support(n);
     let rounding = 1e-9 * (1.0 + centre.norm() + sweep.norm());
     let short = 2.0 * risk_distance(own, target) - (reach(bad) - reach(-bad));
     short.is_nan() || short <= rounding && reach(-bad) >= own.safety_margin - rounding

@@ -17,7 +17,7 @@ use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
 /// Own ship's speeds if the file has none, as fractions of its own speed.
-const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
+const DEFAULT_SPEEDS: [f64; 2] = [0.5, 1.0];
 
 /// Seconds after arrival for which own ship is observed by default.
 const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;

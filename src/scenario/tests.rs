@@ -42,7 +42,7 @@ fn paths(text: &str) -> Vec<String> {
 fn what_is_left_out_takes_its_default() {
     let scenario = Scenario::parse(&format!("{SCENARIO}{SHIP}")).expect("valid");
     let own = &scenario.own_ship;
-    assert_eq!(own.speeds, [2.5, 5.0, 6.0]);
+    assert_eq!(own.speeds, [2.5, 5.0]);
     assert_eq!(own.safety_margin, 30.0);
     assert!(own.pose.heading.abs() < 1e-15);
     assert!(scenario.desired.legs().iter().all(|leg| leg.speed == 5.0));

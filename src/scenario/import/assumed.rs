@@ -14,6 +14,9 @@ const COURSE_SPREAD_DEG: f64 = 5.0;
 /// Hull of a ship whose format has no size: 100 × 20 m, as published runs of Imazu's cases assume.
 pub(super) const USUAL_HULL: Hull = Hull::new(100.0, 20.0);
 
+/// Own ship's speeds, as fractions of the speed that a situation gives it.
+pub(super) const ASSUMED_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
+
 /// Own ship's turning radius in own lengths: a tactical diameter of five lengths, the largest that
 /// IMO resolution MSC.137(76) allows.
 pub(super) const TURNING_LENGTHS: f64 = 2.5;

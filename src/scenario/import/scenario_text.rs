@@ -1,7 +1,7 @@
 //! A situation as the text of a scenario file: the only way from an imported file to a scenario, so
 //! that importing a file and running it directly are the same.
 
-use super::assumed::{Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
+use super::assumed::{ASSUMED_SPEEDS, Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
 use super::situation::{GivenHull, Other, Own, Situation};
 use super::track::{Spread, Track};
 use crate::frame::{Geographic, Pose, Vector, course_deg_from_heading, deg_from_radians};
@@ -139,12 +139,18 @@ impl<'a> Writing<'a> {
             TURNING_LENGTHS * length,
             self.assumed.safety_margin(length),
         ));
-        if own.speed == 0.0 {
-            // the default speeds of a scenario file are fractions of own speed
-            let speeds = own.leg_speeds.iter();
-            let speeds: Vec<f64> = speeds.flat_map(|v| [0.5 * v, *v, 1.2 * v]).collect();
-            self.add(&format!("speeds_mps = {speeds:?}\n"));
-        }
+        // at rest the speeds of the legs are own speeds
+        let moving = [own.speed];
+        let given = if own.speed == 0.0 {
+            &own.leg_speeds[..]
+        } else {
+            &moving
+        };
+        let fractions = given
+            .iter()
+            .flat_map(|v| ASSUMED_SPEEDS.map(|fraction| fraction * v));
+        let speeds: Vec<f64> = fractions.collect();
+        self.add(&format!("speeds_mps = {speeds:?}\n"));
         let route = own.route.iter();
         let route: String = route.map(|p| format!("    {},\n", position(*p))).collect();
         self.add(&format!(
