@@ -4,6 +4,7 @@
 mod campaigns;
 
 mod campaign;
+mod conformance;
 mod control_solver;
 mod encounters;
 mod land;
