@@ -6,8 +6,8 @@
 use std::time::{Duration, Instant};
 
 use super::entered;
-use super::remainder::better_remainder;
-use super::rules::{encountered, first_turn};
+use super::remainder::{begins_another, better_remainder};
+use super::rules::{self, encountered, first_turn};
 use super::sets::TargetSets;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem};
@@ -130,11 +130,14 @@ impl Relaxer<'_> {
             return self.without_domains(first, with_domain);
         }
         let why = match &first.planned.outcome {
-            Outcome::Solved(_) | Outcome::Deadline(Some(_)) => return first,
+            Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
+                return self.finished(with_domain, &first).unwrap_or(first);
+            }
             Outcome::Deadline(None) => return self.leaving_sets(first),
             Outcome::Infeasible(reason) => reason.clone(),
         };
         let relaxed = self.relaxed(first, &why, with_domain);
+        let relaxed = self.finished(with_domain, &relaxed).unwrap_or(relaxed);
         let why = (relaxed.level > RelaxationLevel::Compliant).then_some(why);
         Attempt { why, ..relaxed }
     }
@@ -165,6 +168,18 @@ impl Relaxer<'_> {
     fn remainder_by_the_rules(&self, with_domain: bool) -> Option<Attempt> {
         let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
         (self.are_rules_asked() && found.1 == 0).then_some(found.0)
+    }
+
+    /// [`RelaxationLevel::Rules`]: the manoeuvre under way, finished in smaller domains, where the
+    /// plan of an attempt begins another and breaks no fewer rules.
+    fn finished(&self, with_domain: bool, attempt: &Attempt) -> Option<Attempt> {
+        if !begins_another(self.scenario, &attempt.planned) {
+            return None;
+        }
+        let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
+        let breaks = |trajectory| rules::breaks(self.scenario, trajectory);
+        let fewest = attempt.trajectory().map_or(usize::MAX, breaks);
+        (self.are_rules_asked() && found.1 <= fewest).then_some(found.0)
     }
 
     /// [`RelaxationLevel::ReducedDomains`]: the remainder of the last plan, if it is clear of the

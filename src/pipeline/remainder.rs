@@ -42,12 +42,9 @@ pub(super) fn better_remainder(
     let returns = |m: &PlannedManoeuvre| m.returns <= 0.0 && m.joins > 0.0;
     let outside = (scenario.targets.iter().zip(&memory.targets))
         .any(|(target, known)| known.role.is_some() && memory.is_outside(&target.name));
-    // another manoeuvre would begin before the last one is finished
-    let another = memory.under_way.is_some_and(|begun| {
-        let goes_on = |m: &PlannedManoeuvre| m.begins == begun.begins;
-        !attempt.planned.manoeuvres.first().is_some_and(goes_on)
-    });
-    let settled = outside || another || memory.manoeuvres.iter().any(returns);
+    let settled = outside
+        || begins_another(scenario, &attempt.planned)
+        || memory.manoeuvres.iter().any(returns);
     let broken = breaks(&plan);
     let keep = match attempt.planned.outcome.plan() {
         None => true,
@@ -68,6 +65,14 @@ pub(super) fn better_remainder(
         ..Planned::of(Outcome::Solved(plan))
     };
     keep.then_some(Remainder { planned, broken })
+}
+
+/// True where another manoeuvre would begin before the one under way is finished.
+pub(super) fn begins_another(scenario: &Scenario, planned: &Planned) -> bool {
+    scenario.memory.under_way.is_some_and(|begun| {
+        let goes_on = |m: &PlannedManoeuvre| m.begins == begun.begins;
+        !planned.manoeuvres.first().is_some_and(goes_on)
+    })
 }
 
 fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> Option<Plan> {
