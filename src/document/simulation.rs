@@ -96,6 +96,7 @@ pub struct SailedDocument {
     pub unsafe_plans: usize,
     pub largest_off_plan_m: f64,
     pub largest_off_plan_t_s: f64,
+    pub within_tracking_margin: bool,
 }
 
 /// Something that a navigator would be called for.
@@ -122,7 +123,8 @@ pub struct ReplanDocument {
     /// First turn of the manoeuvre that is under way or planned, positive to starboard.
     pub turn_deg: Option<f64>,
     pub off_plan_m: f64,
-    pub outside_sets: Vec<String>,
+    pub outside_velocities: Vec<String>,
+    pub outside_places: Vec<String>,
     /// The targets that the plan assumes, at its start.
     pub estimates: Vec<EstimateDocument>,
 }

@@ -113,8 +113,10 @@ fn conduct(simulation: &SimulationDocument) -> String {
             sailed.without_plan
         ),
         format!(
-            "Off the plan: at most {:.2} m, at {:.0} s",
-            sailed.largest_off_plan_m, sailed.largest_off_plan_t_s
+            "Off the plan: at most {:.2} m, at {:.0} s, {} the tracking margin",
+            sailed.largest_off_plan_m,
+            sailed.largest_off_plan_t_s,
+            if sailed.within_tracking_margin { "within" } else { "BEYOND" }
         ),
         format!(
             "Planning: {:.1} ms in the median, {:.1} ms at 99 %, {:.1} ms at most",

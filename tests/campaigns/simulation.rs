@@ -144,16 +144,19 @@ impl How {
         }
     }
 
-    /// Settings of the loop for a scenario.
-    pub fn settings(&self, scenario: &Scenario, seed: u64) -> SimulationSettings {
-        SimulationSettings {
+    /// Adds the settings of the loop to a scenario, and for a ship that is steered a margin.
+    pub fn equip(&self, scenario: &mut Scenario, seed: u64) {
+        if self.ship != Ship::Kinematic {
+            scenario.own_ship.tracking_margin = 0.5 * scenario.own_ship.safety_margin;
+        }
+        scenario.simulation = SimulationSettings {
             seed,
             replan: if self.replan { 20.0 } else { scenario.horizon },
             vessel: self.vessel(),
             sensor: self.sensor(),
             behaviours: vec![self.behaviour(); scenario.targets.len()],
             ..SimulationSettings::default()
-        }
+        };
     }
 }
 
@@ -180,7 +183,7 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
                 let drawn = random_meeting(kind, seed, Placement::Random, meeting).expect("drawn");
                 let mut scenario = drawn.scenario;
                 scenario.compliance = Compliance::Rules;
-                scenario.simulation = how.settings(&scenario, seed);
+                how.equip(&mut scenario, seed);
                 (seed, sail(scenario))
             })
             .collect();

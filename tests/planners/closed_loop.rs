@@ -19,7 +19,7 @@ fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
     let drawn = random_meeting(kind, seed, Placement::Random, &Meeting::NEAR).expect("drawn");
     let mut scenario = drawn.scenario;
     scenario.compliance = Compliance::Rules;
-    scenario.simulation = how.settings(&scenario, seed);
+    how.equip(&mut scenario, seed);
     scenario
 }
 
@@ -42,6 +42,7 @@ fn a_perfect_ship_among_steady_targets_sails_what_planning_again_and_again_gives
     let campaign = replanning::How {
         behaviour: replanning::Behaviour::Constant,
         off: 0.0,
+        noise: false,
         memory: true,
     };
     for kind in EncounterKind::ALL {

@@ -286,6 +286,6 @@ mod tests {
         };
         let held = nearest(Behaviour::Constant);
         let pursued = nearest(Behaviour::Pursuit { every: 5.0 });
-        assert!(pursued < held - 10.0, "{pursued} {held}");
+        assert!(pursued < held - 3.0, "{pursued} {held}");
     }
 }

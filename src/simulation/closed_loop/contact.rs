@@ -25,51 +25,123 @@ impl OwnMotion {
     }
 }
 
-/// Least distance of the hulls so far, metres, and when.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// One step of two ships.
+#[derive(Debug, Clone)]
+struct Step {
+    time: f64,
+    own: OwnMotion,
+    target: SteadyShip,
+    /// Lower bound of the distance of the hulls in the step, metres.
+    bound: f64,
+}
+
+/// Contacts and least distance of the hulls of two ships.
+///
+/// A step is searched at once where hulls might meet in it. The least distance is searched at the
+/// end, in the steps that may hold it.
+#[derive(Debug, Clone)]
 pub(super) struct Clearance {
-    pub least: f64,
+    own: Hull,
+    target: Hull,
+    least: Least,
+    /// No hulls were farther apart than this, metres.
+    nearer_than: f64,
+    open: Vec<Step>,
+}
+
+/// Least distance of two hulls, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Least {
+    pub metres: f64,
     pub time: f64,
     /// The first contact; hulls that touch are in contact, and a NaN is a contact.
     pub contact: Option<f64>,
 }
 
 impl Clearance {
-    pub const NONE: Self = Self {
-        least: f64::INFINITY,
-        time: 0.0,
-        contact: None,
-    };
+    pub fn new(own: Hull, target: Hull) -> Self {
+        Self {
+            own,
+            target,
+            least: Least {
+                metres: f64::INFINITY,
+                time: 0.0,
+                contact: None,
+            },
+            nearer_than: f64::INFINITY,
+            open: Vec::new(),
+        }
+    }
 
     /// Sees a step that begins at `time` and lasts `step` seconds. Own ship begins at `start` and
     /// moves with `own`; the target begins at `target` and keeps its course and speed.
     pub fn see(
         &mut self,
         (time, step): (f64, f64),
-        (hull, start, own): (&Hull, Vector, &OwnMotion),
-        (target_hull, target): (&Hull, &SteadyShip),
+        (start, own): (Vector, &OwnMotion),
+        target: &SteadyShip,
     ) {
         let apart = (target.pose.position - start).norm();
         let closing = own.fastest() + target.speed;
-        let reach = hull.half_diagonal() + target_hull.half_diagonal();
-        if apart - reach - closing * step > self.least.max(0.0) {
-            return;
+        let reach = self.own.half_diagonal() + self.target.half_diagonal();
+        let bound = apart - reach - closing * step;
+        // centres are farther apart than hulls
+        self.nearer_than = self.nearer_than.min(apart);
+        let seen = Step {
+            time,
+            own: own.clone(),
+            target: *target,
+            bound,
+        };
+        // negated on purpose: a NaN is searched
+        if !(bound > 0.0) {
+            self.least.see(&seen, (&self.own, &self.target));
+        } else if bound <= self.nearer_than {
+            self.open.push(seen);
+            let nearer_than = self.nearer_than;
+            if self.open.len().is_power_of_two() {
+                self.open.retain(|step| step.bound <= nearer_than);
+            }
         }
+    }
+
+    pub fn is_contact(&self) -> bool {
+        self.least.contact.is_some()
+    }
+
+    /// The least distance so far. O(steps near it).
+    pub fn settled(&self) -> Least {
+        let mut least = self.least;
+        let mut open: Vec<&Step> = self.open.iter().collect();
+        open.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.time.total_cmp(&b.time)));
+        for step in open {
+            if step.bound > least.metres {
+                break;
+            }
+            least.see(step, (&self.own, &self.target));
+        }
+        least
+    }
+}
+
+impl Least {
+    fn see(&mut self, step: &Step, (own, target): (&Hull, &Hull)) {
         let sets = Uncertainty::constant(
-            target_hull.polygon(&target.pose),
-            ConvexPolygon::point(target.velocity()),
+            target.polygon(&step.target.pose),
+            ConvexPolygon::point(step.target.velocity()),
         );
-        let (slabs, body) = (MovingSlabs::new(&sets), Body::hull(hull));
-        let found = match own {
+        let (slabs, body) = (MovingSlabs::new(&sets), Body::hull(own));
+        let found = match &step.own {
             OwnMotion::Segments(segments) => slabs.least_distance(segments, body),
             OwnMotion::Cubic(cubic) => slabs.least_distance(&[*cubic], body),
         };
+        let time = step.time + found.time;
         // negated on purpose: a NaN is taken over and is a contact
-        if !(found.value >= self.least) && !self.least.is_nan() {
-            (self.least, self.time) = (found.value, time + found.time);
+        if !(found.value >= self.metres) && !self.metres.is_nan() {
+            (self.metres, self.time) = (found.value, time);
         }
-        if !(found.value > 0.0) && self.contact.is_none() {
-            self.contact = Some(time + found.time);
+        if !(found.value > 0.0) && self.contact.is_none_or(|first| time < first) {
+            self.contact = Some(time);
         }
     }
 }
@@ -96,7 +168,7 @@ mod tests {
                 pose: Pose::new(Vector::new(within(90.0), within(90.0)), within(3.0)),
                 speed: 5.0 + within(4.0),
             };
-            let mut clearance = Clearance::NONE;
+            let mut clearance = Clearance::new(own_hull, hull);
             for k in 0..20 {
                 let (time, step) = (f64::from(k) * 0.5, 0.5);
                 let part = segment.between(time, time + step);
@@ -107,11 +179,7 @@ mod tests {
                 let own = OwnMotion::Segments(vec![part]);
                 let mut now = target;
                 now.pose.position += target.velocity() * time;
-                clearance.see(
-                    (time, step),
-                    (&own_hull, part.start.position, &own),
-                    (&hull, &now),
-                );
+                clearance.see((time, step), (part.start.position, &own), &now);
             }
             let at = |time: f64| {
                 let mut pose = target.pose;
@@ -123,20 +191,15 @@ mod tests {
             let scan = (0..=5000)
                 .map(|k| at(f64::from(k) * 0.002))
                 .fold(f64::INFINITY, f64::min);
+            let found = clearance.settled();
             // a clear distance is the least one; an overlap is found, not measured
             if scan > 0.05 {
                 passed += 1;
-                assert!(
-                    (clearance.least - scan).abs() < 0.05,
-                    "{clearance:?} {scan}"
-                );
-                assert_eq!(clearance.contact, None);
+                assert!((found.metres - scan).abs() < 0.05, "{found:?} {scan}");
+                assert!(found.contact.is_none() && !clearance.is_contact());
             } else if scan < -0.05 {
                 met += 1;
-                assert!(
-                    clearance.contact.is_some() && clearance.least < 0.0,
-                    "{scan}"
-                );
+                assert!(clearance.is_contact() && found.metres < 0.0, "{scan}");
             }
         }
         assert!(met > 30 && passed > 100, "{met} {passed}");
@@ -155,12 +218,8 @@ mod tests {
             speed: 1.0,
         };
         let hull = Hull::new(30.0, 8.0);
-        let mut clearance = Clearance::NONE;
-        clearance.see(
-            (3.0, 1.0),
-            (&hull, Vector::new(f64::NAN, 0.0), &own),
-            (&hull, &target),
-        );
-        assert!(clearance.contact.is_some() && clearance.least.is_nan());
+        let mut clearance = Clearance::new(hull, hull);
+        clearance.see((3.0, 1.0), (Vector::new(f64::NAN, 0.0), &own), &target);
+        assert!(clearance.is_contact() && clearance.settled().metres.is_nan());
     }
 }

@@ -3,12 +3,12 @@
 use super::Simulation;
 use crate::colregs::SteadyShip;
 use crate::document::{EstimateDocument, ReplanDocument, finite, position, remember};
-use crate::frame::{clockwise_deg, course_deg_from_heading, deg_from_radians};
+use crate::frame::{Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Relaxation, Run};
 use crate::scenario::Memory;
 use crate::target::{Motion, ShipTrack};
-use crate::tolerance::{POSITION_SIGMAS, TOUCH_M};
+use crate::tolerance::TOUCH_M;
 
 /// m/s and metres: rounding of a target's state.
 const ROUNDING: f64 = 1e-6;
@@ -27,7 +27,7 @@ impl Simulation {
         let mut scenario = self.scenario.clone();
         let mut estimates = Vec::with_capacity(self.targets.len());
         for (target, known) in scenario.targets.iter_mut().zip(&mut self.targets) {
-            let ship = known.track.set_at(start);
+            let ship = known.track.set_at(start, self.scenario.simulation.delay);
             let age_s = self.time - known.track.estimate().time;
             estimates.push(EstimateDocument {
                 target: known.name.clone(),
@@ -46,11 +46,11 @@ impl Simulation {
         if let Some(previous) = &self.active.document {
             scenario.time += start;
             scenario.desired = self.scenario.desired.remaining(start);
-            scenario.own_ship.pose = self.active.trajectory.pose_at(start - self.active.start);
+            scenario.own_ship.pose = self.pose_at(start);
             scenario.memory = Memory::default();
-            if let Err(fault) = remember(previous, &mut scenario) {
-                // the last plan is own, so only a ship far off it is refused
-                debug_assert!(false, "{fault}");
+            // the last plan is own ship's, so only a ship far off it is refused
+            if remember(previous, &mut scenario).is_err() {
+                self.alarm("far off the plan", None);
             }
         }
         let run = pipeline::run(scenario);
@@ -67,10 +67,25 @@ impl Simulation {
             relaxations: run.relaxations.iter().map(|r| kind(r).to_owned()).collect(),
             turn_deg: (run.planned.manoeuvres.first()).map(|m| clockwise_deg(m.turn)),
             off_plan_m,
-            outside_sets: run.scenario.memory.outside_sets.clone(),
+            outside_velocities: run.scenario.memory.outside_velocities.clone(),
+            outside_places: run.scenario.memory.outside_places.clone(),
             estimates,
         };
         Cycle { run, replan }
+    }
+}
+
+impl Simulation {
+    /// Own ship at a later time, if it stays off its plan as it is now.
+    fn pose_at(&self, time: f64) -> Pose {
+        let plan = &self.active;
+        let [now, then] = [self.time, time].map(|t| plan.trajectory.pose_at(t - plan.start));
+        let own = self.own.pose(&plan.trajectory, self.time - plan.start);
+        let off = now.body_coordinates(own.position);
+        Pose::new(
+            then.world_coordinates(off),
+            then.heading + wrap(own.heading - now.heading),
+        )
     }
 }
 
@@ -95,8 +110,8 @@ pub(super) fn remainder_is_lost(run: &Run) -> bool {
 
 /// True where the positions and the velocities that a plan assumes at its start hold the truth.
 pub(super) fn holds(assumed: &ShipTrack, truth: &SteadyShip) -> bool {
-    let off = (truth.pose.position - assumed.pose.position).norm();
+    let off = truth.pose.position - assumed.pose.position;
     let velocities = assumed.outer_velocity_set();
-    off <= POSITION_SIGMAS * assumed.position_std + ROUNDING
+    assumed.outer_positions().signed_distance(off) <= ROUNDING
         && velocities.signed_distance(truth.velocity()) <= ROUNDING
 }

@@ -132,7 +132,7 @@ impl Simulation {
                 truth: TrueTarget::new(&target.name, ship, behaviour, seed),
                 sight: Sight::new(&settings.sensor, &target.name, seed),
                 track: Track::new(ship, &settings.sensor),
-                clearance: Clearance::NONE,
+                clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
                 states: Vec::new(),
                 outside_sets: 0,
                 is_stale: false,
@@ -274,20 +274,18 @@ impl Simulation {
             }
         }
         self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
-        let alarm = |alarm: &str, target: Option<&str>| AlarmDocument {
-            t_s: self.time,
-            alarm: alarm.to_owned(),
-            target: target.map(str::to_owned),
-        };
-        for name in &replan.outside_sets {
-            self.alarms.push(alarm("assumption broken", Some(name)));
+        for name in &replan.outside_velocities {
+            self.alarm("another velocity than assumed", Some(name));
+        }
+        for name in &replan.outside_places {
+            self.alarm("at another place than assumed", Some(name));
         }
         if replan.cost_m2.is_none() {
-            self.alarms.push(alarm("no plan", None));
+            self.alarm("no plan", None);
         } else if !replan.followed {
-            self.alarms.push(alarm("plan too late", None));
+            self.alarm("plan too late", None);
         } else if !replan.safe {
-            self.alarms.push(alarm("unsafe plan", None));
+            self.alarm("unsafe plan", None);
         }
         if replan.followed
             && let Some(plan) = run.planned.outcome.plan()
@@ -309,6 +307,14 @@ impl Simulation {
             });
         }
         self.replans.push(replan);
+    }
+
+    fn alarm(&mut self, alarm: &str, target: Option<&str>) {
+        self.alarms.push(AlarmDocument {
+            t_s: self.time,
+            alarm: alarm.to_owned(),
+            target: target.map(str::to_owned),
+        });
     }
 
     /// Follows the pending plan from its start on.
@@ -338,12 +344,11 @@ impl Simulation {
                 target.states.push((time, ship));
             }
         }
-        let start = self.own.position(&self.active.trajectory, in_plan);
+        let start = self.own.pose(&self.active.trajectory, in_plan).position;
         let motion = self.own.advance(&self.active.trajectory, in_plan, step);
         for target in &mut self.targets {
-            let own = (&self.scenario.own_ship.hull, start, &motion);
-            let ship = (&target.truth.hull, &target.truth.now);
-            target.clearance.see((time, step), own, ship);
+            let now = &target.truth.now;
+            target.clearance.see((time, step), (start, &motion), now);
             target.truth.advance(step);
         }
         own::join(&mut self.sailed, &motion, time);
@@ -358,7 +363,8 @@ impl Simulation {
     fn off_plan(&self) -> f64 {
         let in_plan = self.time - self.active.start;
         let there = self.active.trajectory.pose_at(in_plan).position;
-        (self.own.position(&self.active.trajectory, in_plan) - there).norm()
+        let own = self.own.pose(&self.active.trajectory, in_plan);
+        (own.position - there).norm()
     }
 }
 

@@ -51,11 +51,7 @@ impl Own {
         }
     }
 
-    /// Own ship's place, `time` seconds after the start of its plan.
-    pub fn position(&self, plan: &Trajectory, time: f64) -> Vector {
-        self.pose(plan, time).position
-    }
-
+    /// Own ship's pose, `time` seconds after the start of its plan.
     pub fn pose(&self, plan: &Trajectory, time: f64) -> Pose {
         self.state
             .map_or_else(|| plan.pose_at(time), |state| state.pose)

@@ -9,6 +9,7 @@ use crate::document::{
     segment_document, state_document,
 };
 use crate::planner::cost::whole_space_time_error;
+use crate::tolerance;
 
 impl Simulation {
     /// What was sailed so far.
@@ -40,7 +41,7 @@ impl Simulation {
                 .filter_map(|report| report.manoeuvre.as_ref());
             manoeuvres.map(of).max().unwrap_or(0)
         };
-        let contact = self.targets.iter().any(|t| t.clearance.contact.is_some());
+        let contact = self.targets.iter().any(|t| t.clearance.is_contact());
         let unsafe_plans = self
             .replans
             .iter()
@@ -80,6 +81,8 @@ impl Simulation {
                 unsafe_plans,
                 largest_off_plan_m: self.farthest_off.0,
                 largest_off_plan_t_s: self.farthest_off.1,
+                within_tracking_margin: self.farthest_off.0
+                    <= own.tracking_margin.max(tolerance::JOINT_M),
             },
             alarms: self.alarms.clone(),
             replans: self.replans.clone(),
@@ -117,13 +120,13 @@ fn simulated(
     report: &ComplianceReport,
 ) -> SimulatedTargetDocument {
     let behaviour = simulation.settings().behaviours.get(index);
-    let clearance = &target.clearance;
+    let clearance = target.clearance.settled();
     SimulatedTargetDocument {
         name: target.name.clone(),
         behaviour: behaviour.map_or("constant", |b| b.word()).to_owned(),
         length_m: target.truth.hull.length,
         beam_m: target.truth.hull.beam,
-        least_clearance_m: finite(clearance.least),
+        least_clearance_m: finite(clearance.metres),
         least_clearance_t_s: clearance.time,
         contact_t_s: clearance.contact,
         outside_sets: target.outside_sets,

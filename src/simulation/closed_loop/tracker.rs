@@ -250,8 +250,9 @@ impl Track {
     }
 
     /// The set for a plan that starts at `time`. Its velocities stay as they are as long as they
-    /// hold the present estimate. Its disc of positions holds every motion since the last report.
-    pub fn set_at(&mut self, time: f64) -> ShipTrack {
+    /// hold the present estimate. Its disc of positions holds every motion since the last report,
+    /// and during the `delay` of a plan also in the first one: each set then holds the next one.
+    pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
         if !self.anchor.holds(&self.estimate) {
             self.anchor();
         }
@@ -269,14 +270,15 @@ impl Track {
         let middle = ship.velocity();
         let reach = |v: &Vector| (v - middle).norm();
         // the widest set within the age
-        let sets = ship.outer_velocity_sets(ship.turn_rate, age.max(ROUNDING));
-        let velocities = sets.iter().find(|set| set.until >= age);
+        let unseen = age.max(delay);
+        let sets = ship.outer_velocity_sets(ship.turn_rate, unseen.max(ROUNDING));
+        let velocities = sets.iter().find(|set| set.until >= unseen);
         let widest = velocities.and_then(|set| set.velocities.as_polygon());
         let farthest = widest.map_or(f64::INFINITY, |set| {
             set.vertices().iter().map(reach).fold(0.0, f64::max)
         });
-        if age > 0.0 {
-            ship.position_std += farthest * age / SIGMAS;
+        if unseen > 0.0 {
+            ship.position_std += farthest * unseen / SIGMAS;
         }
         ship.pose.position += middle * age;
         ship
@@ -362,14 +364,18 @@ mod tests {
     fn the_set_holds_every_motion_since_the_last_report() {
         let mut track = Track::new(&file(), &Sensor::EXACT);
         track.know(0.0, &SteadyShip::on_track(&file(), 0.0));
-        let set = track.set_at(15.0);
+        let set = track.set_at(15.0, 1.0);
         assert_eq!((set.speed, set.speed_spread), (5.0, 0.4));
         let reach = SIGMAS * set.position_std;
         for v in file().outer_velocity_set().vertices() {
             assert!((v * 15.0 - set.pose.position).norm() <= reach + 1e-9);
         }
         assert!(reach < 15.0 * 0.7);
-        assert_eq!(track.set_at(0.0).position_std, 0.0);
+        assert_eq!(track.set_at(0.0, 0.0).position_std, 0.0);
+        assert_eq!(
+            track.set_at(0.0, 2.0).position_std,
+            track.set_at(2.0, 2.0).position_std
+        );
     }
 
     #[test]
@@ -378,10 +384,10 @@ mod tests {
         let mut ship = SteadyShip::on_track(&file(), 0.0);
         ship.pose.heading += radians_from_deg(4.9);
         track.know(20.0, &ship);
-        assert_eq!(track.set_at(20.0).pose.heading, 0.5);
+        assert_eq!(track.set_at(20.0, 0.0).pose.heading, 0.5);
         ship.pose.heading += radians_from_deg(1.0);
         track.know(40.0, &ship);
-        assert_eq!(track.set_at(40.0).pose.heading, ship.pose.heading);
+        assert_eq!(track.set_at(40.0, 0.0).pose.heading, ship.pose.heading);
     }
 
     #[test]
