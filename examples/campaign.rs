@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 use campaigns::{
     Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
-    path_time, replanning, wild,
+    path_time, replanning, simulation, wild,
 };
 use clap::{Args, Parser, Subcommand};
 use searoom::simulation::Meeting;
@@ -62,6 +62,29 @@ enum Campaign {
         /// Every plan begins anew
         #[arg(long)]
         no_memory: bool,
+    },
+    /// Random meetings sailed in the closed loop, a fifth of each kind; what was sailed is judged
+    Simulation {
+        #[command(flatten)]
+        scenes: Scenes<1_000>,
+        /// Meetings that begin 300 to 900 s before the closest approach, not 100 to 220 s
+        #[arg(long)]
+        far: bool,
+        /// What the targets do
+        #[arg(long, value_enum, default_value = "constant")]
+        behaviour: simulation::Truth,
+        /// Random and extreme targets exceed their spreads by this factor
+        #[arg(long, default_value_t = 1.0)]
+        factor: f64,
+        /// What own ship sees
+        #[arg(long, value_enum, default_value = "exact")]
+        seen: simulation::Seen,
+        /// How own ship moves
+        #[arg(long, value_enum, default_value = "kinematic")]
+        ship: simulation::Ship,
+        /// Own ship sails its first plan to the end
+        #[arg(long)]
+        once: bool,
     },
     /// Traffic among land, a third of the scenes in each of three waters
     Harbour(Scenes<300>),
@@ -139,6 +162,25 @@ fn run(campaign: Campaign) -> Report {
                 memory: !no_memory,
             };
             replanning::run(scenes.of_each(5), &meeting, &how)
+        }
+        Campaign::Simulation {
+            scenes,
+            far,
+            behaviour,
+            factor,
+            seen,
+            ship,
+            once,
+        } => {
+            let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
+            let how = simulation::How {
+                truth: behaviour,
+                factor,
+                seen,
+                ship,
+                replan: !once,
+            };
+            simulation::run(scenes.of_each(5), &meeting, &how)
         }
         Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),

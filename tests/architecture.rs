@@ -30,7 +30,7 @@ evaluation: frame tolerance geometry map vessel target trajectory colregs
 verification: document frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
-simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline
+simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document
 study: document frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline
 document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation verification scenario pipeline study text
 report: frame tolerance geometry trajectory vessel map target colregs obstacle planner evaluation verification scenario pipeline document study simulation output text

@@ -39,6 +39,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
     Suite(SuiteArgs),
+    /// Sails scenarios in the closed loop: plans again and again while the targets move
+    Simulate(SimulateArgs),
     /// Turns files of other formats into scenario files
     Import(ImportArgs),
     /// Every planner that applies and two baselines on the same scenarios, side by side
@@ -131,6 +133,30 @@ pub struct SuiteArgs {
     #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds", "strict"])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// Scenario files, files of other formats, or folders of them
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub paths: Vec<PathBuf>,
+    /// Seed of the random numbers instead of the scenario's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Seconds to sail instead of the scenario's
+    #[arg(long, value_name = "S", value_parser = duration)]
+    pub duration_s: Option<f64>,
+    /// A plan that takes longer than the delay comes too late; the result depends on the machine
+    #[arg(long)]
+    pub measured_delay: bool,
+    /// Write the document of every plan into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plans: Option<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
     #[command(flatten)]
     pub assumed: AssumedArgs,
 }
@@ -429,6 +455,12 @@ fn budget(word: &str) -> Result<Duration, String> {
     let seconds = word.parse().ok().filter(|s| *s > 0.0);
     let budget = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
     budget.ok_or_else(|| "allowed: a positive number of seconds".to_owned())
+}
+
+fn duration(word: &str) -> Result<f64, String> {
+    let seconds = word.parse().ok();
+    let seconds = seconds.filter(|s| *s > 0.0 && *s <= 1e6);
+    seconds.ok_or_else(|| "allowed: seconds above 0, at most 1000000".to_owned())
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {

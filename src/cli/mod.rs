@@ -13,6 +13,7 @@ mod output;
 mod plan;
 mod runner;
 mod shell;
+mod simulate;
 mod suite;
 mod verify;
 
@@ -36,6 +37,7 @@ pub fn main() -> ExitCode {
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
+        Command::Simulate(args) => simulate::simulate(args, &output),
         Command::Import(args) => import::import(args, &output),
         Command::Compare(args) => compare::compare(args, &output),
         #[cfg(feature = "recording")]

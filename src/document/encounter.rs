@@ -87,17 +87,22 @@ pub struct ManoeuvreDocument {
 pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
     let judged = || encounters.iter().filter_map(|e| e.conduct.as_ref());
     judged().next()?;
-    let mut broken: Vec<&str> = judged()
-        .flat_map(|conduct| {
-            let violated = conduct.monitors.iter();
-            let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.name());
-            let rules = conduct.breaches.iter().map(|breach| breach.rule.as_str());
-            rules.chain(violated.map(|m| m.monitor.as_str()))
-        })
-        .collect();
+    let mut broken: Vec<&str> = judged().flat_map(conduct_breaks).collect();
     broken.sort_unstable();
     broken.dedup();
     Some(broken)
+}
+
+/// The rules and monitors that own ship breaks toward one target, sorted, each once.
+pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
+    let violated = conduct.monitors.iter();
+    let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.name());
+    let rules = conduct.breaches.iter().map(|breach| breach.rule.as_str());
+    let broken = rules.chain(violated.map(|m| m.monitor.as_str()));
+    let mut broken: Vec<&str> = broken.collect();
+    broken.sort_unstable();
+    broken.dedup();
+    broken
 }
 
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
@@ -166,7 +171,7 @@ pub(crate) fn crosses_astern(trajectory: &Trajectory, ship: &ShipTrack, tcpa: f6
 
 impl ConductDocument {
     /// Converts a compliance report; angles are in degrees.
-    fn of(conduct: &ComplianceReport) -> Self {
+    pub(crate) fn of(conduct: &ComplianceReport) -> Self {
         let roles = conduct.roles.iter().map(|interval| RoleDocument {
             role: interval.role.name().to_owned(),
             from_s: interval.from,

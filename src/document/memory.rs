@@ -601,7 +601,7 @@ fn forget(sailed: &mut Vec<Segment>, targets: &mut [TargetMemory]) {
     }
 }
 
-fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
+pub(crate) fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
     StateDocument {
         at: start(ship.pose, time),
         speed_mps: ship.speed,

@@ -14,6 +14,7 @@ mod memory;
 mod parts;
 mod path_time;
 mod plan;
+mod simulation;
 mod suite;
 mod targets;
 mod verification;
@@ -28,10 +29,11 @@ pub use control::{
 };
 pub use encounter::{
     BreachDocument, ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument,
-    RoleDocument, breaks,
+    RoleDocument, breaks, conduct_breaks,
 };
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
+pub(crate) use memory::state_document;
 pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
     TargetMemoryDocument, remember,
@@ -40,7 +42,8 @@ pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};
-pub(crate) use plan::{finite, planner_names};
+pub(crate) use plan::{finite, planner_names, position, segment_document};
+pub use simulation::*;
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,

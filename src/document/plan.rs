@@ -173,7 +173,7 @@ pub(crate) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value + 0.0)
 }
 
-pub(super) fn position(p: Vector) -> PositionDocument {
+pub(crate) fn position(p: Vector) -> PositionDocument {
     PositionDocument {
         east_m: p.x + 0.0,
         north_m: p.y + 0.0,
@@ -321,7 +321,7 @@ pub(super) fn start(pose: Pose, time: f64) -> StartDocument {
     }
 }
 
-pub(super) fn segment_document(segment: &Segment) -> SegmentDocument {
+pub(crate) fn segment_document(segment: &Segment) -> SegmentDocument {
     SegmentDocument {
         start: start(segment.start, segment.start_time),
         duration_s: segment.duration,

@@ -65,6 +65,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         earth: None,
         land: None,
         memory: crate::scenario::Memory::default(),
+        simulation: crate::scenario::SimulationSettings::default(),
     }
 }
 

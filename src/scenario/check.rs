@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use super::plane::{POSITION, Plane};
 use super::planner::{PlannerTable, planner};
+use super::simulation::simulation;
 use super::targets::targets;
-use super::{Compliance, Land, Memory, Scenario, land, limits};
+use super::{Behaviour, Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Faults, Field, Node, Table, from_toml};
@@ -67,6 +68,17 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .map(|table| planner(table, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane, time, own_ship.as_ref());
+    let (targets, behaviours) = match targets {
+        Some(targets) => {
+            let parts = targets.into_iter();
+            let (targets, behaviours): (Vec<_>, Vec<Behaviour>) = parts
+                .map(|(target, known, behaviour)| ((target, known), behaviour))
+                .unzip();
+            (Some(targets), behaviours)
+        }
+        None => (None, Vec::new()),
+    };
+    let simulation = simulation(&mut root, behaviours);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
         let paths = mission
@@ -118,6 +130,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
             targets: if known_any { known } else { Vec::new() },
             ..Memory::default()
         },
+        simulation: simulation?,
     })
 }
 

@@ -9,6 +9,7 @@ mod limits;
 mod memory;
 mod plane;
 mod planner;
+mod simulation;
 mod targets;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,9 @@ mod tests;
 pub use crate::input::{Fault, InputError as ScenarioError};
 pub use land::Land;
 pub use memory::Memory;
+pub use simulation::{
+    Behaviour, Current, Noise, Sensor, SensorKind, SimulationSettings, VesselModel,
+};
 
 use std::path::Path;
 use std::sync::Arc;
@@ -85,6 +89,8 @@ pub struct Scenario {
     pub land: Option<Land>,
     /// What is known from before the present.
     pub memory: Memory,
+    /// How the scenario is sailed in the closed loop, without effect on plans.
+    pub simulation: SimulationSettings,
 }
 
 impl Scenario {

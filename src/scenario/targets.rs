@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::plane::Plane;
-use super::{explicit_sets, limits};
+use super::simulation::behaviour;
+use super::{Behaviour, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
 use crate::input::{Field, Table};
@@ -12,13 +13,14 @@ use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::text::LINE;
 use crate::vessel::OwnShip;
 
-/// The list `targets`, which may be absent, with what is known of each from before the present.
+/// The list `targets`, which may be absent, with what is known of each from before the present, and
+/// its true motion in a simulation.
 pub(super) fn targets(
     root: &mut Table,
     plane: &Plane,
     time: Option<f64>,
     own: Option<&OwnShip>,
-) -> Option<Vec<(Target, TargetMemory)>> {
+) -> Option<Vec<(Target, TargetMemory, Behaviour)>> {
     let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };
@@ -47,8 +49,16 @@ pub(super) fn targets(
             _ => None,
         };
         let role = role(&mut table, time, own, ship);
+        let behaviour = match ship {
+            None if known.is_some() => {
+                table.forbid("behaviour", "nothing: only a tracked ship has one");
+                Some(Behaviour::Constant)
+            }
+            _ => behaviour(&mut table, plane),
+        };
         table.finish();
-        targets.push(text.zip(known).zip(role).map(|((name, known), role)| {
+        let found = text.zip(known).zip(role).zip(behaviour);
+        targets.push(found.map(|(((name, known), role), behaviour)| {
             let target = Target {
                 name: name.to_owned(),
                 motion: known.motion,
@@ -58,7 +68,7 @@ pub(super) fn targets(
                 role,
                 ..TargetMemory::default()
             };
-            (target, memory)
+            (target, memory, behaviour)
         }));
     }
     targets.into_iter().collect()

@@ -10,7 +10,7 @@ use crate::colregs::{Role, Sectors, Thresholds};
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
-use crate::scenario::{Compliance, Memory, Scenario};
+use crate::scenario::{Compliance, Memory, Scenario, SimulationSettings};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
 use crate::vessel::{Hull, OwnShip};
@@ -322,6 +322,7 @@ fn scene(
             earth: None,
             land: None,
             memory: Memory::default(),
+            simulation: SimulationSettings::default(),
         },
         kinds,
         rejected,

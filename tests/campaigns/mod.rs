@@ -17,6 +17,7 @@ pub mod passing;
 pub mod path_grid;
 pub mod path_time;
 pub mod replanning;
+pub mod simulation;
 pub mod statistics;
 pub mod wild;
 

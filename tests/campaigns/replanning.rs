@@ -83,30 +83,30 @@ pub struct How {
 }
 
 /// What one encounter came to.
-struct Sailed {
-    seed: u64,
+pub struct Sailed {
+    pub seed: u64,
     /// Rules and monitors that the sailed motion breaks.
-    broken: Vec<&'static str>,
+    pub broken: Vec<&'static str>,
     /// Rules and monitors that the first plan breaks.
-    broken_by_the_first: usize,
+    pub broken_by_the_first: usize,
     /// Least distance of the hulls, metres.
-    apart: f64,
-    turns: usize,
-    speed_changes: usize,
+    pub apart: f64,
+    pub turns: usize,
+    pub speed_changes: usize,
     /// Cost of the sailed motion over that of the first plan.
-    cost: f64,
-    cycles: usize,
+    pub cost: f64,
+    pub cycles: usize,
     /// Cycles without a safe plan, and cycles of a plan that is not by the rules.
-    unsafe_plans: usize,
-    relaxed: usize,
+    pub unsafe_plans: usize,
+    pub relaxed: usize,
     /// Cycles after which the plan turns back, though a manoeuvre was under way.
-    turned_back: usize,
+    pub turned_back: usize,
     /// Cycles in which the remainder of the last plan enters a hard set.
-    lost: usize,
+    pub lost: usize,
     /// Cycles whose plan is dearer than the remainder of the last one, which is clear, but breaks
     /// more rules by the judges.
-    dearer: usize,
-    milliseconds: Vec<f64>,
+    pub dearer: usize,
+    pub milliseconds: Vec<f64>,
 }
 
 /// The scenario `elapsed` seconds after its beginning, own ship on a plan made `step` before, the
@@ -173,7 +173,8 @@ fn is_dearer(run: &Run) -> bool {
     !remainder.is_empty() && !remainder.iter().any(enters) && plan.cost > cost * (1.0 + 1e-9) + 1e-6
 }
 
-fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
+/// Sails one encounter; `None` without a plan.
+pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
     let mut run = pipeline::run(first.clone());
     let plan = run.planned.outcome.plan()?;
     let first_cost = plan.cost;

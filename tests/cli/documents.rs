@@ -43,6 +43,7 @@ fn every_key_is_on_the_page() {
         all.extend(keys_of(&["plan", scenario, "--json"]));
     }
     all.extend(keys_of(&["compare", "scenarios/colregs", "--json"]));
+    all.extend(keys_of(&["simulate", "scenarios/colregs", "--json"]));
     assert!(all.len() > 90, "{all:?}");
     named(PAGE, &all);
 }

@@ -10,4 +10,5 @@ mod planning;
 mod program;
 mod readme;
 mod results;
+mod simulating;
 mod verdict;

@@ -4,6 +4,7 @@
 mod campaigns;
 
 mod campaign;
+mod closed_loop;
 mod conformance;
 mod control_solver;
 mod encounters;

@@ -1,0 +1,98 @@
+//! `searoom simulate`: scenarios sailed in the closed loop.
+
+use std::path::Path;
+
+use anyhow::Context;
+use searoom::document::{SimulationDocument, SimulationsDocument};
+use searoom::report::{simulation_text, write_atomically};
+use searoom::scenario::{Fault, Scenario, ScenarioError};
+use searoom::simulation::Simulation;
+
+use super::args::SimulateArgs;
+use super::input::files;
+use super::input::scenes::{self, Scene};
+use super::output::status::ExitStatus;
+use super::output::{Output, json};
+use super::runner::guarded;
+
+/// Sails every file, one after another; a broken one does not stop the others.
+pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let assumed = args.assumed.assumed();
+    if let Some(folder) = &args.plans {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+    }
+    let mut status = ExitStatus::Good;
+    let mut documents = Vec::new();
+    for scene in scenes::open(files::find(&args.paths, output), &assumed, output) {
+        let sailed = match &scene {
+            Ok(scene) => guarded(|| sail(scene, args, output)),
+            Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
+        };
+        status = status.max(match sailed {
+            Ok(Ok(document)) => {
+                let shown = if args.json {
+                    ExitStatus::Good
+                } else {
+                    output.result(&format!("{}\n", simulation_text(&document, output.colour)))
+                };
+                let reached = if document.safe {
+                    ExitStatus::Good
+                } else {
+                    ExitStatus::NoPlan
+                };
+                documents.push(document);
+                shown.max(reached)
+            }
+            Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
+            Err(fault) => output.fault(&fault),
+        });
+    }
+    if args.json {
+        status = status.max(match <[SimulationDocument; 1]>::try_from(documents) {
+            Ok([document]) => output.document(&document),
+            Err(simulations) => output.document(&SimulationsDocument { simulations }),
+        });
+    }
+    Ok(status)
+}
+
+fn sail(scene: &Scene, args: &SimulateArgs, output: &Output) -> anyhow::Result<SimulationDocument> {
+    let file = &scene.found.file;
+    let made = scene.scenario(&args.assumed.assumed())?;
+    for note in &made.notes {
+        output.note(note);
+    }
+    let scenario = changed(made.scenario, args);
+    let refused = |fault: Fault| ScenarioError::Faults {
+        file: file.clone(),
+        faults: vec![fault],
+    };
+    let mut simulation = Simulation::new(scenario, args.measured_delay).map_err(refused)?;
+    if args.plans.is_some() {
+        simulation.keep_plans();
+    }
+    while !simulation.finished() {
+        simulation.step();
+    }
+    if let Some(folder) = &args.plans {
+        write_plans(folder, &scene.found.stem, &simulation)?;
+    }
+    Ok(simulation.record())
+}
+
+/// The scenario with the options of the command line.
+fn changed(mut scenario: Scenario, args: &SimulateArgs) -> Scenario {
+    let settings = &mut scenario.simulation;
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    settings.duration = args.duration_s.or(settings.duration);
+    scenario
+}
+
+fn write_plans(folder: &Path, stem: &str, simulation: &Simulation) -> anyhow::Result<()> {
+    for (index, plan) in simulation.plans().iter().enumerate() {
+        let file = folder.join(format!("{stem}-{index:03}.json"));
+        write_atomically(&file, json(plan)?.as_bytes())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,163 @@
+//! Simulation document, see docs/documents.md. The closed loop fills it.
+
+use serde::{Deserialize, Serialize};
+
+use super::encounter::ConductDocument;
+use super::memory::StateDocument;
+use super::parts::{PositionDocument, SegmentDocument};
+
+/// Format name of the simulation document.
+pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
+
+/// A scenario that was sailed in the closed loop. Times count from the scenario's present.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulationDocument {
+    pub format: String,
+    pub build: String,
+    pub scenario: String,
+    pub settings: SimulationSettingsDocument,
+    /// True without a contact, and where every plan was safe and in time.
+    pub safe: bool,
+    pub contact: bool,
+    pub arrived: bool,
+    pub duration_s: f64,
+    pub targets: Vec<SimulatedTargetDocument>,
+    pub conduct: SailedDocument,
+    pub alarms: Vec<AlarmDocument>,
+    pub replans: Vec<ReplanDocument>,
+    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step, which
+    /// need not begin exactly where the one before ends.
+    pub sailed: Vec<SegmentDocument>,
+    pub timing: CycleTimingDocument,
+}
+
+/// Several simulations.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulationsDocument {
+    pub simulations: Vec<SimulationDocument>,
+}
+
+/// How the scenario was sailed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulationSettingsDocument {
+    pub step_s: f64,
+    pub replan_s: f64,
+    pub delay_s: f64,
+    pub measured_delay: bool,
+    pub duration_s: f64,
+    pub seed: u64,
+    pub vessel: String,
+    pub current_mps: [f64; 2],
+    pub current_std_mps: f64,
+    pub current_known: bool,
+    pub sensor: String,
+    pub own_length_m: f64,
+    pub own_beam_m: f64,
+}
+
+/// A target as it was.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedTargetDocument {
+    pub name: String,
+    pub behaviour: String,
+    pub length_m: f64,
+    pub beam_m: f64,
+    /// Least distance of the hulls, null where it is no number; negative in overlap.
+    pub least_clearance_m: Option<f64>,
+    pub least_clearance_t_s: f64,
+    pub contact_t_s: Option<f64>,
+    /// Plans at whose start the target was outside the set of positions or of velocities that they
+    /// assume.
+    pub outside_sets: usize,
+    /// The true states from which it kept course and speed until the next.
+    pub track: Vec<StateDocument>,
+    #[serde(flatten)]
+    pub conduct: ConductDocument,
+}
+
+/// Own ship's conduct over the whole simulation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SailedDocument {
+    /// Space-time error of the sailed motion and of the first plan.
+    pub cost_m2: f64,
+    pub first_plan_cost_m2: Option<f64>,
+    /// Rules and monitors that the sailed motion breaks toward any target, each once.
+    pub breaks: Vec<String>,
+    pub turns: usize,
+    pub speed_changes: usize,
+    /// Plans that begin another manoeuvre before the one under way is finished.
+    pub replaced_manoeuvres: usize,
+    /// Those of them that turn to the other side.
+    pub side_switches: usize,
+    /// Plans at whose time the remainder of the last plan entered a hard set.
+    pub lost_remainders: usize,
+    /// Cycles without a plan.
+    pub without_plan: usize,
+    pub unsafe_plans: usize,
+    pub largest_off_plan_m: f64,
+    pub largest_off_plan_t_s: f64,
+    pub within_tracking_margin: bool,
+}
+
+/// Something that a navigator would be called for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AlarmDocument {
+    pub t_s: f64,
+    pub alarm: String,
+    pub target: Option<String>,
+}
+
+/// One cycle of planning.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReplanDocument {
+    /// Time of the data, and from which the plan holds.
+    pub t_s: f64,
+    pub start_t_s: f64,
+    pub verdict: String,
+    pub safe: bool,
+    /// False where the plan came too late or there is none: own ship keeps the plan before.
+    pub followed: bool,
+    pub keeps_plan: bool,
+    pub cost_m2: Option<f64>,
+    pub relaxations: Vec<String>,
+    /// First turn of the manoeuvre that is under way or planned, positive to starboard.
+    pub turn_deg: Option<f64>,
+    pub off_plan_m: f64,
+    pub outside_velocities: Vec<String>,
+    pub outside_places: Vec<String>,
+    /// The targets that the plan assumes, at its start.
+    pub estimates: Vec<EstimateDocument>,
+}
+
+/// A target as a plan assumes it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimateDocument {
+    pub target: String,
+    pub age_s: f64,
+    pub stale: bool,
+    /// Where it is at the time of the data.
+    pub true_position: PositionDocument,
+    pub position: PositionDocument,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub position_std_m: f64,
+    pub speed_spread_mps: f64,
+    pub course_spread_deg: f64,
+}
+
+/// Wall clock, the only values that differ between two runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CycleTimingDocument {
+    pub plan_s: Vec<f64>,
+}
+
+impl CycleTimingDocument {
+    /// The time below which the fraction `p` of the plans took, milliseconds; 0 without a plan.
+    pub fn quantile_ms(&self, p: f64) -> f64 {
+        let mut sorted = self.plan_s.clone();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().saturating_sub(1);
+        let index = (p * last as f64).ceil() as usize;
+        sorted.get(index).map_or(0.0, |s| s * 1e3)
+    }
+}

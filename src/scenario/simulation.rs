@@ -1,0 +1,550 @@
+//! The tables `[simulation]` and `[targets.behaviour]`: how a scenario is sailed in the closed loop.
+//! Plans do not use them.
+
+use super::limits;
+use super::plane::{POSITION, Plane};
+use crate::frame::{Vector, heading_from_course_deg, radians_from_deg};
+use crate::input::{Field, Range, Table};
+
+/// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationSettings {
+    /// Step of the simulation.
+    pub step: f64,
+    /// Time from one plan to the next.
+    pub replan: f64,
+    /// Time from the data of a plan to its start.
+    pub delay: f64,
+    /// Time after which the simulation ends; `None` for the horizon.
+    pub duration: Option<f64>,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Own ship's true motion.
+    pub vessel: VesselModel,
+    /// Motion of the water.
+    pub current: Current,
+    /// What own ship sees of the targets.
+    pub sensor: Sensor,
+    /// True motion of each target, in the scenario's order; constant where there is none.
+    pub behaviours: Vec<Behaviour>,
+}
+
+/// Own ship's true motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VesselModel {
+    /// The planners' model: lines and arcs, speed changes at once.
+    Kinematic,
+    /// Turn rate and speed approach the ordered ones exponentially.
+    FirstOrder {
+        /// Time constant of the turn rate.
+        course_time: f64,
+        /// Time constant of the speed.
+        speed_time: f64,
+    },
+    /// Nomoto's first-order model, `T r' + r = K rudder`, with limits of the rudder.
+    Nomoto {
+        /// `K' = K L / U`.
+        gain: f64,
+        /// `T' = T U / L`.
+        time: f64,
+        /// Largest rudder angle.
+        rudder: f64,
+        /// Largest rate of the rudder.
+        rudder_rate: f64,
+        /// Time constant of the speed.
+        speed_time: f64,
+    },
+}
+
+/// Current: a constant and a Gauss-Markov process.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Current {
+    /// m/s.
+    pub mean: Vector,
+    /// Standard deviation of each component, m/s.
+    pub std: f64,
+    /// Time constant of the process.
+    pub time: f64,
+    /// True where own ship's steering allows for it.
+    pub known: bool,
+}
+
+/// Kind of sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SensorKind {
+    /// The true position and velocity in every step.
+    Exact,
+    /// Reports of position, course and speed, of class A or B.
+    Ais {
+        /// Class A reports every 2 to 10 s under way, class B every 30 s.
+        class_a: bool,
+    },
+    /// Positions alone.
+    Radar,
+}
+
+/// Standard deviations of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Metres per axis.
+    pub position: f64,
+    /// Radians.
+    pub course: f64,
+    /// m/s.
+    pub speed: f64,
+}
+
+/// What own ship sees of the targets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensor {
+    /// Kind of reports.
+    pub kind: SensorKind,
+    /// Standard deviations of the reports.
+    pub noise: Noise,
+    /// Standard deviations that the tracker assumes.
+    pub assumed: Noise,
+    /// Root of the spectral density of the acceleration that the tracker assumes, m/s^1.5.
+    pub acceleration: f64,
+    /// Time between reports; `None` for the intervals of AIS.
+    pub interval: Option<f64>,
+    /// Time from a measurement to its arrival.
+    pub latency: f64,
+    /// Probability that a report arrives.
+    pub detection: f64,
+    /// Times without any report.
+    pub silent: Vec<[f64; 2]>,
+    /// Mean time from the end of a drop-out to the next one; infinite for none.
+    pub dropout_every: f64,
+    /// Mean time of a drop-out.
+    pub dropout_lasts: f64,
+    /// Time of reports before the start.
+    pub settle: f64,
+    /// A target that has not been heard of for this time is stale.
+    pub stale: f64,
+}
+
+impl Sensor {
+    /// The sensor without any error.
+    pub const EXACT: Self = Self {
+        kind: SensorKind::Exact,
+        noise: Noise::NONE,
+        assumed: Noise::NONE,
+        acceleration: 0.0,
+        interval: None,
+        latency: 0.0,
+        detection: 1.0,
+        silent: Vec::new(),
+        dropout_every: f64::INFINITY,
+        dropout_lasts: 0.0,
+        settle: 0.0,
+        stale: f64::INFINITY,
+    };
+}
+
+impl Noise {
+    /// No noise.
+    pub const NONE: Self = Self {
+        position: 0.0,
+        course: 0.0,
+        speed: 0.0,
+    };
+}
+
+/// True motion of a target. The spreads are those of the target in the file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Behaviour {
+    /// Keeps course and speed.
+    Constant,
+    /// Takes a random course and speed within `factor` times its spreads every so many seconds.
+    Random {
+        /// Seconds.
+        every: f64,
+        /// 1 keeps to the spreads.
+        factor: f64,
+    },
+    /// Takes an extreme course and speed of `factor` times its spreads every so many seconds.
+    Extremes {
+        /// Seconds.
+        every: f64,
+        /// 1 keeps to the spreads.
+        factor: f64,
+    },
+    /// Takes the course and speed within its spreads that bring it nearest to own ship.
+    Pursuit {
+        /// Seconds.
+        every: f64,
+    },
+    /// Is at these places at these times, seconds, on straight lines between them.
+    Track(Vec<(f64, Vector)>),
+    /// Turns to starboard before the closest approach, and back when own ship is past.
+    GivesWay {
+        /// Radians, positive to starboard.
+        turn: f64,
+        /// Seconds before the closest approach of the centres.
+        before: f64,
+        /// Probability that it does; else it keeps course and speed.
+        probability: f64,
+        /// Radians per second.
+        turn_rate: f64,
+    },
+}
+
+impl Behaviour {
+    /// Its word in files.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Random { .. } => "random",
+            Self::Extremes { .. } => "extremes",
+            Self::Pursuit { .. } => "pursuit",
+            Self::Track(_) => "track",
+            Self::GivesWay { .. } => "gives-way",
+        }
+    }
+}
+
+impl VesselModel {
+    /// Its word in files.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Kinematic => "kinematic",
+            Self::FirstOrder { .. } => "first-order",
+            Self::Nomoto { .. } => "nomoto",
+        }
+    }
+}
+
+impl SensorKind {
+    /// Its word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Ais { .. } => "ais",
+            Self::Radar => "radar",
+        }
+    }
+}
+
+impl Default for SimulationSettings {
+    fn default() -> Self {
+        Self {
+            step: 0.5,
+            replan: 20.0,
+            delay: 1.0,
+            duration: None,
+            seed: 1,
+            vessel: VesselModel::Kinematic,
+            current: Current {
+                mean: Vector::zeros(),
+                std: 0.0,
+                time: 600.0,
+                known: false,
+            },
+            sensor: Sensor::EXACT,
+            behaviours: Vec::new(),
+        }
+    }
+}
+
+const STEP: Range = Range::between(0.01, 10.0);
+const DELAY: Range = Range::between(0.0, 1e6);
+const SEED: Range = Range::between(0.0, 9e15);
+const TIME_CONSTANT: Range = Range::between(0.01, 1e6);
+const NOMOTO: Range = Range::between(0.01, 100.0);
+const RUDDER_DEG: Range = Range::between(1.0, 90.0);
+const CURRENT: Range = Range::between(0.0, 20.0);
+const ANGLE_STD_DEG: Range = Range::between(0.0, 90.0);
+const DETECTION: Range = Range::between(0.01, 1.0);
+const PROBABILITY: Range = Range::between(0.0, 1.0);
+const FACTOR: Range = Range::between(0.0, 10.0);
+const TURN_DEG: Range = Range::within(180.0);
+const TRACK_POINTS: usize = 20_000;
+const SILENT_TIMES: usize = 1000;
+
+/// A number, or the default where the key is absent; `None` for a fault.
+fn number_or(table: &mut Table, key: &str, range: Range, default: f64) -> Option<f64> {
+    match table.take(key) {
+        Some(field) => field.number(range),
+        None => Some(default),
+    }
+}
+
+/// The table `[simulation]`, which may be absent; the behaviours are those of the targets.
+pub(super) fn simulation(
+    root: &mut Table,
+    behaviours: Vec<Behaviour>,
+) -> Option<SimulationSettings> {
+    let standard = SimulationSettings {
+        behaviours,
+        ..SimulationSettings::default()
+    };
+    let Some(field) = root.take("simulation") else {
+        return Some(standard);
+    };
+    let mut table = field.table("a table")?;
+    let step = number_or(&mut table, "step_s", STEP, standard.step);
+    let replan = number_or(&mut table, "replan_s", limits::DURATION, standard.replan);
+    let delay = number_or(&mut table, "delay_s", DELAY, standard.delay);
+    let duration = match table.take("duration_s") {
+        Some(field) => field.number(limits::DURATION).map(Some),
+        None => Some(None),
+    };
+    let seed = match table.take("seed") {
+        Some(field) => field.whole_number(SEED).map(|seed| seed as u64),
+        None => Some(standard.seed),
+    };
+    let vessel = match table.take("vessel") {
+        Some(field) => vessel(&field),
+        None => Some(standard.vessel),
+    };
+    let current = match table.take("current") {
+        Some(field) => current(&field, standard.current),
+        None => Some(standard.current),
+    };
+    let sensor = match table.take("sensor") {
+        Some(field) => sensor(&field),
+        None => Some(standard.sensor.clone()),
+    };
+    table.finish();
+    Some(SimulationSettings {
+        step: step?,
+        replan: replan?,
+        delay: delay?,
+        duration: duration?,
+        seed: seed?,
+        vessel: vessel?,
+        current: current?,
+        sensor: sensor?,
+        ..standard
+    })
+}
+
+fn vessel(field: &Field) -> Option<VesselModel> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Kinematic,
+        FirstOrder,
+        Nomoto,
+    }
+    const WORDS: [(&str, Kind); 3] = [
+        ("kinematic", Kind::Kinematic),
+        ("first-order", Kind::FirstOrder),
+        ("nomoto", Kind::Nomoto),
+    ];
+    let mut table = field.table("a table with the key kind")?;
+    let kind = table.require("kind", "a model")?.choice(&WORDS);
+    let model = match kind? {
+        Kind::Kinematic => VesselModel::Kinematic,
+        Kind::FirstOrder => VesselModel::FirstOrder {
+            course_time: number_or(&mut table, "course_time_s", TIME_CONSTANT, 3.0)?,
+            speed_time: number_or(&mut table, "speed_time_s", TIME_CONSTANT, 5.0)?,
+        },
+        Kind::Nomoto => VesselModel::Nomoto {
+            gain: number_or(&mut table, "gain", NOMOTO, 1.0)?,
+            time: number_or(&mut table, "time", NOMOTO, 1.0)?,
+            rudder: radians_from_deg(number_or(&mut table, "rudder_deg", RUDDER_DEG, 35.0)?),
+            rudder_rate: {
+                let rate = number_or(&mut table, "rudder_rate_deg_per_s", RUDDER_DEG, 5.0)?;
+                radians_from_deg(rate)
+            },
+            speed_time: number_or(&mut table, "speed_time_s", TIME_CONSTANT, 5.0)?,
+        },
+    };
+    table.finish();
+    Some(model)
+}
+
+fn current(field: &Field, standard: Current) -> Option<Current> {
+    let mut table = field.table("a table")?;
+    let speed = table.speed("speed", CURRENT);
+    let toward = number_or(&mut table, "toward_deg", limits::COURSE, 0.0);
+    let std = number_or(&mut table, "std_mps", CURRENT, standard.std);
+    let time = number_or(&mut table, "time_s", TIME_CONSTANT, standard.time);
+    let known = table.choice("known", &[("yes", true), ("no", false)]);
+    table.finish();
+    let heading = heading_from_course_deg(toward?);
+    Some(Current {
+        mean: crate::frame::direction(heading) * speed.unwrap_or(0.0),
+        std: std?,
+        time: time?,
+        known: known.unwrap_or(false),
+    })
+}
+
+fn noise(table: &mut Table, standard: Noise) -> Option<Noise> {
+    let position = number_or(table, "position_std_m", limits::DISTANCE, standard.position);
+    let course = match table.take("course_std_deg") {
+        Some(field) => field.number(ANGLE_STD_DEG).map(radians_from_deg),
+        None => Some(standard.course),
+    };
+    let speed = number_or(table, "speed_std_mps", limits::SPEED, standard.speed);
+    Some(Noise {
+        position: position?,
+        course: course?,
+        speed: speed?,
+    })
+}
+
+fn sensor(field: &Field) -> Option<Sensor> {
+    const AIS: SensorKind = SensorKind::Ais { class_a: true };
+    const KINDS: [(&str, SensorKind); 3] = [
+        ("exact", SensorKind::Exact),
+        ("ais", AIS),
+        ("radar", SensorKind::Radar),
+    ];
+    let mut table = field.table("a table with the key kind")?;
+    let mut kind = table.require("kind", "a sensor")?.choice(&KINDS)?;
+    if kind == SensorKind::Exact {
+        table.finish();
+        return Some(Sensor::EXACT);
+    }
+    let mut interval = Some(None);
+    if kind == AIS {
+        let class = table.choice("class", &[("a", true), ("b", false)]);
+        let class_a = class.unwrap_or(true);
+        kind = SensorKind::Ais { class_a };
+        if let Some(field) = table.take("interval_s") {
+            interval = field.number(TIME_CONSTANT).map(Some);
+        }
+    } else {
+        interval = number_or(&mut table, "interval_s", TIME_CONSTANT, 3.0).map(Some);
+    }
+    let standard = match kind {
+        SensorKind::Radar => (20.0, 0.0, 0.0),
+        _ => (10.0, 2.0, 0.3),
+    };
+    let standard = Noise {
+        position: standard.0,
+        course: radians_from_deg(standard.1),
+        speed: standard.2,
+    };
+    let found = noise(&mut table, standard);
+    let assumed = match table.take("assumed") {
+        Some(field) => {
+            let mut table = field.table("a table")?;
+            let assumed = noise(&mut table, found.unwrap_or(standard));
+            table.finish();
+            assumed
+        }
+        None => found,
+    };
+    let acceleration = number_or(&mut table, "acceleration", CURRENT, 0.02);
+    let latency = number_or(&mut table, "latency_s", DELAY, 0.0);
+    let detection = number_or(&mut table, "detection", DETECTION, 1.0);
+    let silent = match table.take("silent_s") {
+        Some(field) => silent(&field),
+        None => Some(Vec::new()),
+    };
+    let (every, lasts) = match table.take("dropout") {
+        Some(field) => {
+            let mut table = field.table("a table")?;
+            let every = table.required_number("every_s", TIME_CONSTANT);
+            let lasts = table.required_number("lasts_s", TIME_CONSTANT);
+            table.finish();
+            (every, lasts)
+        }
+        None => (Some(f64::INFINITY), Some(0.0)),
+    };
+    let settle = number_or(&mut table, "settle_s", DELAY, 60.0);
+    let stale = number_or(&mut table, "stale_s", TIME_CONSTANT, 180.0);
+    table.finish();
+    Some(Sensor {
+        kind,
+        noise: found?,
+        assumed: assumed?,
+        acceleration: acceleration?,
+        interval: interval?,
+        latency: latency?,
+        detection: detection?,
+        silent: silent?,
+        dropout_every: every?,
+        dropout_lasts: lasts?,
+        settle: settle?,
+        stale: stale?,
+    })
+}
+
+fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
+    let times = field.list(0..=SILENT_TIMES, "pairs of seconds, from and until")?;
+    let pairs: Vec<_> = times
+        .iter()
+        .map(|pair| pair.pair(limits::HOLD).map(|pair| [pair.x, pair.y]))
+        .collect();
+    pairs.into_iter().collect()
+}
+
+/// The table `behaviour` of a target, which may be absent.
+pub(super) fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
+    let Some(field) = target.take("behaviour") else {
+        return Some(Behaviour::Constant);
+    };
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Constant,
+        Random,
+        Extremes,
+        Pursuit,
+        Track,
+        GivesWay,
+    }
+    const WORDS: [(&str, Kind); 6] = [
+        ("constant", Kind::Constant),
+        ("random", Kind::Random),
+        ("extremes", Kind::Extremes),
+        ("pursuit", Kind::Pursuit),
+        ("track", Kind::Track),
+        ("gives-way", Kind::GivesWay),
+    ];
+    let mut table = field.table("a table with the key kind")?;
+    let kind = table.require("kind", "a behaviour")?.choice(&WORDS)?;
+    let mut number = |key, range, default| number_or(&mut table, key, range, default);
+    let behaviour = match kind {
+        Kind::Constant => Behaviour::Constant,
+        Kind::Random => Behaviour::Random {
+            every: number("every_s", TIME_CONSTANT, 20.0)?,
+            factor: number("factor", FACTOR, 1.0)?,
+        },
+        Kind::Extremes => Behaviour::Extremes {
+            every: number("every_s", TIME_CONSTANT, 20.0)?,
+            factor: number("factor", FACTOR, 1.0)?,
+        },
+        Kind::Pursuit => Behaviour::Pursuit {
+            every: number("every_s", TIME_CONSTANT, 5.0)?,
+        },
+        Kind::GivesWay => Behaviour::GivesWay {
+            turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)?),
+            before: number("before_cpa_s", limits::DURATION, 240.0)?,
+            probability: number("probability", PROBABILITY, 1.0)?,
+            turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)?),
+        },
+        Kind::Track => {
+            let field = table.require("points", "a list of tables with t_s and position")?;
+            let points = field.list(1..=TRACK_POINTS, "tables with t_s and position")?;
+            Behaviour::Track(track(&points, plane)?)
+        }
+    };
+    table.finish();
+    Some(behaviour)
+}
+
+fn track(points: &[Field], plane: &Plane) -> Option<Vec<(f64, Vector)>> {
+    let mut found: Vec<(f64, Vector)> = Vec::with_capacity(points.len());
+    for point in points {
+        let mut table = point.table("a table with t_s and position")?;
+        let time = table.required_number("t_s", limits::DURATION);
+        let position = table
+            .require("position", POSITION)
+            .and_then(|field| plane.position(&field));
+        table.finish();
+        let (time, position) = (time?, position?);
+        if found.last().is_some_and(|(before, _)| time <= *before) {
+            point.fault(
+                format_args!("t_s = {time}, not after the one before"),
+                "increasing times",
+            );
+            return None;
+        }
+        found.push((time, position));
+    }
+    Some(found)
+}

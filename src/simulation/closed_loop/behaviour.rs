@@ -1,0 +1,291 @@
+//! True motion of a target: a course and a speed in each step.
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+use super::stream::{Purpose, stream};
+use crate::colregs::SteadyShip;
+use crate::frame::{Pose, Vector, heading_of, wrap};
+use crate::scenario::Behaviour;
+use crate::target::ShipTrack;
+use crate::vessel::Hull;
+
+/// Courses and speeds to each side that a pursuer chooses from.
+const PURSUIT_CHOICES: i32 = 4;
+
+/// m/s. A slower ship keeps its heading.
+const NO_WAY: f64 = 1e-6;
+
+/// Seconds, against rounding of the times of changes.
+const INSTANT: f64 = 1e-9;
+
+/// The true motion of a target. Course and speed are constant within a step.
+#[derive(Debug, Clone)]
+pub(super) struct TrueTarget {
+    pub now: SteadyShip,
+    pub hull: Hull,
+    /// Course and speed in the file, the middle of what it may do, and its spreads.
+    middle: ShipTrack,
+    behaviour: Behaviour,
+    rng: ChaCha8Rng,
+    next_change: f64,
+    /// True for a ship that will give way.
+    willing: bool,
+    gives_way: bool,
+}
+
+impl TrueTarget {
+    pub fn new(name: &str, ship: &ShipTrack, behaviour: Behaviour, seed: u64) -> Self {
+        let mut rng = stream(seed, Purpose::Behaviour, name);
+        let willing = match &behaviour {
+            Behaviour::GivesWay { probability, .. } => rng.random::<f64>() < *probability,
+            _ => false,
+        };
+        Self {
+            now: SteadyShip::on_track(ship, 0.0),
+            hull: ship.hull,
+            middle: ship.clone(),
+            behaviour,
+            rng,
+            next_change: 0.0,
+            willing,
+            gives_way: false,
+        }
+    }
+
+    /// Chooses course and speed from `time` until `time + step`. O(1), or O(log points) on a track.
+    pub fn steer(&mut self, time: f64, step: f64, own: &SteadyShip) {
+        let (heading, speed) = (self.middle.pose.heading, self.middle.speed);
+        let is_due = time >= self.next_change - INSTANT;
+        match &self.behaviour {
+            Behaviour::Constant => {}
+            Behaviour::Random { every, factor } if is_due => {
+                self.next_change = time + every;
+                let mut within = |spread: f64| factor * spread * self.rng.random_range(-1.0..=1.0);
+                self.now.pose.heading = heading + within(self.middle.course_spread);
+                self.now.speed = (speed + within(self.middle.speed_spread)).max(0.0);
+            }
+            Behaviour::Extremes { every, factor } if is_due => {
+                self.next_change = time + every;
+                let mut extreme = |spread: f64| {
+                    let sign = if self.rng.random_bool(0.5) { 1.0 } else { -1.0 };
+                    sign * factor * spread
+                };
+                self.now.pose.heading = heading + extreme(self.middle.course_spread);
+                self.now.speed = (speed + extreme(self.middle.speed_spread)).max(0.0);
+            }
+            Behaviour::Pursuit { every } if is_due => {
+                self.next_change = time + every;
+                (self.now.pose.heading, self.now.speed) = self.nearest_approach(own);
+            }
+            Behaviour::Random { .. } | Behaviour::Extremes { .. } | Behaviour::Pursuit { .. } => {}
+            Behaviour::Track(points) => {
+                let way = position_on(points, self.middle.pose.position, time + step)
+                    - self.now.pose.position;
+                self.now.speed = way.norm() / step;
+                if self.now.speed > NO_WAY {
+                    self.now.pose.heading = heading_of(way);
+                }
+            }
+            Behaviour::GivesWay {
+                turn,
+                before,
+                turn_rate,
+                ..
+            } => {
+                let at_first = SteadyShip {
+                    pose: Pose::new(self.now.pose.position, heading),
+                    speed,
+                };
+                let ahead = seconds_to_cpa(&at_first, own);
+                self.gives_way =
+                    self.willing && ahead > 0.0 && (self.gives_way || ahead <= *before);
+                let wanted = if self.gives_way {
+                    heading - turn
+                } else {
+                    heading
+                };
+                let left = wrap(wanted - self.now.pose.heading);
+                self.now.pose.heading += left.clamp(-turn_rate * step, turn_rate * step);
+            }
+        }
+    }
+
+    /// Moves the target to the end of a step.
+    pub fn advance(&mut self, step: f64) {
+        self.now.pose.position += self.now.velocity() * step;
+    }
+
+    /// Of the courses and speeds within the spreads those that come nearest to own ship, if it
+    /// holds course and speed; the first of equals.
+    fn nearest_approach(&self, own: &SteadyShip) -> (f64, f64) {
+        let mut best = (f64::INFINITY, self.now.pose.heading, self.now.speed);
+        for course in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
+            for speed in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
+                let part = |k: i32| f64::from(k) / f64::from(PURSUIT_CHOICES);
+                let heading = self.middle.pose.heading + part(course) * self.middle.course_spread;
+                let speed = self.middle.speed + part(speed) * self.middle.speed_spread;
+                let ship = SteadyShip {
+                    pose: Pose::new(self.now.pose.position, heading),
+                    speed: speed.max(0.0),
+                };
+                let apart = own.pose.position - ship.pose.position;
+                let closing = own.velocity() - ship.velocity();
+                let time = seconds_to_cpa(&ship, own).max(0.0);
+                let nearest = (apart + closing * time).norm();
+                if nearest < best.0 {
+                    best = (nearest, heading, ship.speed);
+                }
+            }
+        }
+        (best.1, best.2)
+    }
+}
+
+/// Seconds to the closest approach of the centres; 0 where the distance does not change.
+fn seconds_to_cpa(ship: &SteadyShip, own: &SteadyShip) -> f64 {
+    let apart = own.pose.position - ship.pose.position;
+    let closing = own.velocity() - ship.velocity();
+    let square = closing.norm_squared();
+    if square > NO_WAY * NO_WAY {
+        -apart.dot(&closing) / square
+    } else {
+        0.0
+    }
+}
+
+/// Place at a time on straight lines through points, beginning at t = 0; the motion of the last
+/// line goes on.
+fn position_on(points: &[(f64, Vector)], start: Vector, time: f64) -> Vector {
+    let after = points.partition_point(|(t, _)| *t <= time);
+    let index = after.min(points.len() - 1);
+    let before = index.checked_sub(1).map_or((0.0, start), |k| points[k]);
+    let (t, p) = points[index];
+    before.1 + (p - before.1) * ((time - before.0) / (t - before.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::DomainKind;
+
+    fn ship() -> ShipTrack {
+        ShipTrack {
+            speed_spread: 0.5,
+            course_spread: 0.1,
+            domain: DomainKind::Hull,
+            ..ShipTrack::exact(
+                Pose::new(Vector::new(100.0, 50.0), 1.0),
+                5.0,
+                Hull::new(60.0, 12.0),
+            )
+        }
+    }
+
+    fn own() -> SteadyShip {
+        SteadyShip {
+            pose: Pose::new(Vector::new(-800.0, 900.0), 0.0),
+            speed: 5.0,
+        }
+    }
+
+    fn sailed(behaviour: Behaviour, steps: usize) -> Vec<SteadyShip> {
+        let mut target = TrueTarget::new("a", &ship(), behaviour, 3);
+        (0..steps)
+            .map(|k| {
+                target.steer(k as f64 * 0.5, 0.5, &own());
+                target.advance(0.5);
+                target.now
+            })
+            .collect()
+    }
+
+    #[test]
+    fn random_extreme_and_pursuing_targets_keep_to_their_velocities_and_breakers_do_not() {
+        let set = ship().outer_velocity_set();
+        let all = [
+            Behaviour::Random {
+                every: 3.0,
+                factor: 1.0,
+            },
+            Behaviour::Extremes {
+                every: 3.0,
+                factor: 1.0,
+            },
+            Behaviour::Pursuit { every: 1.0 },
+        ];
+        for behaviour in all {
+            let states = sailed(behaviour.clone(), 400);
+            let out = |s: &SteadyShip| set.signed_distance(s.velocity()) > 1e-9;
+            assert!(!states.iter().any(out), "{behaviour:?}");
+            let last = states[states.len() - 1].velocity();
+            let pursues = matches!(behaviour, Behaviour::Pursuit { .. });
+            assert!(pursues || states.iter().any(|s| s.velocity() != last));
+        }
+        let breaker = Behaviour::Extremes {
+            every: 3.0,
+            factor: 1.5,
+        };
+        let out = |s: &SteadyShip| set.signed_distance(s.velocity()) > 1e-3;
+        assert!(sailed(breaker, 400).iter().all(out));
+    }
+
+    #[test]
+    fn a_track_is_met_at_its_points_and_continued() {
+        let points = vec![
+            (10.0, Vector::new(150.0, 50.0)),
+            (20.25, Vector::new(150.0, 100.0)),
+        ];
+        let states = sailed(Behaviour::Track(points), 100);
+        assert!((states[19].pose.position - Vector::new(150.0, 50.0)).norm() < 1e-9);
+        let last = states[99].pose.position;
+        let speed = 50.0 / 10.25;
+        assert!(
+            (last - Vector::new(150.0, 100.0 + speed * 29.75)).norm() < 1e-9,
+            "{last}"
+        );
+    }
+
+    #[test]
+    fn a_ship_gives_way_in_time_and_returns_to_its_course() {
+        let gives_way = |before, probability| Behaviour::GivesWay {
+            turn: 0.7,
+            before,
+            probability,
+            turn_rate: 0.05,
+        };
+        let states = sailed(gives_way(1e6, 1.0), 100);
+        assert!((states[99].pose.heading - 0.3).abs() < 1e-9);
+        let turning = states
+            .windows(2)
+            .map(|s| s[0].pose.heading - s[1].pose.heading);
+        assert!(turning.fold(0.0, f64::max) < 0.025 + 1e-9);
+        for behaviour in [gives_way(1.0, 1.0), gives_way(1e6, 0.0)] {
+            assert!((sailed(behaviour, 40)[39].pose.heading - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_pursuer_comes_nearer_than_a_ship_that_holds_on() {
+        let nearest = |behaviour| {
+            let mut target = TrueTarget::new("a", &ship(), behaviour, 3);
+            let mut own = SteadyShip {
+                pose: Pose::new(Vector::new(560.0, 0.0), 1.9),
+                speed: 5.0,
+            };
+            let mut least = f64::INFINITY;
+            for k in 0..400 {
+                target.steer(f64::from(k) * 0.5, 0.5, &own);
+                target.advance(0.5);
+                own.pose.position += own.velocity() * 0.5;
+                least = (own.pose.position - target.now.pose.position)
+                    .norm()
+                    .min(least);
+            }
+            least
+        };
+        let held = nearest(Behaviour::Constant);
+        let pursued = nearest(Behaviour::Pursuit { every: 5.0 });
+        assert!(pursued < held - 3.0, "{pursued} {held}");
+    }
+}

@@ -1,0 +1,117 @@
+//! One cycle of planning: the scenario as it is known, with what the last plan leaves to it.
+
+use super::Simulation;
+use crate::colregs::SteadyShip;
+use crate::document::{EstimateDocument, ReplanDocument, finite, position, remember};
+use crate::frame::{Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
+use crate::obstacle::SpaceTimeObstacle;
+use crate::pipeline::{self, Relaxation, Run};
+use crate::scenario::Memory;
+use crate::target::{Motion, ShipTrack};
+use crate::tolerance::TOUCH_M;
+
+/// m/s and metres: rounding of a target's state.
+const ROUNDING: f64 = 1e-6;
+
+/// A plan and its record.
+pub(super) struct Cycle {
+    pub run: Run,
+    pub replan: ReplanDocument,
+}
+
+impl Simulation {
+    /// Plans for `delay` seconds from now on, from where the present plan has own ship then.
+    pub(super) fn plan(&mut self, delay: f64) -> Cycle {
+        let start = self.time + delay;
+        let off_plan_m = self.off_plan();
+        let mut scenario = self.scenario.clone();
+        let mut estimates = Vec::with_capacity(self.targets.len());
+        for (target, known) in scenario.targets.iter_mut().zip(&mut self.targets) {
+            let ship = known.track.set_at(start, self.scenario.simulation.delay);
+            let age_s = self.time - known.track.estimate().time;
+            estimates.push(EstimateDocument {
+                target: known.name.clone(),
+                age_s,
+                stale: known.is_stale,
+                true_position: position(known.truth.now.pose.position),
+                position: position(ship.pose.position),
+                course_deg: course_deg_from_heading(ship.pose.heading),
+                speed_mps: ship.speed,
+                position_std_m: ship.position_std,
+                speed_spread_mps: ship.speed_spread,
+                course_spread_deg: deg_from_radians(ship.course_spread),
+            });
+            target.motion = Motion::Ship(ship);
+        }
+        if let Some(previous) = &self.active.document {
+            scenario.time += start;
+            scenario.desired = self.scenario.desired.remaining(start);
+            scenario.own_ship.pose = self.pose_at(start);
+            scenario.memory = Memory::default();
+            // the last plan is own ship's, so only a ship far off it is refused
+            if remember(previous, &mut scenario).is_err() {
+                self.alarm("far off the plan", None);
+            }
+        }
+        let run = pipeline::run(scenario);
+        let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
+        let plan = run.planned.outcome.plan();
+        let replan = ReplanDocument {
+            t_s: self.time,
+            start_t_s: start,
+            verdict: run.word(),
+            safe: run.safe(),
+            followed: plan.is_some() && !late,
+            keeps_plan: run.planned.is_remainder,
+            cost_m2: plan.and_then(|plan| finite(plan.cost)),
+            relaxations: run.relaxations.iter().map(|r| kind(r).to_owned()).collect(),
+            turn_deg: (run.planned.manoeuvres.first()).map(|m| clockwise_deg(m.turn)),
+            off_plan_m,
+            outside_velocities: run.scenario.memory.outside_velocities.clone(),
+            outside_places: run.scenario.memory.outside_places.clone(),
+            estimates,
+        };
+        Cycle { run, replan }
+    }
+}
+
+impl Simulation {
+    /// Own ship at a later time, if it stays off its plan as it is now.
+    fn pose_at(&self, time: f64) -> Pose {
+        let plan = &self.active;
+        let [now, then] = [self.time, time].map(|t| plan.trajectory.pose_at(t - plan.start));
+        let own = self.own.pose(&plan.trajectory, self.time - plan.start);
+        let off = now.body_coordinates(own.position);
+        Pose::new(
+            then.world_coordinates(off),
+            then.heading + wrap(own.heading - now.heading),
+        )
+    }
+}
+
+fn kind(relaxation: &Relaxation) -> &'static str {
+    match relaxation {
+        Relaxation::Domain { .. } => "domain",
+        Relaxation::Risk { .. } => "risk",
+        Relaxation::Arrival { .. } => "arrival",
+        Relaxation::Compliance { .. } => "compliance",
+    }
+}
+
+/// True where the remainder of the last plan enters a hard set of the present.
+pub(super) fn remainder_is_lost(run: &Run) -> bool {
+    let remainder = &run.scenario.memory.remainder;
+    let mut hard = run.targets.iter().map(|target| &target.sets.hard);
+    hard.any(|set| {
+        let enters = |s| set.first_contact(s, TOUCH_M).is_some();
+        remainder.iter().any(enters)
+    })
+}
+
+/// True where the positions and the velocities that a plan assumes at its start hold the truth.
+pub(super) fn holds(assumed: &ShipTrack, truth: &SteadyShip) -> bool {
+    let off = truth.pose.position - assumed.pose.position;
+    let velocities = assumed.outer_velocity_set();
+    assumed.outer_positions().signed_distance(off) <= ROUNDING
+        && velocities.signed_distance(truth.velocity()) <= ROUNDING
+}

@@ -1,0 +1,78 @@
+//! Path following in space and time: line of sight on the planned path, speed by its schedule.
+
+use super::vessel::{Order, Vessel, VesselState};
+use crate::frame::{Vector, direction, heading_of, wrap};
+use crate::trajectory::Trajectory;
+
+/// Distance ahead on the path at which own ship aims, lengths.
+const LOOKAHEAD_LENGTHS: f64 = 3.0;
+
+/// Seconds in which a delay on the schedule is to be made up.
+const CATCH_UP_S: f64 = 20.0;
+
+/// Own ship may exceed its largest planned speed by this fraction to catch up.
+const MOST_SPEED: f64 = 1.1;
+
+/// The nearest point of the path is within this time of the schedule, seconds.
+const WINDOW_S: f64 = 60.0;
+
+/// Steps of the projection onto the path.
+const PROJECTIONS: usize = 5;
+
+/// Seconds over which the turn rate of the path is taken.
+const RATE_S: f64 = 0.5;
+
+/// m/s. A slower stretch of the path has no progress along it.
+const NO_WAY: f64 = 0.05;
+
+/// Orders that bring own ship to where the plan has it at `time` of the plan. A `current` (m/s) is
+/// the one that own ship knows of. O(log segments).
+pub(super) fn follow(
+    plan: &Trajectory,
+    time: f64,
+    vessel: &Vessel,
+    state: &VesselState,
+    max_speed: f64,
+    current: Vector,
+) -> Order {
+    let nearest = nearest_time(plan, time, state);
+    let path = plan.pose_at(nearest);
+    let aside = path.body_coordinates(state.pose.position).y;
+    // the ship answers late, so a turn is ordered early
+    let early = nearest + vessel.lag(state.speed);
+    let turned = plan.pose_at(early + RATE_S).heading - plan.pose_at(early).heading;
+    let course = path.heading - (aside / (LOOKAHEAD_LENGTHS * vessel.length)).atan();
+    let planned = plan.speed_at(time);
+    let behind = planned.max(plan.speed_at(nearest)) * (time - nearest);
+    let most = MOST_SPEED * max_speed;
+    let speed = (planned + behind / CATCH_UP_S).clamp(0.0, most);
+    let water = direction(course) * speed - current;
+    let (course, speed) = if water.norm() > NO_WAY && current != Vector::zeros() {
+        (heading_of(water), water.norm().min(most))
+    } else {
+        (course, speed)
+    };
+    Order {
+        heading: course,
+        turn_rate: wrap(turned) / RATE_S,
+        speed,
+    }
+}
+
+/// Time of the plan at which its path is nearest to own ship, near the scheduled time.
+fn nearest_time(plan: &Trajectory, time: f64, state: &VesselState) -> f64 {
+    let from = (time - WINDOW_S).max(plan.start_time());
+    let until = (time + WINDOW_S).min(plan.end_time()).max(from);
+    let mut nearest = time.clamp(from, until);
+    for _ in 0..PROJECTIONS {
+        let ahead = plan
+            .pose_at(nearest)
+            .body_coordinates(state.pose.position)
+            .x;
+        let speed = plan.speed_at(nearest);
+        if speed > NO_WAY {
+            nearest = (nearest + ahead / speed).clamp(from, until);
+        }
+    }
+    nearest
+}

@@ -1,0 +1,445 @@
+//! The closed loop: current, sensors, tracker, plan, guidance and vessel, step by step.
+
+mod behaviour;
+mod contact;
+mod cycle;
+mod guidance;
+mod own;
+mod record;
+mod sensor;
+mod stream;
+mod tracker;
+mod vessel;
+
+use behaviour::TrueTarget;
+use contact::Clearance;
+use cycle::Cycle;
+use own::Own;
+use sensor::Sight;
+use tracker::Track;
+
+use crate::colregs::SteadyShip;
+use crate::document::{AlarmDocument, PlanDocument, ReplanDocument};
+use crate::planner::Minimises;
+use crate::scenario::{Fault, Scenario, SensorKind, SimulationSettings};
+use crate::target::ShipTrack;
+use crate::trajectory::{Segment, Trajectory};
+
+/// Seconds: times nearer than this are one.
+const INSTANT: f64 = 1e-9;
+
+/// A step ends at the next event; one shorter than this fraction of it is joined to the one before.
+const SHORT_STEP: f64 = 1e-6;
+
+/// A scenario that is sailed: own ship plans again and again and follows its plans, among targets
+/// that do what they like.
+///
+/// Within a step the order is: the current changes, the targets are seen, the tracker takes in what
+/// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made from the
+/// data of its time, and own ship follows it from `delay` seconds later on. It begins where the
+/// last plan has own ship then. The contact oracle looks at every step in continuous time.
+///
+/// The same scenario gives the same motion, unless the delay is measured.
+///
+/// ```
+/// use searoom::scenario::Scenario;
+/// use searoom::simulation::Simulation;
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// let mut simulation = Simulation::new(scenario, false).expect("a scenario for the closed loop");
+/// while !simulation.finished() {
+///     simulation.step();
+/// }
+/// let sailed = simulation.record();
+/// assert!(sailed.safe && sailed.arrived && sailed.targets[0].least_clearance_m > Some(20.0));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
+#[derive(Debug)]
+pub struct Simulation {
+    /// The scenario at t = 0.
+    scenario: Scenario,
+    measured_delay: bool,
+    /// Seconds since the scenario's time.
+    time: f64,
+    duration: f64,
+    own: Own,
+    targets: Vec<Simulated>,
+    /// The plan that own ship follows.
+    active: Active,
+    pending: Option<Active>,
+    next_cycle: f64,
+    first_cost: Option<f64>,
+    /// Own ship's motion so far.
+    sailed: Vec<Segment>,
+    replans: Vec<ReplanDocument>,
+    alarms: Vec<AlarmDocument>,
+    plan_seconds: Vec<f64>,
+    replaced: usize,
+    side_switches: usize,
+    lost_remainders: usize,
+    /// Distance from the plan, metres, and when.
+    farthest_off: (f64, f64),
+    keep_plans: bool,
+    plans: Vec<PlanDocument>,
+}
+
+/// One target: its truth, what is seen of it, and what is known.
+#[derive(Debug)]
+struct Simulated {
+    name: String,
+    truth: TrueTarget,
+    sight: Sight,
+    track: Track,
+    clearance: Clearance,
+    states: Vec<(f64, SteadyShip)>,
+    outside_sets: usize,
+    is_stale: bool,
+}
+
+/// A plan that own ship follows from some time on.
+#[derive(Debug)]
+struct Active {
+    start: f64,
+    trajectory: Trajectory,
+    /// `None` where own ship holds course and speed without a plan.
+    document: Option<PlanDocument>,
+    /// The ships that the plan assumes at its start, in the scenario's order.
+    assumed: Vec<ShipTrack>,
+}
+
+impl Active {
+    fn end(&self) -> f64 {
+        self.start + self.trajectory.end_time()
+    }
+}
+
+impl Simulation {
+    /// Settles the tracker on what is seen before t = 0 and makes the first plan, which is valid at
+    /// once. With `measured_delay` a plan that takes longer than the delay comes too late.
+    pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Fault> {
+        let settings = &scenario.simulation;
+        let duration = settings.duration.unwrap_or(scenario.horizon);
+        check(&scenario, duration)?;
+        let exact = settings.sensor.kind == SensorKind::Exact;
+        let behaviours = settings.behaviours.iter().cloned();
+        let behaviours = behaviours.chain(std::iter::repeat(crate::scenario::Behaviour::Constant));
+        let ships = scenario.targets.iter().zip(behaviours);
+        let targets = ships.filter_map(|(target, behaviour)| {
+            let ship = target.ship()?;
+            let seed = settings.seed;
+            let mut simulated = Simulated {
+                name: target.name.clone(),
+                truth: TrueTarget::new(&target.name, ship, behaviour, seed),
+                sight: Sight::new(&settings.sensor, &target.name, seed),
+                track: Track::new(ship, &settings.sensor),
+                clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
+                states: Vec::new(),
+                outside_sets: 0,
+                is_stale: false,
+            };
+            let steps = (settings.sensor.settle / settings.step).ceil() as usize;
+            for step in (1..=steps).rev().filter(|_| !exact) {
+                let time = -(step as f64) * settings.step;
+                simulated.look(time, &SteadyShip::on_track(ship, time), false);
+            }
+            simulated.track.anchor();
+            Some(simulated)
+        });
+        let mut simulation = Self {
+            targets: targets.collect(),
+            own: Own::new(&scenario),
+            active: Active {
+                start: 0.0,
+                trajectory: Trajectory::from(Segment::straight(
+                    scenario.own_ship.pose,
+                    0.0,
+                    duration,
+                    scenario.own_ship.speed,
+                )),
+                document: None,
+                assumed: Vec::new(),
+            },
+            measured_delay,
+            time: 0.0,
+            duration,
+            pending: None,
+            next_cycle: scenario.simulation.replan,
+            first_cost: None,
+            sailed: Vec::new(),
+            replans: Vec::new(),
+            alarms: Vec::new(),
+            plan_seconds: Vec::new(),
+            replaced: 0,
+            side_switches: 0,
+            lost_remainders: 0,
+            farthest_off: (0.0, 0.0),
+            keep_plans: false,
+            plans: Vec::new(),
+            scenario,
+        };
+        simulation.see();
+        simulation.cycle(0.0);
+        simulation.activate();
+        simulation.first_cost = simulation.replans.first().and_then(|first| first.cost_m2);
+        Ok(simulation)
+    }
+
+    /// Keeps the document of every plan from now on; the first plan is the one that is followed.
+    pub fn keep_plans(&mut self) {
+        self.keep_plans = true;
+        self.plans.extend(self.active.document.clone());
+    }
+
+    /// The documents of the plans since [`Self::keep_plans`].
+    pub fn plans(&self) -> &[PlanDocument] {
+        &self.plans
+    }
+
+    fn settings(&self) -> &SimulationSettings {
+        &self.scenario.simulation
+    }
+
+    /// Seconds since the scenario's time.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// True at the end of the plan that own ship follows, and at the end of the simulation.
+    pub fn finished(&self) -> bool {
+        let end = self.active.end().min(self.duration);
+        // negated so that a NaN ends the simulation
+        !(self.time < end - INSTANT)
+    }
+
+    /// Moves all ships on to the next step or event. Without effect once finished.
+    pub fn step(&mut self) {
+        if self.finished() {
+            return;
+        }
+        self.see();
+        self.activate();
+        if self.time >= self.next_cycle - INSTANT {
+            let (delay, replan) = (self.settings().delay, self.settings().replan);
+            self.next_cycle = self.time + replan;
+            if self.active.end() > self.time + delay + INSTANT {
+                self.cycle(delay);
+            }
+            self.activate();
+        }
+        let events = [
+            self.pending
+                .as_ref()
+                .map_or(f64::INFINITY, |plan| plan.start),
+            self.next_cycle,
+            self.active.end(),
+            self.duration,
+        ];
+        let next = events.into_iter().fold(f64::INFINITY, f64::min) - self.time;
+        let mut step = self.settings().step;
+        if next < step * (1.0 + SHORT_STEP) {
+            step = next;
+        }
+        self.advance(step);
+    }
+
+    /// Everything that is seen at the present time.
+    fn see(&mut self) {
+        let exact = self.settings().sensor.kind == SensorKind::Exact;
+        let stale = self.settings().sensor.stale;
+        for target in &mut self.targets {
+            let now = target.truth.now;
+            target.look(self.time, &now, exact);
+            let silent = self.time - target.track.estimate().time;
+            let is_stale = silent > stale;
+            if is_stale && !target.is_stale {
+                self.alarms.push(AlarmDocument {
+                    t_s: self.time,
+                    alarm: "stale".to_owned(),
+                    target: Some(target.name.clone()),
+                });
+            }
+            target.is_stale = is_stale;
+        }
+    }
+
+    /// Makes a plan that holds from `delay` seconds from now on.
+    fn cycle(&mut self, delay: f64) {
+        let Cycle { run, replan } = self.plan(delay);
+        self.plan_seconds.push(run.plan_time.as_secs_f64());
+        if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
+            let next = run.planned.manoeuvres.first();
+            if !next.is_some_and(|m| m.begins == begun.begins) {
+                self.replaced += 1;
+                self.side_switches += usize::from(next.is_some_and(|m| m.turn * begun.turn < 0.0));
+            }
+        }
+        self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
+        for name in &replan.outside_velocities {
+            self.alarm("another velocity than assumed", Some(name));
+        }
+        for name in &replan.outside_places {
+            self.alarm("at another place than assumed", Some(name));
+        }
+        if replan.cost_m2.is_none() {
+            self.alarm("no plan", None);
+        } else if !replan.followed {
+            self.alarm("plan too late", None);
+        } else if !replan.safe {
+            self.alarm("unsafe plan", None);
+        }
+        if replan.followed
+            && let Some(plan) = run.planned.outcome.plan()
+        {
+            let document = PlanDocument::of(&run);
+            if self.keep_plans {
+                self.plans.push(document.clone());
+            }
+            let ships = run
+                .scenario
+                .targets
+                .iter()
+                .filter_map(|target| target.ship());
+            self.pending = Some(Active {
+                start: self.time + delay,
+                trajectory: plan.trajectory.clone(),
+                document: Some(document),
+                assumed: ships.cloned().collect(),
+            });
+        }
+        self.replans.push(replan);
+    }
+
+    fn alarm(&mut self, alarm: &str, target: Option<&str>) {
+        self.alarms.push(AlarmDocument {
+            t_s: self.time,
+            alarm: alarm.to_owned(),
+            target: target.map(str::to_owned),
+        });
+    }
+
+    /// Follows the pending plan from its start on.
+    fn activate(&mut self) {
+        let time = self.time;
+        let is_due = |plan: &mut Active| plan.start <= time + INSTANT;
+        let Some(plan) = self.pending.take_if(is_due) else {
+            return;
+        };
+        for (target, assumed) in self.targets.iter_mut().zip(&plan.assumed) {
+            target.outside_sets += usize::from(!cycle::holds(assumed, &target.truth.now));
+        }
+        self.active = plan;
+    }
+
+    /// Moves all ships.
+    fn advance(&mut self, step: f64) {
+        let time = self.time;
+        let in_plan = time - self.active.start;
+        let now = self.own.steady(&self.active.trajectory, in_plan);
+        for target in &mut self.targets {
+            target.truth.steer(time, step, &now);
+            let ship = target.truth.now;
+            let course_and_speed = |ship: &SteadyShip| (ship.pose.heading, ship.speed);
+            let before = target.states.last().map(|(_, ship)| course_and_speed(ship));
+            if before != Some(course_and_speed(&ship)) {
+                target.states.push((time, ship));
+            }
+        }
+        let start = self.own.pose(&self.active.trajectory, in_plan).position;
+        let motion = self.own.advance(&self.active.trajectory, in_plan, step);
+        for target in &mut self.targets {
+            let now = &target.truth.now;
+            target.clearance.see((time, step), (start, &motion), now);
+            target.truth.advance(step);
+        }
+        own::join(&mut self.sailed, &motion, time);
+        self.time = time + step;
+        let off = self.off_plan();
+        if off > self.farthest_off.0 {
+            self.farthest_off = (off, self.time);
+        }
+    }
+
+    /// Metres between own ship and where its plan has it.
+    fn off_plan(&self) -> f64 {
+        let in_plan = self.time - self.active.start;
+        let there = self.active.trajectory.pose_at(in_plan).position;
+        let own = self.own.pose(&self.active.trajectory, in_plan);
+        (own.position - there).norm()
+    }
+}
+
+impl Simulated {
+    /// Takes in what arrives at `time`.
+    fn look(&mut self, time: f64, ship: &SteadyShip, exact: bool) {
+        if exact {
+            self.track.know(time, ship);
+            return;
+        }
+        for report in self.sight.see(time, ship) {
+            self.track.hear(&report);
+        }
+    }
+}
+
+/// Refuses what the loop cannot sail.
+fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
+    let settings = &scenario.simulation;
+    let facts = scenario.planner.facts();
+    if facts.follows_paths || matches!(facts.minimises, Minimises::Own(_)) {
+        return Err(Fault::new(
+            "planner.kind",
+            format_args!("{:?}", facts.name),
+            "\"space-time\": the closed loop goes on from its plans alone",
+        ));
+    }
+    let explicit = scenario
+        .targets
+        .iter()
+        .position(|target| target.ship().is_none());
+    if let Some(index) = explicit {
+        return Err(Fault::new(
+            format!("targets[{index}]"),
+            "explicit sets",
+            "a tracked ship: explicit sets have no true motion",
+        ));
+    }
+    let shorter = |key: &str, value: f64, most: f64, of: &str| {
+        let fault = Fault::new(
+            format!("simulation.{key}"),
+            value,
+            format_args!("at most {most}, {of}"),
+        );
+        if value <= most { Ok(()) } else { Err(fault) }
+    };
+    shorter("replan_s", settings.replan, scenario.horizon, "the horizon")?;
+    shorter(
+        "delay_s",
+        settings.delay,
+        settings.replan,
+        "the time between plans",
+    )?;
+    shorter(
+        "step_s",
+        settings.step,
+        settings.replan,
+        "the time between plans",
+    )?;
+    // negated so that a NaN is refused
+    if !(duration > 0.0) {
+        return Err(Fault::new(
+            "simulation.duration_s",
+            duration,
+            "a time above 0",
+        ));
+    }
+    let vessel = vessel::Vessel::new(settings.vessel, &scenario.own_ship);
+    let (least, planned) = (vessel.least_radius(), scenario.own_ship.turning_radius);
+    if !(least <= planned) {
+        return Err(Fault::new(
+            "simulation.vessel",
+            format_args!("a ship that turns at {least:.1} m at full rudder"),
+            format_args!("one that can hold the turns of its plans, {planned} m"),
+        ));
+    }
+    Ok(())
+}

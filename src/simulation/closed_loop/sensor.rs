@@ -1,0 +1,246 @@
+//! Reports of a target: their times, their errors, and those that are lost.
+
+use nalgebra::Matrix2;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+use super::stream::{Purpose, normal, stream};
+use crate::colregs::SteadyShip;
+use crate::frame::{Vector, direction, knots_from_mps, radians_from_deg, wrap};
+use crate::scenario::{Noise, Sensor, SensorKind};
+
+/// A course that changes by more between two reports is an alteration, radians per second.
+const ALTERING: f64 = radians_from_deg(0.1);
+
+/// A measurement of a target, at a time in seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Report {
+    pub time: f64,
+    pub arrives: f64,
+    pub position: Vector,
+    /// m/s; `None` for positions alone.
+    pub velocity: Option<Vector>,
+}
+
+/// What one sensor sees of one target.
+#[derive(Debug, Clone)]
+pub(super) struct Sight {
+    sensor: Sensor,
+    rng: ChaCha8Rng,
+    next: f64,
+    last_heading: Option<(f64, f64)>,
+    /// Begin and end of the present or next drop-out.
+    dropout: [f64; 2],
+    /// Reports that have not arrived, in order of time.
+    coming: Vec<Report>,
+}
+
+impl Sight {
+    pub fn new(sensor: &Sensor, name: &str, seed: u64) -> Self {
+        let mut rng = stream(seed, Purpose::Sensor, name);
+        let dropout = dropout_after(sensor, 0.0, &mut rng);
+        let first = rng.random::<f64>() * sensor.interval.unwrap_or(2.0);
+        Self {
+            next: first - sensor.settle,
+            sensor: sensor.clone(),
+            rng,
+            last_heading: None,
+            dropout,
+            coming: Vec::new(),
+        }
+    }
+
+    /// Measures the target where a report is due at `time`, seconds; returns those that arrive.
+    pub fn see(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
+        if time >= self.next - 1e-9 {
+            self.next = time + self.interval(time, target);
+            if let Some(report) = self.measure(time, target) {
+                self.coming.push(report);
+            }
+        }
+        let arrived = self.coming.partition_point(|r| r.arrives <= time + 1e-9);
+        self.coming.drain(..arrived).collect()
+    }
+
+    /// Seconds to the next report. Class A: ITU-R M.1371, annex 1, table 1.
+    fn interval(&mut self, time: f64, target: &SteadyShip) -> f64 {
+        let heading = target.pose.heading;
+        let before = self.last_heading.replace((time, heading));
+        let altering = before.is_some_and(|(then, was)| {
+            wrap(heading - was).abs() > ALTERING * (time - then).max(1e-9)
+        });
+        if let Some(interval) = self.sensor.interval {
+            return interval;
+        }
+        let knots = knots_from_mps(target.speed);
+        let SensorKind::Ais { class_a } = self.sensor.kind else {
+            return 0.0;
+        };
+        match (class_a, altering) {
+            (false, _) if knots > 2.0 => 30.0,
+            (true, true) if knots > 14.0 => 2.0,
+            (true, true) if knots > 3.0 => 10.0 / 3.0,
+            (true, false) if knots > 23.0 => 2.0,
+            (true, false) if knots > 14.0 => 6.0,
+            (true, false) if knots > 3.0 => 10.0,
+            _ => 180.0,
+        }
+    }
+
+    /// A measurement, unless it is lost. The same random numbers are drawn for every report.
+    fn measure(&mut self, time: f64, target: &SteadyShip) -> Option<Report> {
+        let mut drawn = || normal(&mut self.rng);
+        let off = Vector::new(drawn(), drawn());
+        let (course, speed) = (drawn(), drawn());
+        let seen = self.rng.random::<f64>() < self.sensor.detection;
+        while time >= self.dropout[1] {
+            self.dropout = dropout_after(&self.sensor, self.dropout[1], &mut self.rng);
+        }
+        let silent = self.sensor.silent.iter().chain([&self.dropout]);
+        let heard = silent
+            .into_iter()
+            .all(|[from, until]| !(*from..*until).contains(&time));
+        let Noise {
+            position,
+            course: course_std,
+            speed: speed_std,
+        } = self.sensor.noise;
+        let velocity = direction(target.pose.heading + course * course_std)
+            * (target.speed + speed * speed_std).max(0.0);
+        (seen && heard).then(|| Report {
+            time,
+            arrives: time + self.sensor.latency,
+            position: target.pose.position + off * position,
+            velocity: matches!(self.sensor.kind, SensorKind::Ais { .. }).then_some(velocity),
+        })
+    }
+}
+
+/// The next drop-out: exponential times between and during drop-outs.
+fn dropout_after(sensor: &Sensor, time: f64, rng: &mut ChaCha8Rng) -> [f64; 2] {
+    if !sensor.dropout_every.is_finite() {
+        return [f64::INFINITY; 2];
+    }
+    let mut lasts = |mean: f64| -mean * (1.0 - rng.random::<f64>()).ln();
+    let from = time + lasts(sensor.dropout_every);
+    [from, from + lasts(sensor.dropout_lasts)]
+}
+
+/// Covariance of a measured velocity, (m/s)²: along the course, and across it.
+pub(super) fn velocity_covariance(noise: &Noise, velocity: Vector) -> Matrix2<f64> {
+    let speed = velocity.norm();
+    let (along, across) = (noise.speed, noise.course * speed.max(noise.speed));
+    let ahead = velocity.try_normalize(1e-9).unwrap_or_else(Vector::x);
+    let port = crate::frame::to_port(ahead);
+    let floor = Matrix2::identity() * 1e-6;
+    ahead * ahead.transpose() * (along * along)
+        + port * port.transpose() * (across * across)
+        + floor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, mps_from_knots};
+
+    fn target(knots: f64) -> SteadyShip {
+        SteadyShip {
+            pose: Pose::new(Vector::new(1000.0, 0.0), 0.4),
+            speed: mps_from_knots(knots),
+        }
+    }
+
+    fn ais() -> Sensor {
+        Sensor {
+            kind: SensorKind::Ais { class_a: true },
+            ..Sensor::EXACT
+        }
+    }
+
+    fn times(sensor: Sensor, knots: f64) -> Vec<f64> {
+        let mut sight = Sight::new(&sensor, "a", 1);
+        let reports = (0..1200).flat_map(|k| sight.see(f64::from(k) * 0.5, &target(knots)));
+        reports.map(|r| r.time).collect()
+    }
+
+    #[test]
+    fn class_a_reports_at_the_intervals_of_its_table() {
+        for (knots, interval) in [(2.0, 180.0), (10.0, 10.0), (18.0, 6.0), (25.0, 2.0)] {
+            let found = times(ais(), knots);
+            let steps = found.windows(2).map(|t| t[1] - t[0]);
+            assert!(
+                steps.into_iter().all(|s| (s - interval).abs() < 1e-9),
+                "{knots}"
+            );
+        }
+        let mut sight = Sight::new(&ais(), "a", 1);
+        let mut turning = target(10.0);
+        let mut found = Vec::new();
+        for k in 0..200 {
+            turning.pose.heading += 0.01;
+            found.extend(
+                sight
+                    .see(f64::from(k) / 3.0, &turning)
+                    .into_iter()
+                    .map(|r| r.time),
+            );
+        }
+        assert!(
+            found
+                .windows(2)
+                .skip(1)
+                .all(|t| (t[1] - t[0] - 10.0 / 3.0).abs() < 1e-6)
+        );
+    }
+
+    #[test]
+    fn silence_and_drop_outs_lose_reports_and_latency_delays_them() {
+        let silent = Sensor {
+            interval: Some(1.0),
+            silent: vec![[100.0, 200.0]],
+            latency: 4.0,
+            ..ais()
+        };
+        let found = times(silent, 10.0);
+        assert!(
+            found.iter().all(|t| !(100.0..200.0).contains(t)),
+            "{found:?}"
+        );
+        assert!(found.len() > 450 && *found.last().expect("some") <= 596.0);
+        let lossy = Sensor {
+            interval: Some(1.0),
+            dropout_every: 60.0,
+            dropout_lasts: 30.0,
+            detection: 0.9,
+            ..ais()
+        };
+        let share = times(lossy, 10.0).len() as f64 / 600.0;
+        assert!((0.3..0.85).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn measurements_have_the_errors_that_were_asked_for() {
+        let sensor = Sensor {
+            interval: Some(0.5),
+            noise: Noise {
+                position: 12.0,
+                course: 0.1,
+                speed: 0.5,
+            },
+            ..ais()
+        };
+        let mut sight = Sight::new(&sensor, "a", 1);
+        let ship = target(10.0);
+        let all: Vec<Report> = (0..8000)
+            .flat_map(|k| sight.see(f64::from(k) * 0.5, &ship))
+            .collect();
+        let std = |of: &dyn Fn(&Report) -> f64| {
+            (all.iter().map(|r| of(r).powi(2)).sum::<f64>() / all.len() as f64).sqrt()
+        };
+        assert!((std(&|r| r.position.x - 1000.0) - 12.0).abs() < 0.5);
+        let velocity = |r: &Report| r.velocity.expect("measured");
+        assert!((std(&|r| velocity(r).norm() - ship.speed) - 0.5).abs() < 0.02);
+        let turned = |r: &Report| wrap(crate::frame::heading_of(velocity(r)) - 0.4);
+        assert!((std(&turned) - 0.1).abs() < 0.005);
+    }
+}

@@ -1,0 +1,424 @@
+//! One Kalman filter per target, and the set of positions and velocities that a plan is made for.
+
+use nalgebra::{Matrix2, Matrix4, SymmetricEigen, Vector4};
+
+use super::sensor::{Report, velocity_covariance};
+use crate::colregs::SteadyShip;
+use crate::frame::{Pose, Vector, heading_of, to_port, wrap};
+use crate::scenario::Sensor;
+use crate::target::ShipTrack;
+use crate::tolerance::POSITION_SIGMAS;
+
+/// Standard deviations of an estimate that widen a set.
+const SIGMAS: f64 = POSITION_SIGMAS;
+
+/// Standard deviation of a velocity of which nothing is known, m/s.
+const ANY_VELOCITY: f64 = 15.0;
+
+/// Least standard deviation of a measured position, metres.
+const LEAST_STD_M: f64 = 1e-3;
+
+/// m/s and radians: rounding of velocities.
+const ROUNDING: f64 = 1e-9;
+
+/// Motion at constant velocity with white noise of acceleration: position and velocity.
+/// Y. Bar-Shalom, X.-R. Li, T. Kirubarajan, "Estimation with Applications to Tracking and
+/// Navigation", 2001, section 6.2.2.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Filter {
+    time: f64,
+    state: Vector4<f64>,
+    covariance: Matrix4<f64>,
+    /// Spectral density of the acceleration, m²/s³.
+    density: f64,
+}
+
+impl Filter {
+    /// From a position and a velocity with their covariances.
+    pub fn new(
+        time: f64,
+        (position, position_covariance): (Vector, Matrix2<f64>),
+        (velocity, velocity_covariance): (Vector, Matrix2<f64>),
+        density: f64,
+    ) -> Self {
+        let mut covariance = Matrix4::zeros();
+        covariance
+            .fixed_view_mut::<2, 2>(0, 0)
+            .copy_from(&position_covariance);
+        covariance
+            .fixed_view_mut::<2, 2>(2, 2)
+            .copy_from(&velocity_covariance);
+        Self {
+            time,
+            state: Vector4::new(position.x, position.y, velocity.x, velocity.y),
+            covariance,
+            density,
+        }
+    }
+
+    /// Moves the estimate on to `time`, seconds.
+    pub fn predict(&mut self, time: f64) {
+        let dt = time - self.time;
+        let mut motion = Matrix4::identity();
+        (motion[(0, 2)], motion[(1, 3)]) = (dt, dt);
+        let mut noise = Matrix4::zeros();
+        for axis in 0..2 {
+            noise[(axis, axis)] = dt * dt * dt / 3.0;
+            noise[(axis, axis + 2)] = dt * dt / 2.0;
+            noise[(axis + 2, axis)] = dt * dt / 2.0;
+            noise[(axis + 2, axis + 2)] = dt;
+        }
+        self.state = motion * self.state;
+        self.covariance = motion * self.covariance * motion.transpose() + noise * self.density;
+        self.time = time;
+    }
+
+    /// Takes in a measured position, or velocity if `first` is 2, in Joseph's form.
+    pub fn update(&mut self, first: usize, measured: Vector, covariance: Matrix2<f64>) {
+        let rows = self.covariance.fixed_rows::<2>(first).into_owned();
+        let innovation = rows.fixed_columns::<2>(first) + covariance;
+        // a singular sum measures nothing
+        let Some(inverse) = innovation.try_inverse() else {
+            return;
+        };
+        let gain = rows.transpose() * inverse;
+        let off = measured - self.state.fixed_rows::<2>(first);
+        self.state += gain * off;
+        let mut rest = Matrix4::identity();
+        let mut columns = rest.fixed_columns_mut::<2>(first);
+        columns -= gain;
+        self.covariance =
+            rest * self.covariance * rest.transpose() + gain * covariance * gain.transpose();
+    }
+
+    fn position(&self) -> Vector {
+        self.state.fixed_rows::<2>(0).into_owned()
+    }
+
+    fn velocity(&self) -> Vector {
+        self.state.fixed_rows::<2>(2).into_owned()
+    }
+
+    /// Standard deviation of the position along its worst axis, metres.
+    fn position_std(&self) -> f64 {
+        let block: Matrix2<f64> = self.covariance.fixed_view::<2, 2>(0, 0).into_owned();
+        SymmetricEigen::new(block).eigenvalues.max().max(0.0).sqrt()
+    }
+
+    fn velocity_variance(&self) -> Matrix2<f64> {
+        self.covariance.fixed_view::<2, 2>(2, 2).into_owned()
+    }
+}
+
+/// What is known of a target at the time of its last report.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Estimate {
+    pub time: f64,
+    pub position: Vector,
+    /// Metres, along the worst axis.
+    pub position_std: f64,
+    pub heading: f64,
+    pub speed: f64,
+    /// Radians and m/s.
+    pub heading_std: f64,
+    pub speed_std: f64,
+}
+
+/// The middle and the half-widths of the velocities that plans are made for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Anchor {
+    heading: f64,
+    speed: f64,
+    heading_spread: f64,
+    speed_spread: f64,
+}
+
+impl Anchor {
+    /// The spreads of the behaviour and of the estimate about the estimate.
+    fn at(estimate: &Estimate, file: &ShipTrack) -> Self {
+        Self {
+            heading: estimate.heading,
+            speed: estimate.speed,
+            heading_spread: file.course_spread + SIGMAS * estimate.heading_std,
+            speed_spread: file.speed_spread + SIGMAS * estimate.speed_std,
+        }
+    }
+
+    /// True for an estimate that may be of a velocity in the set.
+    fn holds(&self, estimate: &Estimate) -> bool {
+        let turned = wrap(estimate.heading - self.heading).abs();
+        let faster = (estimate.speed - self.speed).abs();
+        turned <= self.heading_spread + SIGMAS * estimate.heading_std + ROUNDING
+            && faster <= self.speed_spread + SIGMAS * estimate.speed_std + ROUNDING
+    }
+}
+
+/// The track of one target.
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    file: ShipTrack,
+    sensor: Sensor,
+    filter: Option<Filter>,
+    estimate: Estimate,
+    anchor: Anchor,
+}
+
+impl Track {
+    /// A target as the file has it, before any report.
+    pub fn new(file: &ShipTrack, sensor: &Sensor) -> Self {
+        let estimate = Estimate {
+            time: 0.0,
+            position: file.pose.position,
+            position_std: file.position_std,
+            heading: file.pose.heading,
+            speed: file.speed,
+            heading_std: 0.0,
+            speed_std: 0.0,
+        };
+        Self {
+            anchor: Anchor::at(&estimate, file),
+            file: file.clone(),
+            sensor: sensor.clone(),
+            filter: None,
+            estimate,
+        }
+    }
+
+    /// Takes in the true state: the sensor is exact.
+    pub fn know(&mut self, time: f64, ship: &SteadyShip) {
+        self.estimate = Estimate {
+            time,
+            position: ship.pose.position,
+            position_std: self.file.position_std,
+            heading: ship.pose.heading,
+            speed: ship.speed,
+            heading_std: 0.0,
+            speed_std: 0.0,
+        };
+    }
+
+    /// Takes in a report. One that is older than the last is left out.
+    pub fn hear(&mut self, report: &Report) {
+        let assumed = &self.sensor.assumed;
+        let std = assumed.position.max(LEAST_STD_M);
+        let position = (report.position, Matrix2::identity() * (std * std));
+        let unknown = Matrix2::identity() * (ANY_VELOCITY * ANY_VELOCITY);
+        let velocity = (report.velocity).map(|v| (v, velocity_covariance(assumed, v)));
+        let filter = match &mut self.filter {
+            Some(filter) if report.time < filter.time => return,
+            Some(filter) => {
+                filter.predict(report.time);
+                filter.update(0, position.0, position.1);
+                if let Some((velocity, covariance)) = velocity {
+                    filter.update(2, velocity, covariance);
+                }
+                filter
+            }
+            None => self.filter.insert(Filter::new(
+                report.time,
+                position,
+                velocity.unwrap_or((Vector::zeros(), unknown)),
+                self.sensor.acceleration * self.sensor.acceleration,
+            )),
+        };
+        let velocity = filter.velocity();
+        let speed = velocity.norm();
+        let ahead = velocity.try_normalize(ROUNDING).unwrap_or_else(Vector::x);
+        let std_along = |axis: Vector| {
+            let variance = axis.dot(&(filter.velocity_variance() * axis));
+            variance.max(0.0).sqrt()
+        };
+        self.estimate = Estimate {
+            time: report.time,
+            position: filter.position(),
+            position_std: filter.position_std(),
+            heading: heading_of(ahead),
+            speed,
+            heading_std: (std_along(to_port(ahead)) / speed.max(ROUNDING))
+                .min(std::f64::consts::PI),
+            speed_std: std_along(ahead),
+        };
+    }
+
+    /// Begins the velocity set anew about the present estimate.
+    pub fn anchor(&mut self) {
+        self.anchor = Anchor::at(&self.estimate, &self.file);
+    }
+
+    pub fn estimate(&self) -> &Estimate {
+        &self.estimate
+    }
+
+    /// The set for a plan that starts at `time`. Its velocities stay as they are as long as they
+    /// hold the present estimate. Its disc of positions holds every motion since the last report,
+    /// and during the `delay` of a plan also in the first one: each set then holds the next one.
+    pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
+        if !self.anchor.holds(&self.estimate) {
+            self.anchor();
+        }
+        let age = (time - self.estimate.time).max(0.0);
+        let pose = Pose::new(self.estimate.position, self.anchor.heading);
+        let mut ship = ShipTrack {
+            pose,
+            speed: self.anchor.speed,
+            position_std: self.estimate.position_std,
+            speed_spread: self.anchor.speed_spread,
+            course_spread: self.anchor.heading_spread.min(std::f64::consts::PI),
+            kept_velocities: None,
+            ..self.file.clone()
+        };
+        let middle = ship.velocity();
+        let reach = |v: &Vector| (v - middle).norm();
+        // the widest set within the age
+        let unseen = age.max(delay);
+        let sets = ship.outer_velocity_sets(ship.turn_rate, unseen.max(ROUNDING));
+        let velocities = sets.iter().find(|set| set.until >= unseen);
+        let widest = velocities.and_then(|set| set.velocities.as_polygon());
+        let farthest = widest.map_or(f64::INFINITY, |set| {
+            set.vertices().iter().map(reach).fold(0.0, f64::max)
+        });
+        if unseen > 0.0 {
+            ship.position_std += farthest * unseen / SIGMAS;
+        }
+        ship.pose.position += middle * age;
+        ship
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::radians_from_deg;
+    use crate::scenario::{Noise, SensorKind};
+    use crate::simulation::closed_loop::stream::{Purpose, normal, stream};
+    use crate::vessel::Hull;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Without noise of acceleration the filter is the least-squares line through all positions.
+    #[test]
+    fn the_filter_is_the_least_squares_line_through_all_positions() {
+        let mut rng = stream(4, Purpose::Sensor, "filter");
+        let std = 7.0;
+        let (times, prior) = ([0.0, 3.0, 4.5, 9.0, 15.0, 21.0], ANY_VELOCITY);
+        let points: Vec<Vector> = times
+            .iter()
+            .map(|t| {
+                let noise = Vector::new(normal(&mut rng), normal(&mut rng));
+                Vector::new(100.0, -40.0) + Vector::new(3.0, 5.0) * *t + noise * std
+            })
+            .collect();
+        let noise = Matrix2::identity() * (std * std);
+        let unknown = Matrix2::identity() * (prior * prior);
+        let mut filter = Filter::new(0.0, (points[0], noise), (Vector::zeros(), unknown), 0.0);
+        for (time, point) in times.iter().zip(&points).skip(1) {
+            filter.predict(*time);
+            filter.update(0, *point, noise);
+        }
+        // rows: position at t = 0, velocity; weighted by the standard deviations, and the prior
+        let rows = times.len() + 1;
+        let last = times[times.len() - 1];
+        let line = DMatrix::from_fn(rows, 2, |i, j| match (i < times.len(), j) {
+            (true, 0) => 1.0 / std,
+            (true, _) => (times[i] - last) / std,
+            (false, 0) => 0.0,
+            (false, _) => 1.0 / prior,
+        });
+        for axis in 0..2 {
+            let seen = DVector::from_fn(rows, |i, _| points.get(i).map_or(0.0, |p| p[axis] / std));
+            let normal_matrix = line.transpose() * &line;
+            let inverse = normal_matrix.try_inverse().expect("regular");
+            let best = &inverse * line.transpose() * seen;
+            assert!((filter.state[axis] - best[0]).abs() < 1e-8);
+            assert!((filter.state[axis + 2] - best[1]).abs() < 1e-8);
+            assert!((filter.covariance[(axis, axis)] - inverse[(0, 0)]).abs() < 1e-8);
+            assert!((filter.covariance[(axis, axis + 2)] - inverse[(0, 1)]).abs() < 1e-8);
+            assert!((filter.covariance[(axis + 2, axis + 2)] - inverse[(1, 1)]).abs() < 1e-8);
+        }
+    }
+
+    fn file() -> ShipTrack {
+        ShipTrack {
+            speed_spread: 0.4,
+            course_spread: radians_from_deg(5.0),
+            ..ShipTrack::exact(Pose::new(Vector::zeros(), 0.5), 5.0, Hull::new(60.0, 12.0))
+        }
+    }
+
+    fn sensor() -> Sensor {
+        let noise = Noise {
+            position: 12.0,
+            course: radians_from_deg(6.0),
+            speed: 0.5,
+        };
+        Sensor {
+            kind: SensorKind::Ais { class_a: true },
+            noise,
+            assumed: noise,
+            acceleration: 0.02,
+            ..Sensor::EXACT
+        }
+    }
+
+    /// The disc and the velocities hold the true motion, whatever it does within its velocities.
+    #[test]
+    fn the_set_holds_every_motion_since_the_last_report() {
+        let mut track = Track::new(&file(), &Sensor::EXACT);
+        track.know(0.0, &SteadyShip::on_track(&file(), 0.0));
+        let set = track.set_at(15.0, 1.0);
+        assert_eq!((set.speed, set.speed_spread), (5.0, 0.4));
+        let reach = SIGMAS * set.position_std;
+        for v in file().outer_velocity_set().vertices() {
+            assert!((v * 15.0 - set.pose.position).norm() <= reach + 1e-9);
+        }
+        assert!(reach < 15.0 * 0.7);
+        assert_eq!(track.set_at(0.0, 0.0).position_std, 0.0);
+        assert_eq!(
+            track.set_at(0.0, 2.0).position_std,
+            track.set_at(2.0, 2.0).position_std
+        );
+    }
+
+    #[test]
+    fn a_small_alteration_keeps_the_velocities_and_a_large_one_begins_them_anew() {
+        let mut track = Track::new(&file(), &Sensor::EXACT);
+        let mut ship = SteadyShip::on_track(&file(), 0.0);
+        ship.pose.heading += radians_from_deg(4.9);
+        track.know(20.0, &ship);
+        assert_eq!(track.set_at(20.0, 0.0).pose.heading, 0.5);
+        ship.pose.heading += radians_from_deg(1.0);
+        track.know(40.0, &ship);
+        assert_eq!(track.set_at(40.0, 0.0).pose.heading, ship.pose.heading);
+    }
+
+    #[test]
+    fn the_estimate_of_a_steady_ship_settles_and_is_as_good_as_it_says() {
+        let (mut inside, mut narrow) = (0, 0);
+        for seed in 0..200 {
+            let mut rng = stream(seed, Purpose::Sensor, "steady");
+            let mut track = Track::new(&file(), &sensor());
+            for k in 0..20 {
+                let time = f64::from(k) * 4.0;
+                let truth = SteadyShip::on_track(&file(), time);
+                let noise = &sensor().noise;
+                let mut off = |std: f64| std * normal(&mut rng);
+                let position =
+                    truth.pose.position + Vector::new(off(noise.position), off(noise.position));
+                let heading = truth.pose.heading + off(noise.course);
+                let velocity = crate::frame::direction(heading) * (truth.speed + off(noise.speed));
+                track.hear(&Report {
+                    time,
+                    arrives: time,
+                    position,
+                    velocity: Some(velocity),
+                });
+            }
+            let (truth, found) = (SteadyShip::on_track(&file(), 76.0), track.estimate());
+            let off = (truth.pose.position - found.position).norm();
+            let faster = (truth.speed - found.speed).abs();
+            inside +=
+                usize::from(off <= 3.0 * found.position_std && faster <= 3.0 * found.speed_std);
+            narrow += usize::from(found.position_std < 6.0 && found.speed_std < 0.3);
+        }
+        assert!(inside >= 190 && narrow == 200, "{inside} {narrow}");
+    }
+}

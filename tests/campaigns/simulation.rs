@@ -1,0 +1,289 @@
+//! Random meetings sailed in the closed loop, against what was asked for.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use searoom::document::SimulationDocument;
+use searoom::frame::radians_from_deg;
+use searoom::scenario::{
+    Behaviour, Compliance, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
+};
+use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+
+use super::statistics::{failure_bound, quantile};
+use super::{Report, Seeds};
+
+/// What a target does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Truth {
+    /// Keeps course and speed
+    Constant,
+    /// Another random course and speed within its spreads every 20 s
+    Random,
+    /// Another extreme course and speed within its spreads every 20 s
+    Extremes,
+    /// Of its courses and speeds those that come nearest
+    Pursuit,
+    /// Turns 40 degrees to starboard 300 s before the closest approach
+    GivesWay,
+    /// The same 120 s before
+    GivesWayLate,
+    /// Turns 40 degrees to port 120 s before
+    TurnsToPort,
+}
+
+/// What own ship sees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Seen {
+    /// The truth
+    Exact,
+    /// Every 4 s with 12 m, 6 degrees and 0.5 m/s
+    Noise,
+    /// AIS class A with drop-outs of 60 s every 300 s
+    Ais,
+    /// A position every 3 s with 20 m
+    Radar,
+}
+
+/// How own ship moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Ship {
+    /// Exactly on its plan
+    Kinematic,
+    /// With a time constant
+    FirstOrder,
+    /// With a rudder
+    Nomoto,
+}
+
+/// How the meetings are sailed.
+#[derive(Debug, Clone, Copy)]
+pub struct How {
+    pub truth: Truth,
+    /// The spreads of extreme and random targets are exceeded by this factor.
+    pub factor: f64,
+    pub seen: Seen,
+    pub ship: Ship,
+    /// False where own ship sails its first plan to the end.
+    pub replan: bool,
+}
+
+impl How {
+    /// Targets do what the sets allow, and are seen as they are.
+    pub fn keeps_assumption(&self) -> bool {
+        let within = matches!(
+            self.truth,
+            Truth::Constant | Truth::Random | Truth::Extremes | Truth::Pursuit
+        );
+        within && self.factor <= 1.0 && self.seen == Seen::Exact && self.ship == Ship::Kinematic
+    }
+
+    fn behaviour(&self) -> Behaviour {
+        let factor = self.factor;
+        let turns = |degrees: f64, before: f64| Behaviour::GivesWay {
+            turn: radians_from_deg(degrees),
+            before,
+            probability: 1.0,
+            turn_rate: radians_from_deg(2.0),
+        };
+        let every = 20.0;
+        match self.truth {
+            Truth::Constant => Behaviour::Constant,
+            Truth::Random => Behaviour::Random { every, factor },
+            Truth::Extremes => Behaviour::Extremes { every, factor },
+            Truth::Pursuit => Behaviour::Pursuit { every: 5.0 },
+            Truth::GivesWay => turns(40.0, 300.0),
+            Truth::GivesWayLate => turns(40.0, 120.0),
+            Truth::TurnsToPort => turns(-40.0, 120.0),
+        }
+    }
+
+    fn sensor(&self) -> Sensor {
+        let noise = |position: f64, course: f64, speed: f64| Noise {
+            position,
+            course: radians_from_deg(course),
+            speed,
+        };
+        let with = |kind, noise, interval| Sensor {
+            kind,
+            noise,
+            assumed: noise,
+            interval,
+            acceleration: 0.02,
+            settle: 60.0,
+            stale: 180.0,
+            ..Sensor::EXACT
+        };
+        let ais = SensorKind::Ais { class_a: true };
+        match self.seen {
+            Seen::Exact => Sensor::EXACT,
+            Seen::Noise => with(ais, noise(12.0, 6.0, 0.5), Some(4.0)),
+            Seen::Ais => Sensor {
+                dropout_every: 300.0,
+                dropout_lasts: 60.0,
+                ..with(ais, noise(10.0, 2.0, 0.3), None)
+            },
+            Seen::Radar => with(SensorKind::Radar, noise(20.0, 0.0, 0.0), Some(3.0)),
+        }
+    }
+
+    fn vessel(&self) -> VesselModel {
+        match self.ship {
+            Ship::Kinematic => VesselModel::Kinematic,
+            Ship::FirstOrder => VesselModel::FirstOrder {
+                course_time: 3.0,
+                speed_time: 5.0,
+            },
+            Ship::Nomoto => VesselModel::Nomoto {
+                gain: 1.0,
+                time: 1.0,
+                rudder: radians_from_deg(35.0),
+                rudder_rate: radians_from_deg(5.0),
+                speed_time: 5.0,
+            },
+        }
+    }
+
+    /// Adds the settings of the loop to a scenario, and for a ship that is steered a margin.
+    pub fn equip(&self, scenario: &mut Scenario, seed: u64) {
+        if self.ship != Ship::Kinematic {
+            scenario.own_ship.tracking_margin = 0.5 * scenario.own_ship.safety_margin;
+        }
+        scenario.simulation = SimulationSettings {
+            seed,
+            replan: if self.replan { 20.0 } else { scenario.horizon },
+            vessel: self.vessel(),
+            sensor: self.sensor(),
+            behaviours: vec![self.behaviour(); scenario.targets.len()],
+            ..SimulationSettings::default()
+        };
+    }
+}
+
+/// Sails a scenario to its end.
+pub fn sail(scenario: Scenario) -> SimulationDocument {
+    let mut simulation = Simulation::new(scenario, false).expect("a scenario for the loop");
+    while !simulation.finished() {
+        simulation.step();
+    }
+    simulation.record()
+}
+
+/// Random meetings of all kinds, `seeds` of each.
+pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
+    let mut report = Report::default();
+    println!("{seeds:?} of each kind, {how:?}\n");
+    println!(
+        "| kind | contacts | at most | both judges | at least | remainders lost | unsafe plans | without a plan | outside the set | least clearance, m | ≥ 0.5 L | turns 50/95 %/most | speeds 50/95 %/most | replaced, other side | J / J of the first plan 50/95 % | off plan, m | plans | plan 50/99 %/most, ms |"
+    );
+    println!("|{}", " --- |".repeat(18));
+    for kind in EncounterKind::ALL {
+        let all: Vec<(u64, SimulationDocument)> = (seeds.clone().into_par_iter())
+            .map(|seed| {
+                let drawn = random_meeting(kind, seed, Placement::Random, meeting).expect("drawn");
+                let mut scenario = drawn.scenario;
+                scenario.compliance = Compliance::Rules;
+                how.equip(&mut scenario, seed);
+                (seed, sail(scenario))
+            })
+            .collect();
+        row(kind.name(), &all, how, &mut report);
+    }
+    println!();
+    report
+}
+
+fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Report) {
+    let count = |of: &dyn Fn(&SimulationDocument) -> usize| -> usize {
+        all.iter().map(|(_, sailed)| of(sailed)).sum()
+    };
+    let share = |p: f64, of: &dyn Fn(&SimulationDocument) -> f64| {
+        let values: Vec<f64> = all.iter().map(|(_, sailed)| of(sailed)).collect();
+        quantile(&values, p)
+    };
+    let contacts = count(&|s| usize::from(s.contact));
+    let content = count(&|s| usize::from(s.conduct.breaks.is_empty()));
+    let clearance = |s: &SimulationDocument| {
+        let targets = s.targets.iter();
+        let least = targets.map(|t| t.least_clearance_m.unwrap_or(f64::NEG_INFINITY));
+        least.fold(f64::INFINITY, f64::min)
+    };
+    let wide = count(&|s| {
+        let length = s
+            .targets
+            .iter()
+            .map(|t| t.length_m)
+            .fold(s.settings.own_length_m, f64::max);
+        usize::from(clearance(s) >= 0.5 * length)
+    });
+    let lost = count(&|s| s.conduct.lost_remainders);
+    let bad = count(&|s| s.conduct.unsafe_plans);
+    let without = count(&|s| s.conduct.without_plan);
+    let outside = count(&|s| s.targets.iter().map(|t| t.outside_sets).sum());
+    let turns = |p| share(p, &|s| s.conduct.turns as f64);
+    let speeds = |p| share(p, &|s| s.conduct.speed_changes as f64);
+    let cost = |p| {
+        share(p, &|s| {
+            s.conduct.cost_m2 / s.conduct.first_plan_cost_m2.unwrap_or(f64::NAN).max(1.0)
+        })
+    };
+    let times: Vec<f64> = (all.iter())
+        .flat_map(|(_, s)| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3))
+        .collect();
+    println!(
+        "| {name} | {contacts}/{} | {:.2} % | {content} | {:.2} % | {lost} | {bad} | {without} | {outside} | {:.1} | {:.2} % | {}/{}/{} | {}/{}/{} | {}, {} | {:.2}/{:.2} | {:.1} | {} | {:.1}/{:.1}/{:.1} |",
+        all.len(),
+        100.0 * failure_bound(contacts, all.len()),
+        100.0 * (1.0 - failure_bound(all.len() - content, all.len())),
+        share(0.0, &clearance),
+        100.0 * wide as f64 / all.len() as f64,
+        turns(0.5),
+        turns(0.95),
+        turns(1.0),
+        speeds(0.5),
+        speeds(0.95),
+        speeds(1.0),
+        count(&|s| s.conduct.replaced_manoeuvres),
+        count(&|s| s.conduct.side_switches),
+        cost(0.5),
+        cost(0.95),
+        share(1.0, &|s| s.conduct.largest_off_plan_m),
+        count(&|s| s.replans.len()),
+        quantile(&times, 0.5),
+        quantile(&times, 0.99),
+        quantile(&times, 1.0),
+    );
+    if how.keeps_assumption() {
+        for (what, found) in [
+            ("contacts", contacts),
+            ("remainders lost", lost),
+            ("unsafe plans", bad),
+            ("cycles without a plan", without),
+            ("targets outside their sets", outside),
+        ] {
+            report.require(found == 0, || format!("{name}: {found} {what}"));
+        }
+    }
+    let mut named: BTreeMap<String, Vec<u64>> = BTreeMap::new();
+    for (seed, sailed) in all {
+        let flags = [
+            (sailed.contact, "contact"),
+            (sailed.conduct.lost_remainders > 0, "remainder lost"),
+            (sailed.conduct.unsafe_plans > 0, "unsafe"),
+            (sailed.conduct.without_plan > 0, "without a plan"),
+            (sailed.conduct.side_switches > 0, "other side"),
+            (!sailed.arrived, "not arrived"),
+        ];
+        let flags = flags
+            .into_iter()
+            .filter(|(is, _)| *is)
+            .map(|(_, word)| word.to_owned());
+        for word in flags.chain(sailed.conduct.breaks.iter().cloned()) {
+            named.entry(word).or_default().push(*seed);
+        }
+    }
+    for (what, seeds) in named {
+        let few = &seeds[..seeds.len().min(8)];
+        println!("  {name}: {what}: {}, seeds {few:?}", seeds.len());
+    }
+}

@@ -1,0 +1,159 @@
+//! `searoom simulate` as a user runs it.
+
+use super::program::{HEAD_ON, document, run, searoom, stderr, stdout, text, untimed, write};
+
+const HEAD_ON_FILE: &str = "scenarios/colregs/head-on.toml";
+
+/// The head-on scenario with more keys of its target, and more tables.
+fn head_on(target: &str, tables: &str) -> String {
+    format!("{HEAD_ON}\n{target}\n{tables}\n")
+}
+
+#[test]
+fn a_simulation_says_first_whether_ships_met_and_ends_with_status_0() {
+    let sailed = run(&format!("simulate {HEAD_ON_FILE}")).success();
+    let shown = stdout(&sailed);
+    let first = shown.lines().next().expect("a line");
+    assert!(
+        first.starts_with("Head-on: no contact, every plan safe; arrived after 3"),
+        "{first}"
+    );
+    for word in [
+        "clearance",
+        "head-on",
+        "Sailed: J",
+        "Plans: 1",
+        "Off the plan",
+        "Planning",
+    ] {
+        assert!(shown.contains(word), "{word}: {shown}");
+    }
+}
+
+#[test]
+fn a_contact_ends_with_status_1_and_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ram = "behaviour = { kind = \"track\", points = [\
+               { t_s = 12, position = { east_m = 62, north_m = 0 } }, \
+               { t_s = 19, position = { east_m = 62, north_m = 0 } }] }";
+    let file = write(folder.path(), "ram.toml", head_on(ram, ""));
+    let shown = stdout(&searoom(&["simulate", &file]).code(1));
+    assert!(
+        shown.starts_with("Head-on: CONTACT with target; "),
+        "{shown}"
+    );
+    let found = document(&searoom(&["simulate", &file, "--json"]).code(1));
+    assert_eq!(found["contact"], true);
+    let time = found["targets"][0]["contact_t_s"].as_f64().expect("a time");
+    assert!((5.0..19.0).contains(&time), "{time}");
+}
+
+#[test]
+fn the_same_run_gives_the_same_document_and_another_seed_another() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tables = "[simulation]\nsensor = { kind = \"ais\" }\nvessel = { kind = \"nomoto\" }\n\
+                  current = { speed_mps = 0.4, toward_deg = 40, std_mps = 0.1 }";
+    let file = write(
+        folder.path(),
+        "a.toml",
+        head_on("behaviour = { kind = \"random\" }", tables),
+    );
+    let sail = |seed: &str| {
+        untimed(document(
+            &searoom(&["simulate", &file, "--json", "--seed", seed]).success(),
+        ))
+    };
+    let first = sail("7");
+    assert_eq!(first["settings"]["seed"], 7);
+    assert_eq!(first, sail("7"));
+    assert_ne!(first, sail("8"));
+}
+
+#[test]
+fn every_plan_that_was_followed_verifies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plans = folder.path().join("plans");
+    searoom(&["simulate", HEAD_ON_FILE, "--plans", text(&plans)]).success();
+    let files = std::fs::read_dir(&plans).expect("made");
+    let files: Vec<String> = files
+        .map(|f| text(&f.expect("a file").path()).to_owned())
+        .collect();
+    assert!(files.len() > 10, "{files:?}");
+    let mut args = vec!["verify"];
+    args.extend(files.iter().map(String::as_str));
+    searoom(&args).success();
+}
+
+#[test]
+fn a_shorter_time_ends_the_simulation_before_arrival() {
+    let found =
+        document(&run(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45")).success());
+    assert_eq!(found["duration_s"], 45.0);
+    assert_eq!(found["arrived"], false);
+    assert_eq!(found["replans"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = "behaviour = { kind = \"swims\" }";
+    let tables = "[simulation]\nstep_s = 0\nseed = 1.5\nwater = 1\n\
+                  vessel = { kind = \"nomoto\", rudder_deg = 200 }\n\
+                  sensor = { kind = \"radar\", detection = 0 }\n\
+                  current = { speed_mps = -1 }";
+    let file = write(folder.path(), "bad.toml", head_on(target, tables));
+    for command in ["check", "simulate", "plan"] {
+        let said = stderr(&searoom(&[command, &file]).code(2));
+        for fault in [
+            "targets[0].behaviour.kind: found the text \"swims\"; allowed: \"constant\"",
+            "simulation.step_s: found 0; allowed: a number from 0.01 to 10",
+            "simulation.seed: found 1.5",
+            "simulation.water: found an unknown key",
+            "simulation.vessel.rudder_deg: found 200",
+            "simulation.sensor.detection: found 0; allowed: a number from 0.01 to 1",
+            "simulation.current.speed_mps: found -1",
+        ] {
+            assert!(said.contains(fault), "{command}: {fault}: {said}");
+        }
+    }
+}
+
+#[test]
+fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let long = write(
+        folder.path(),
+        "long.toml",
+        head_on("", "[simulation]\nreplan_s = 5000"),
+    );
+    let sailed = searoom(&[
+        "simulate",
+        "scenarios/paper/figure_9.toml",
+        &long,
+        HEAD_ON_FILE,
+    ]);
+    let sailed = sailed.code(2);
+    let said = stderr(&sailed);
+    assert!(
+        said.contains("figure_9.toml: 1 fault\n  planner.kind: found \"optimal-control\""),
+        "{said}"
+    );
+    assert!(
+        said.contains("simulation.replan_s: found 5000; allowed: at most 400"),
+        "{said}"
+    );
+    assert!(stdout(&sailed).starts_with("Head-on: no contact"));
+}
+
+#[test]
+fn plans_do_not_depend_on_the_tables_of_the_simulation() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tables = "[simulation]\nseed = 3\nsensor = { kind = \"ais\" }";
+    let file = write(
+        folder.path(),
+        "a.toml",
+        head_on("behaviour = { kind = \"pursuit\" }", tables),
+    );
+    let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
+    assert_eq!(plan(&file), plan(HEAD_ON_FILE));
+}

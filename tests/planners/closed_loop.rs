@@ -1,0 +1,211 @@
+//! The closed loop: what it sails is what was planned, seen and judged.
+
+use searoom::document::SimulationDocument;
+use searoom::scenario::{Behaviour, Compliance, Fault, Scenario, SimulationSettings, VesselModel};
+use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+
+use crate::campaigns::replanning;
+use crate::campaigns::simulation::{How, Seen, Ship, Truth, run, sail};
+
+const CONSTANT: How = How {
+    truth: Truth::Constant,
+    factor: 1.0,
+    seen: Seen::Exact,
+    ship: Ship::Kinematic,
+    replan: true,
+};
+
+fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
+    let drawn = random_meeting(kind, seed, Placement::Random, &Meeting::NEAR).expect("drawn");
+    let mut scenario = drawn.scenario;
+    scenario.compliance = Compliance::Rules;
+    how.equip(&mut scenario, seed);
+    scenario
+}
+
+/// A document without its wall clock.
+fn untimed(mut document: SimulationDocument) -> SimulationDocument {
+    document.timing.plan_s.clear();
+    document
+}
+
+#[test]
+fn targets_within_their_sets_are_never_met_and_every_plan_has_a_successor() {
+    for truth in [Truth::Random, Truth::Extremes, Truth::Pursuit] {
+        run(0..5, &Meeting::NEAR, &How { truth, ..CONSTANT }).assert_met();
+    }
+}
+
+/// Two loops of separate code: the one of the campaign makes no simulation.
+#[test]
+fn a_perfect_ship_among_steady_targets_sails_what_planning_again_and_again_gives() {
+    let campaign = replanning::How {
+        behaviour: replanning::Behaviour::Constant,
+        off: 0.0,
+        noise: false,
+        memory: true,
+    };
+    for kind in EncounterKind::ALL {
+        for seed in 0..4 {
+            let mut scenario = meeting(kind, seed, &CONSTANT);
+            let expected = replanning::sail(&scenario, seed, &campaign).expect("a plan");
+            scenario.simulation.delay = 0.0;
+            let found = sail(scenario);
+            let cost = found.conduct.cost_m2 / found.conduct.first_plan_cost_m2.expect("a plan");
+            assert!(
+                (cost - expected.cost).abs() < 1e-6 * expected.cost,
+                "{kind:?} {seed}"
+            );
+            assert_eq!(found.replans.len(), expected.cycles + 1);
+            assert_eq!(found.conduct.turns, expected.turns, "{kind:?} {seed}");
+            assert_eq!(found.conduct.speed_changes, expected.speed_changes);
+            assert_eq!(found.conduct.breaks.len(), {
+                let mut broken = expected.broken.clone();
+                broken.sort_unstable();
+                broken.dedup();
+                broken.len()
+            });
+            // the judge samples every second
+            let least = found.targets[0].least_clearance_m.expect("a number");
+            assert!(least <= expected.apart + 1e-6 && least > expected.apart - 10.0);
+        }
+    }
+}
+
+#[test]
+fn a_perfect_ship_is_never_off_its_plan() {
+    for kind in EncounterKind::ALL {
+        let sailed = sail(meeting(kind, 3, &CONSTANT));
+        assert!(sailed.conduct.largest_off_plan_m < 1e-6 && sailed.arrived);
+        let ends = sailed.sailed.windows(2).map(|pair| {
+            let until = pair[0].start.t_s + pair[0].duration_s;
+            (until - pair[1].start.t_s).abs()
+        });
+        assert!(ends.fold(0.0, f64::max) < 1e-6);
+    }
+}
+
+#[test]
+fn a_ship_with_a_rudder_stays_near_its_plan_and_arrives() {
+    for ship in [Ship::FirstOrder, Ship::Nomoto] {
+        for kind in EncounterKind::ALL {
+            let sailed = sail(meeting(kind, 2, &How { ship, ..CONSTANT }));
+            let off = sailed.conduct.largest_off_plan_m;
+            assert!((1e-3..20.0).contains(&off), "{ship:?} {kind:?}: {off}");
+            assert!(!sailed.contact && sailed.arrived);
+        }
+    }
+}
+
+#[test]
+fn the_same_scenario_is_sailed_the_same_way_twice_and_another_seed_is_not() {
+    let how = How {
+        truth: Truth::Random,
+        seen: Seen::Ais,
+        ship: Ship::Nomoto,
+        ..CONSTANT
+    };
+    let scenario = || meeting(EncounterKind::GiveWay, 5, &how);
+    let first = untimed(sail(scenario()));
+    assert_eq!(first, untimed(sail(scenario())));
+    let mut other = scenario();
+    other.simulation.seed += 1;
+    assert_ne!(first, untimed(sail(other)));
+}
+
+/// Every target and every sensor has random numbers of its own.
+#[test]
+fn another_target_changes_no_other_targets_motion() {
+    let how = How {
+        truth: Truth::Random,
+        ..CONSTANT
+    };
+    let alone = meeting(EncounterKind::GiveWay, 5, &how);
+    let mut two = alone.clone();
+    let mut far = two.targets[0].clone();
+    far.name = "far".to_owned();
+    if let searoom::target::Motion::Ship(ship) = &mut far.motion {
+        ship.pose.position.x += 50_000.0;
+    }
+    two.targets.insert(0, far);
+    two.simulation.behaviours = vec![two.simulation.behaviours[0].clone(); 2];
+    let (alone, two) = (sail(alone), sail(two));
+    assert_eq!(alone.targets[0].track, two.targets[1].track);
+    assert_ne!(two.targets[0].track, two.targets[1].track);
+}
+
+#[test]
+fn a_plan_that_takes_longer_than_the_delay_is_not_followed() {
+    let mut scenario = meeting(EncounterKind::HeadOn, 1, &CONSTANT);
+    scenario.simulation.delay = 0.0;
+    let mut simulation = Simulation::new(scenario, true).expect("fits");
+    while !simulation.finished() {
+        simulation.step();
+    }
+    let sailed = simulation.record();
+    assert!(sailed.replans[0].followed && sailed.replans.len() > 5);
+    assert!(sailed.replans[1..].iter().all(|replan| !replan.followed));
+    assert!(
+        sailed
+            .alarms
+            .iter()
+            .any(|alarm| alarm.alarm == "plan too late")
+    );
+    // the first plan holds to the end
+    assert!(!sailed.contact && sailed.arrived && !sailed.safe);
+    let first = sailed.conduct.first_plan_cost_m2.expect("a plan");
+    assert!((sailed.conduct.cost_m2 - first).abs() < 1e-6 * first);
+}
+
+#[test]
+fn a_target_that_drives_into_own_ship_is_a_contact() {
+    let mut scenario = meeting(EncounterKind::GiveWay, 1, &CONSTANT);
+    let own = scenario.own_ship.pose.position + scenario.own_ship.pose.ahead() * 30.0;
+    scenario.simulation.behaviours = vec![Behaviour::Track(vec![(10.0, own), (15.0, own)])];
+    let sailed = sail(scenario);
+    assert!(sailed.contact && !sailed.safe);
+    let target = &sailed.targets[0];
+    let time = target.contact_t_s.expect("a contact");
+    assert!((5.0..12.0).contains(&time) && target.least_clearance_m < Some(0.0));
+}
+
+#[test]
+fn what_the_loop_cannot_sail_is_refused_with_its_place() {
+    let scenario = || meeting(EncounterKind::HeadOn, 1, &CONSTANT);
+    let refused = |change: &dyn Fn(&mut SimulationSettings)| -> Fault {
+        let mut scenario = scenario();
+        change(&mut scenario.simulation);
+        Simulation::new(scenario, false).expect_err("refused")
+    };
+    let weak = VesselModel::Nomoto {
+        gain: 0.2,
+        time: 1.0,
+        rudder: 0.6,
+        rudder_rate: 0.1,
+        speed_time: 5.0,
+    };
+    for (fault, path, found) in [
+        (refused(&|s| s.replan = 1e4), "simulation.replan_s", "10000"),
+        (refused(&|s| s.delay = 30.0), "simulation.delay_s", "30"),
+        (refused(&|s| s.step = 25.0), "simulation.step_s", "25"),
+        (
+            refused(&|s| s.vessel = weak),
+            "simulation.vessel",
+            "a ship that turns at 250.0 m",
+        ),
+    ] {
+        assert_eq!(fault.path, path);
+        assert!(fault.found.starts_with(found), "{fault}");
+    }
+    let figure_9 = Scenario::read("scenarios/paper/figure_9.toml".as_ref()).expect("read");
+    assert_eq!(
+        Simulation::new(figure_9, false).expect_err("refused").path,
+        "planner.kind"
+    );
+    let sets = "scenarios/uncertainty/changing-velocities.toml";
+    let sets = Scenario::read(sets.as_ref()).expect("read");
+    assert_eq!(
+        Simulation::new(sets, false).expect_err("refused").path,
+        "targets[0]"
+    );
+}
