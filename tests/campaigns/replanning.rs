@@ -331,6 +331,11 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
             report.require(lost == 0 || !how.memory, || {
                 format!("{name}: {lost} remainders are no longer clear")
             });
+            let turned_back = sum(&|s| s.turned_back);
+            report.require(
+                !is_known || 5000 * turned_back <= sum(&|s| s.cycles),
+                || format!("{name}: {turned_back} manoeuvres are begun again"),
+            );
             report.require(unsafe_plans == 0, || {
                 format!("{name}: {unsafe_plans} unsafe plans")
             });

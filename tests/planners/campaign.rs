@@ -42,6 +42,14 @@ fn plans_made_again_and_again_keep_to_the_rules() {
         };
         replanning::run(0..10, &Meeting::NEAR, &how).assert_met();
     }
+    // own ship sails into the domain that its plan has reduced
+    let how = How {
+        behaviour: Behaviour::Constant,
+        off: 0.0,
+        noise: false,
+        memory: true,
+    };
+    replanning::run(277..278, &Meeting::NEAR, &how).assert_met();
 }
 
 #[test]
