@@ -350,7 +350,10 @@ impl Asked {
             scenario.compliance = compliance;
         }
         if let Some(thresholds) = &self.thresholds {
-            scenario.thresholds = Some(Arc::clone(thresholds));
+            let mut thresholds = Thresholds::clone(thresholds);
+            // a property of the scene
+            thresholds.sectors.in_sight = scenario.limits.sectors.in_sight;
+            scenario.thresholds = Some(Arc::new(thresholds));
         }
     }
 }

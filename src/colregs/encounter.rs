@@ -1,6 +1,6 @@
 //! Encounters along the desired trajectory, for planning once (docs/colregs.md 1.3).
 
-use super::role::{Role, SteadyShip, raw_role};
+use super::role::{Role, SteadyShip, role_within};
 use super::thresholds::{RiskLimits, Thresholds};
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
 use crate::target::{Motion, ShipTrack, Target};
@@ -138,7 +138,7 @@ pub fn first_risk(
         }
         let own = steady_on(leg, time);
         let target = SteadyShip::on_track(target, time);
-        raw_role(&own, &target).map(|role| Risk {
+        role_within(&own, &target, &thresholds.sectors).map(|role| Risk {
             role,
             time,
             own,

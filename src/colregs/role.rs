@@ -2,6 +2,7 @@
 
 use crate::frame::{Pose, Vector, radians_from_deg, relative_bearing};
 use crate::target::ShipTrack;
+use std::f64::consts::FRAC_PI_2;
 
 /// Limits that separate the roles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,8 @@ pub struct Sectors {
     pub at_rest: f64,
     /// m/s: overtaking requires that the distance shrinks at least this fast.
     pub closing: f64,
+    /// False in restricted visibility: Rule 19 in place of Rules 13 to 17.
+    pub in_sight: bool,
 }
 
 impl Sectors {
@@ -23,6 +26,7 @@ impl Sectors {
         abaft_the_beam: radians_from_deg(112.5),
         at_rest: 0.2,
         closing: 0.1,
+        in_sight: true,
     };
 }
 
@@ -46,6 +50,12 @@ pub enum Role {
     BothGiveWay,
     /// Each on the other's port side: treated like head-on.
     PortToPort,
+    /// Rule 19(d)(i): in restricted visibility, the target forward of own beam.
+    Rule19Forward,
+    /// Rule 19(d)(ii): in restricted visibility, the target abeam or abaft the beam to starboard.
+    Rule19Starboard,
+    /// The same to port.
+    Rule19Port,
     /// The target does not move: no role.
     Static,
     /// No risk of collision.
@@ -54,7 +64,7 @@ pub enum Role {
 
 impl Role {
     /// The roles that own ship has while there is risk of collision.
-    pub const DUTIES: [Self; 7] = [
+    pub const DUTIES: [Self; 10] = [
         Self::HeadOn,
         Self::GiveWay,
         Self::StandOn,
@@ -62,6 +72,9 @@ impl Role {
         Self::Overtaken,
         Self::BothGiveWay,
         Self::PortToPort,
+        Self::Rule19Forward,
+        Self::Rule19Starboard,
+        Self::Rule19Port,
     ];
 
     /// The role as tables, documents and recordings name it.
@@ -74,6 +87,9 @@ impl Role {
             Self::Overtaken => "overtaken",
             Self::BothGiveWay => "both-give-way",
             Self::PortToPort => "port-to-port",
+            Self::Rule19Forward => "rule-19-forward",
+            Self::Rule19Starboard => "rule-19-starboard",
+            Self::Rule19Port => "rule-19-port",
             Self::Static => "static",
             Self::None => "none",
         }
@@ -140,6 +156,15 @@ pub fn role_within(own: &SteadyShip, target: &SteadyShip, sectors: &Sectors) -> 
     let aspect = relative_bearing(&target.pose, own.pose.position);
     let closing = offset.dot(&(own.velocity() - target.velocity())) / range > sectors.closing;
     let overtaking = closing && aspect.abs() > sectors.abaft_the_beam;
+    if !sectors.in_sight {
+        return Some(match bearing {
+            // forward of the beam, other than one that own ship overtakes
+            b if b.abs() < FRAC_PI_2 && overtaking => Role::Overtaking,
+            b if b.abs() < FRAC_PI_2 => Role::Rule19Forward,
+            b if b > 0.0 => Role::Rule19Starboard,
+            _ => Role::Rule19Port,
+        });
+    }
     let overtaken = closing && bearing.abs() > sectors.abaft_the_beam;
     // two ships astern of each other open; the tie is decided all the same, so that the list is
     // total
@@ -317,7 +342,26 @@ pub(super) mod tests {
             Role::StandOn => meets && !ahead && !b && a,
             Role::BothGiveWay => meets && !ahead && b && a,
             Role::PortToPort => meets && !ahead && !b && !a,
+            Role::Rule19Forward | Role::Rule19Starboard | Role::Rule19Port => false,
         }
+    }
+
+    /// In restricted visibility the bearing alone decides, but for a ship that is overtaken.
+    #[test]
+    fn in_restricted_visibility_the_bearing_decides() {
+        let own = ship(0.0, 0.0, 0.0, 6.0);
+        let sectors = Sectors {
+            in_sight: false,
+            ..Sectors::STANDARD
+        };
+        let role = |x, y, heading, speed| role_within(&own, &ship(x, y, heading, speed), &sectors);
+        assert_eq!(role(500.0, 0.0, PI, 6.0), Some(Role::Rule19Forward));
+        assert_eq!(role(300.0, 400.0, -1.0, 6.0), Some(Role::Rule19Forward));
+        assert_eq!(role(500.0, 0.0, 0.0, 2.0), Some(Role::Overtaking));
+        assert_eq!(role(0.0, -400.0, 1.0, 9.0), Some(Role::Rule19Starboard));
+        assert_eq!(role(-300.0, -400.0, 1.0, 9.0), Some(Role::Rule19Starboard));
+        assert_eq!(role(-300.0, 400.0, -1.0, 9.0), Some(Role::Rule19Port));
+        assert_eq!(role(500.0, 0.0, 0.0, 0.1), Some(Role::Static));
     }
 
     #[test]

@@ -36,10 +36,10 @@ pub struct RoleDuties {
     pub keeps_clear: bool,
     /// Keeps course and speed: Rule 17, and the overtaken ship.
     pub stands_on: bool,
-    /// Alters course not to port: Rules 14(a), 15 and 17(c).
-    pub no_port_turn: bool,
-    /// Heads not to port of its course before the target has passed.
-    pub no_port_heading: bool,
+    /// Side to which own ship does not alter course: Rules 14(a), 15, 17(c) and 19(d).
+    pub no_turn_to: Option<Side>,
+    /// Side of its course to which own ship does not head before the target has passed.
+    pub no_heading_to: Option<Side>,
     /// Passes port to port.
     pub port_to_port: bool,
     /// Crossing ahead of the target.
@@ -77,11 +77,18 @@ const NONE: RoleDuties = RoleDuties {
     rule: None,
     keeps_clear: false,
     stands_on: false,
-    no_port_turn: false,
-    no_port_heading: false,
+    no_turn_to: None,
+    no_heading_to: None,
     port_to_port: false,
     crossing_ahead: CrossingAhead::Allowed,
     closed_side: ClosedSide::None,
+};
+
+/// Rule 19(d), without the side.
+const RULE_19: RoleDuties = RoleDuties {
+    rule: Some(19),
+    keeps_clear: true,
+    ..NONE
 };
 
 impl Role {
@@ -91,8 +98,8 @@ impl Role {
             Self::HeadOn | Self::PortToPort => RoleDuties {
                 rule: Some(14),
                 keeps_clear: true,
-                no_port_turn: true,
-                no_port_heading: true,
+                no_turn_to: Some(Side::Port),
+                no_heading_to: Some(Side::Port),
                 port_to_port: true,
                 closed_side: ClosedSide::Starboard,
                 ..NONE
@@ -100,7 +107,7 @@ impl Role {
             Self::GiveWay => RoleDuties {
                 rule: Some(15),
                 keeps_clear: true,
-                no_port_turn: true,
+                no_turn_to: Some(Side::Port),
                 crossing_ahead: CrossingAhead::Forbidden,
                 closed_side: ClosedSide::Ahead,
                 ..NONE
@@ -125,9 +132,24 @@ impl Role {
             Self::StandOn => RoleDuties {
                 rule: Some(17),
                 stands_on: true,
-                no_port_turn: true,
-                no_port_heading: true,
+                no_turn_to: Some(Side::Port),
+                no_heading_to: Some(Side::Port),
                 ..NONE
+            },
+            Self::Rule19Forward => RoleDuties {
+                no_turn_to: Some(Side::Port),
+                no_heading_to: Some(Side::Port),
+                ..RULE_19
+            },
+            Self::Rule19Starboard => RoleDuties {
+                no_turn_to: Some(Side::Starboard),
+                no_heading_to: Some(Side::Starboard),
+                ..RULE_19
+            },
+            Self::Rule19Port => RoleDuties {
+                no_turn_to: Some(Side::Port),
+                no_heading_to: Some(Side::Port),
+                ..RULE_19
             },
             Self::Static | Self::None => NONE,
         }
@@ -176,7 +198,9 @@ pub struct Duty {
     /// [`APPARENT_TIME`].
     pub keeps_clear: bool,
     /// It must not be to port.
-    pub starboard_alone: bool,
+    pub no_port_turn: bool,
+    /// It must not be to starboard.
+    pub no_starboard_turn: bool,
     /// Less speed may replace a turn: no target comes head-on.
     pub may_slow: bool,
     /// Course and speed are kept while that is safe: some target gives way, and own ship to none.
@@ -190,7 +214,8 @@ impl Duty {
         let keeps_clear = any(|d| d.keeps_clear);
         Self {
             keeps_clear,
-            starboard_alone: any(|d| d.no_port_turn),
+            no_port_turn: any(|d| d.no_turn_to == Some(Side::Port)),
+            no_starboard_turn: any(|d| d.no_turn_to == Some(Side::Starboard)),
             may_slow: !any(|d| d.port_to_port),
             stands_on: !keeps_clear && any(|d| d.stands_on),
         }
@@ -198,15 +223,16 @@ impl Duty {
 
     /// True without any requirement.
     pub fn is_none(self) -> bool {
-        !(self.keeps_clear || self.starboard_alone || self.stands_on)
+        !(self.keeps_clear || self.no_port_turn || self.no_starboard_turn || self.stands_on)
     }
 
     /// Allowed sides of the first alteration.
     pub fn sides(self) -> &'static [Side] {
-        if self.starboard_alone {
-            &[Side::Starboard]
-        } else {
-            &Side::BOTH
+        match (self.no_port_turn, self.no_starboard_turn) {
+            (true, true) => &[],
+            (true, false) => &[Side::Starboard],
+            (false, true) => &[Side::Port],
+            (false, false) => &Side::BOTH,
         }
     }
 }
@@ -219,7 +245,7 @@ mod tests {
     fn the_strictest_role_decides() {
         let of = |roles: &[Role]| {
             let d = Duty::of(roles.iter().copied());
-            (d.keeps_clear, d.starboard_alone, d.stands_on)
+            (d.keeps_clear, d.no_port_turn, d.stands_on)
         };
         assert_eq!(of(&[]), (false, false, false));
         assert_eq!(of(&[Role::None, Role::Static]), (false, false, false));
@@ -234,6 +260,10 @@ mod tests {
         assert_eq!(of(&[Role::Overtaking, Role::StandOn]), (true, true, false));
         let one = |role: Role| Duty::of(std::iter::once(role));
         assert_eq!(one(Role::StandOn).sides(), [Side::Starboard]);
+        assert_eq!(one(Role::Rule19Forward).sides(), [Side::Starboard]);
+        assert_eq!(one(Role::Rule19Starboard).sides(), [Side::Port]);
+        let both = [Role::Rule19Starboard, Role::Rule19Port];
+        assert!(Duty::of(both.iter().copied()).sides().is_empty());
         assert_eq!(one(Role::Overtaking).sides(), Side::BOTH);
         assert!(one(Role::GiveWay).may_slow && !one(Role::HeadOn).may_slow);
         assert!(one(Role::None).is_none());

@@ -8,9 +8,11 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
-/// The first turn by Rules 14 and 15: to starboard where own ship meets head-on or gives way.
+/// The first turn by Rules 14, 15 and 19(d)(i): to starboard where own ship meets head-on, gives
+/// way, or does not see a ship forward of its beam.
 pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
-    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    let roles = [Role::HeadOn, Role::GiveWay, Role::Rule19Forward];
+    let alters = |s: &TargetSets| roles.contains(&s.encounter.role);
     sets.iter().any(alters).then_some(Side::Starboard)
 }
 

@@ -20,6 +20,7 @@ pub(super) struct PlannerTable {
     pub(super) max_risk: Option<f64>,
     pub(super) deadline: Option<f64>,
     ample_time: Option<f64>,
+    in_sight: Option<bool>,
     risk_time: Option<f64>,
     risk_distance: Option<f64>,
 }
@@ -33,6 +34,7 @@ impl PlannerTable {
         limits.score.ample_time = ample.unwrap_or(limits.score.ample_time);
         limits.risk.time = risk.unwrap_or(limits.risk.time);
         limits.risk.distance = self.risk_distance;
+        limits.sectors.in_sight = self.in_sight.unwrap_or(true);
         if limits != Thresholds::STANDARD {
             limits.name = "searoom, with the limits of the scenario".into();
         }
@@ -52,6 +54,7 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
         time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
         max_risk: table.number("max_risk", limits::RISK),
         deadline: table.number("deadline_s", limits::DURATION),
+        in_sight: table.choice("visibility", &[("good", true), ("restricted", false)]),
         ample_time: table.number("ample_time_s", limits::BEFORE_CPA),
         risk_time: table.number("tcpa_limit_s", limits::BEFORE_CPA),
         risk_distance: table.number("cpa_limit_m", limits::DISTANCE),

@@ -11,6 +11,7 @@ fn run(text: &str) -> Run {
 #[test]
 fn no_rule_is_broken_where_none_need_be() {
     for text in [
+        include_str!("../faults/rule-19.toml"),
         include_str!("../faults/rules-corner.toml"),
         include_str!("../faults/rules-later-role.toml"),
         include_str!("../faults/rules-length-of-one.toml"),
@@ -24,6 +25,43 @@ fn no_rule_is_broken_where_none_need_be() {
         for report in run.judged_conduct().iter().flatten() {
             let broken: Vec<_> = report.broken().collect();
             assert!(broken.is_empty(), "{title}: {broken:?}");
+        }
+    }
+}
+
+/// Ships that come from any side in restricted visibility, and the side to which own ship turns.
+#[test]
+fn in_restricted_visibility_own_ship_turns_away() {
+    let scene = include_str!("../faults/rule-19.toml");
+    for (from, role, starboard) in [
+        ((1500.0, 1500.0, 180.0, 5.0), Role::Rule19Forward, true),
+        ((1500.0, -1500.0, 0.0, 5.0), Role::Rule19Forward, true),
+        ((2800.0, 0.0, 270.0, 5.0), Role::Rule19Forward, true),
+        ((-300.0, -1500.0, 50.0, 8.0), Role::Rule19Starboard, false),
+        ((-300.0, 1500.0, 130.0, 8.0), Role::Rule19Port, true),
+    ] {
+        let (east, north, course, speed) = from;
+        let text = scene.replace(
+            "east_m = 1500.0, north_m = 1500.0",
+            &format!("east_m = {east:?}, north_m = {north:?}"),
+        );
+        let text = text.replace(
+            "course_deg = 180.0\nspeed_mps = 5.0",
+            &format!("course_deg = {course:?}\nspeed_mps = {speed:?}"),
+        );
+        let run = run(&text);
+        assert_eq!(run.targets[0].sets.encounter.role, role, "{from:?}");
+        let plan = run.planned.outcome.plan().expect("a plan");
+        let turns = plan.trajectory.segments().iter().map(|s| s.turn_rate);
+        let first = turns.filter(|rate| *rate != 0.0).next();
+        assert!(run.relaxations.is_empty(), "{from:?} {:?}", run.relaxations);
+        assert!(
+            first.is_none_or(|rate| (rate < 0.0) == starboard),
+            "{from:?}"
+        );
+        for report in run.judged_conduct().iter().flatten() {
+            assert_eq!(report.roles[0].role, role);
+            assert!(report.complies(), "{from:?} {report:?}");
         }
     }
 }

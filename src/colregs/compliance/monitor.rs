@@ -314,7 +314,12 @@ pub fn monitors(
         trace.leaves_extremis(),
         trace.alters("R3", |r| r == Role::GiveWay, false, true),
         trace.alters("R4", |r| r == Role::HeadOn, false, false),
-        trace.alters("R5", |r| r == Role::Overtaking, true, true),
+        trace.alters(
+            "R5",
+            |r| r == Role::Overtaking || r.duties().rule == Some(19),
+            true,
+            true,
+        ),
         trace.holds(),
     ]
 }

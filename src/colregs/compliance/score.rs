@@ -11,7 +11,7 @@ use super::samples::{
 };
 use super::{Manoeuvre, RuleViolation};
 use crate::colregs::{APPARENT_SPEED, Role, Thresholds};
-use crate::frame::{deg_from_radians, wrap};
+use crate::frame::{Side, deg_from_radians, wrap};
 
 /// Scores of own ship toward one target; 1 is best. `None` if the rule does not apply.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -311,7 +311,7 @@ impl Act<'_> {
             rule_13: clears(13).then(|| self.rule_13()),
             rule_14: clears(14).then(|| self.rule_14()),
             rule_15: clears(15).then(|| self.rule_15()),
-            rule_16: (duties.keeps_clear && !duties.port_to_port).then(|| self.rule_16()),
+            rule_16: (clears(13) || clears(15)).then(|| self.rule_16()),
             rule_17: duties.stands_on.then(|| self.rule_17()),
         }
     }
@@ -336,16 +336,18 @@ impl Act<'_> {
         }
     }
 
-    fn turned(&self, least: f64, port_alone: bool) -> Option<&EncounterSample> {
+    /// The first sample more than `least` radians off the first course, to either side.
+    fn turned(&self, least: f64) -> Option<&EncounterSample> {
+        let turned = |side| self.turned_to(least, side);
+        let sides = Side::BOTH.into_iter().filter_map(turned);
+        sides.min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+
+    /// The first sample more than `least` radians off the first course, to a side.
+    fn turned_to(&self, least: f64, side: Side) -> Option<&EncounterSample> {
         let from = self.first().own.pose.heading;
-        self.samples.iter().find(|s| {
-            let turn = wrap(s.own.pose.heading - from);
-            if port_alone {
-                turn > least
-            } else {
-                turn.abs() > least
-            }
-        })
+        let turn = |s: &EncounterSample| side.turn_sign() * wrap(s.own.pose.heading - from);
+        self.samples.iter().find(|s| turn(s) > least)
     }
 
     /// First time at which a ship that stands on may act: from stage 3 on, Rule 17(a)(ii), in
@@ -376,7 +378,7 @@ impl Act<'_> {
         };
         let port_turn =
             |rule: &'static str, violation: &mut dyn FnMut(&'static str, f64, String)| {
-                if let Some(sample) = self.turned(s.steady, true) {
+                if let Some(sample) = self.turned_to(s.steady, Side::Port) {
                     violation(
                         rule,
                         sample.time,
@@ -412,7 +414,7 @@ impl Act<'_> {
             Role::StandOn | Role::Overtaken => {
                 let freed = self.may_act_from();
                 let must_hold = |sample: &&EncounterSample| sample.time < freed;
-                if let Some(sample) = self.turned(s.hold, false).filter(must_hold) {
+                if let Some(sample) = self.turned(s.hold).filter(must_hold) {
                     let hold = deg_from_radians(s.hold);
                     let what = format!("does not hold its course within {hold:.0} deg");
                     violation("17(a)(i)", sample.time, what);
@@ -436,6 +438,15 @@ impl Act<'_> {
                 if !(closest.apart > 0.0) {
                     let what = "holds on into a collision".to_owned();
                     violation("17(b)", closest.time, what);
+                }
+            }
+            Role::Rule19Forward => port_turn("19(d)(i)", &mut violation),
+            Role::Rule19Starboard | Role::Rule19Port => {
+                let to = self.role.duties().no_turn_to;
+                let toward = to.and_then(|side| self.turned_to(s.steady, side));
+                if let Some(sample) = toward {
+                    let what = "turns toward a ship abeam or abaft the beam".to_owned();
+                    violation("19(d)(ii)", sample.time, what);
                 }
             }
             Role::None | Role::Static => {}

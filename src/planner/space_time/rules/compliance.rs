@@ -3,7 +3,7 @@
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
 use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
-use crate::frame::{Pose, Vector, cross, heading_of, wrap};
+use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::departure::until as motion_until;
 use crate::target::ShipTrack;
@@ -31,8 +31,9 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
         }
         let nearest = Nearest::of(&problem.own.hull, encountered, motion);
         let passes = nearest.drifts_to_port || !duties.port_to_port;
-        let heads =
-            !duties.no_port_heading || keeps_off_port(problem, off_route, nearest.time + PASSED_S);
+        let until = nearest.time + PASSED_S;
+        let off = |side| keeps_off(problem, off_route, side, until);
+        let heads = duties.no_heading_to.is_none_or(off);
         let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
         passes && heads && plain
     })
@@ -111,9 +112,9 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     })
 }
 
-/// True unless own ship heads to port both of its course before the departure and of the path's
+/// True unless own ship heads to a side both of its course before the departure and of the path's
 /// course there, until a time.
-fn keeps_off_port(problem: &Problem, off_route: &[Segment], until: f64) -> bool {
+fn keeps_off(problem: &Problem, off_route: &[Segment], side: Side, until: f64) -> bool {
     let before = match problem.under_way {
         Some(begun) => begun.first_heading,
         None => off_route.first().map_or(0.0, |s| s.start.heading),
@@ -124,7 +125,7 @@ fn keeps_off_port(problem: &Problem, off_route: &[Segment], until: f64) -> bool 
                 .desired
                 .nearest(pose.position, s.start_time, problem.time_weight);
             let path = heading_of(problem.desired.legs()[at.leg].direction);
-            let beyond = |course: f64| wrap(pose.heading - course) > ON_COURSE;
+            let beyond = |course: f64| side.turn_sign() * wrap(pose.heading - course) > ON_COURSE;
             !(beyond(before) && beyond(path))
         })
     })
