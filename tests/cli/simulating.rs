@@ -157,3 +157,17 @@ fn plans_do_not_depend_on_the_tables_of_the_simulation() {
     let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
     assert_eq!(plan(&file), plan(HEAD_ON_FILE));
 }
+
+#[test]
+fn the_shipped_closed_loops_are_sailed_without_contact() {
+    let found = document(&run("simulate scenarios/closed-loop --json").success());
+    let all = found["simulations"].as_array().expect("a list");
+    assert_eq!(all.len(), 6);
+    for sailed in all {
+        let title = &sailed["scenario"];
+        assert_eq!(sailed["safe"], true, "{title}");
+        assert_eq!(sailed["arrived"], true, "{title}");
+        assert_eq!(sailed["conduct"]["side_switches"], 0, "{title}");
+        assert_eq!(sailed["conduct"]["within_tracking_margin"], true, "{title}");
+    }
+}
