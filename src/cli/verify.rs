@@ -5,8 +5,10 @@ use std::path::Path;
 use anyhow::anyhow;
 use searoom::document::{VerificationDocument, VerifiedPlanDocument};
 use searoom::input::read_text;
-use searoom::report::verification_text;
-use searoom::verification::{Verification, verify as check};
+use searoom::report::{simulation_verification_text, verification_text};
+use searoom::verification::{
+    SimulationVerification, Verification, is_simulation, verify as check, verify_simulation,
+};
 
 use super::args::VerifyArgs;
 use super::output::Output;
@@ -30,12 +32,20 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
             }
             Some(Ok(Ok(verification))) => {
                 let shown = if args.json {
-                    documents.push(VerifiedPlanDocument::of(name, &verification));
+                    documents.push(match &verification {
+                        Checked::Plan(plan) => VerifiedPlanDocument::of(name, plan),
+                        Checked::Simulation(sailed) => {
+                            VerifiedPlanDocument::of_simulation(name, sailed)
+                        }
+                    });
                     ExitStatus::Good
                 } else {
-                    output.result(&verification_text(&verification, output.colour))
+                    output.result(&match &verification {
+                        Checked::Plan(plan) => verification_text(plan, output.colour),
+                        Checked::Simulation(sailed) => simulation_verification_text(sailed),
+                    })
                 };
-                shown.max(if verification.verified() {
+                shown.max(if verification.is_verified() {
                     ExitStatus::Good
                 } else {
                     ExitStatus::NoPlan
@@ -61,14 +71,35 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     status
 }
 
-fn one(file: &Path) -> anyhow::Result<Verification> {
+/// A document that was checked.
+#[expect(clippy::large_enum_variant, reason = "one per file")]
+enum Checked {
+    Plan(Verification),
+    Simulation(SimulationVerification),
+}
+
+impl Checked {
+    fn is_verified(&self) -> bool {
+        match self {
+            Self::Plan(plan) => plan.verified(),
+            Self::Simulation(sailed) => sailed.violations.is_empty(),
+        }
+    }
+}
+
+fn one(file: &Path) -> anyhow::Result<Checked> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
         read_text(file, PLAN_MEBIBYTES, "a plan document")?
     };
+    let checked = if is_simulation(&text) {
+        verify_simulation(&text).map(Checked::Simulation)
+    } else {
+        check(&text).map(Checked::Plan)
+    };
     // the message already includes its field
-    check(&text).map_err(|error| anyhow!("{error}"))
+    checked.map_err(|error| anyhow!("{error}"))
 }
 
 #[cfg(feature = "recording")]

@@ -33,6 +33,9 @@ const NEW_COURSE_DEG: f64 = 20.0;
 /// Metres per second, and metres: rounding of a target's state in a file.
 const ASSUMED: f64 = 1e-6;
 
+/// A target may have been faster than assumed by this factor, and still be the same ship.
+const FASTEST: f64 = 1.5;
+
 /// Where the velocities of all plans have more vertices, those of the last plan alone are used.
 const MOST_VERTICES: usize = 40;
 
@@ -439,9 +442,10 @@ fn continues(last: &Segment, next: &Segment) -> bool {
 enum Assumed {
     /// At a place that it could reach, with a velocity that it could have.
     Inside,
-    /// With another velocity.
+    /// With another velocity, now or since then.
     OutsideVelocities,
-    /// At a place that it could not reach: its role and its track are those of another ship.
+    /// At a place that no ship of its speed could reach: its role and its track are those of another
+    /// ship.
     OutsidePlaces,
 }
 
@@ -459,7 +463,14 @@ fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) 
     let off = reached.signed_distance(ship.pose.position);
     // negated on purpose: a NaN is outside
     if !(off <= known + ASSUMED * (1.0 + elapsed)) {
-        return Some(Assumed::OutsidePlaces);
+        // a ship that has turned since is where none of the assumed velocities would have taken it
+        let way = (ship.pose.position - then.pose.position).norm();
+        let farthest = FASTEST * (then.speed + then.speed_spread) * elapsed
+            + POSITION_SIGMAS * (then.position_std + ship.position_std);
+        return Some(match way <= farthest {
+            true => Assumed::OutsideVelocities,
+            false => Assumed::OutsidePlaces,
+        });
     }
     let inside = now.signed_distance(ship.velocity()) <= ASSUMED;
     Some(match inside {

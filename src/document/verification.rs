@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::ViolationDocument;
 use super::plan::finite;
-use crate::verification::Verification;
+use crate::evaluation::Violation;
+use crate::verification::{SimulationVerification, Verification};
 
 /// Outcome of a file that is not a plan document.
 const UNREADABLE: &str = "unreadable";
@@ -47,6 +48,14 @@ pub struct MarginDocument {
     pub tcpa_s: Option<f64>,
 }
 
+fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
+    let document = |violation: &Violation| ViolationDocument {
+        what: violation.what.clone(),
+        t_s: finite(violation.time),
+    };
+    found.iter().map(document).collect()
+}
+
 impl VerificationDocument {
     /// Builds the document with its summary.
     pub fn of(plans: Vec<VerifiedPlanDocument>) -> Self {
@@ -74,12 +83,7 @@ impl VerifiedPlanDocument {
             error: None,
             verified: checked.verified(),
             safe: checked.safe(),
-            violations: (checked.violations.iter())
-                .map(|violation| ViolationDocument {
-                    what: violation.what.clone(),
-                    t_s: finite(violation.time),
-                })
-                .collect(),
+            violations: violations(&checked.violations),
             targets: (checked.targets.iter().zip(&checked.claimed_from))
                 .zip(passages)
                 .map(|((target, claimed_from), passage)| MarginDocument {
@@ -94,6 +98,20 @@ impl VerifiedPlanDocument {
                 .collect(),
             min_land_distance_m: land.map(|e| e.min_land_distance),
             min_land_distance_t_s: land.map(|e| e.min_land_distance_time),
+        }
+    }
+
+    /// Builds the entry of a checked simulation.
+    pub fn of_simulation(file: String, checked: &SimulationVerification) -> Self {
+        let verified = checked.violations.is_empty();
+        Self {
+            file,
+            scenario: Some(checked.scenario.clone()),
+            outcome: checked.outcome().to_owned(),
+            verified,
+            safe: verified && checked.safe,
+            violations: violations(&checked.violations),
+            ..Self::default()
         }
     }
 

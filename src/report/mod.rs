@@ -19,5 +19,5 @@ pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, co
 pub use lint::lint_text;
 pub use plan::{no_return_line, no_return_reason, plan_document_text, plan_text, suite_table};
 pub use simulation::simulation_text;
-pub use verification::verification_text;
+pub use verification::{simulation_verification_text, verification_text};
 pub use write::{WriteError, write_atomically};

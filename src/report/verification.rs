@@ -1,12 +1,45 @@
 //! Text of a plan document's verification.
 
 use super::table::{Grid, Tone, or_dash, plain};
-use crate::evaluation::{facts, outcome_word};
+use crate::evaluation::{Violation, facts, outcome_word};
 use crate::text::{printable, short_numbers, tenths};
-use crate::verification::Verification;
+use crate::verification::{SimulationVerification, Verification};
 
 /// Maximum number of violations listed; the rest is counted.
 const LISTED: usize = 20;
+
+/// The first violations, one line each, and the number of the others.
+fn fault_lines(violations: &[Violation]) -> Vec<String> {
+    let mut faults = violations.iter();
+    let listed = faults.by_ref().take(LISTED);
+    let mut lines: Vec<String> = listed
+        .map(|fault| {
+            let what = printable(&fault.what);
+            format!("  at {} s: {what}", thousandths(fault.time))
+        })
+        .collect();
+    let more = faults.count();
+    if more > 0 {
+        lines.push(format!("  and {more} more"));
+    }
+    lines
+}
+
+/// Formats the verdict on a simulation, and all violations.
+pub fn simulation_verification_text(checked: &SimulationVerification) -> String {
+    let verdict = match checked.violations.len() {
+        0 => format!(
+            "verified: {}, least distance {} m",
+            checked.outcome(),
+            tenths(checked.least_clearance)
+        ),
+        1 => "REJECTED, 1 fault".to_owned(),
+        n => format!("REJECTED, {n} faults"),
+    };
+    let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
+    lines.extend(fault_lines(&checked.violations));
+    lines.join("\n")
+}
 
 /// Formats the verdict, the least margin to every target with its time, and all violations.
 pub fn verification_text(checked: &Verification, colour: bool) -> String {
@@ -30,15 +63,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         (Some(_), n) => format!("REJECTED, {n} faults"),
     };
     let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
-    let mut faults = checked.violations.iter();
-    for fault in faults.by_ref().take(LISTED) {
-        let what = printable(&fault.what);
-        lines.push(format!("  at {} s: {what}", thousandths(fault.time)));
-    }
-    let more = faults.count();
-    if more > 0 {
-        lines.push(format!("  and {more} more"));
-    }
+    lines.extend(fault_lines(&checked.violations));
     let Some(evaluation) = &checked.evaluation else {
         return lines.join("\n");
     };

@@ -187,6 +187,8 @@ pub enum Behaviour {
         /// Radians per second.
         turn_rate: f64,
     },
+    /// Plans as own ship does, with own ship as its only target.
+    Mutual,
 }
 
 impl Behaviour {
@@ -199,6 +201,7 @@ impl Behaviour {
             Self::Pursuit { .. } => "pursuit",
             Self::Track(_) => "track",
             Self::GivesWay { .. } => "gives-way",
+            Self::Mutual => "mutual",
         }
     }
 }
@@ -486,20 +489,23 @@ pub(super) fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> 
         Pursuit,
         Track,
         GivesWay,
+        Mutual,
     }
-    const WORDS: [(&str, Kind); 6] = [
+    const WORDS: [(&str, Kind); 7] = [
         ("constant", Kind::Constant),
         ("random", Kind::Random),
         ("extremes", Kind::Extremes),
         ("pursuit", Kind::Pursuit),
         ("track", Kind::Track),
         ("gives-way", Kind::GivesWay),
+        ("mutual", Kind::Mutual),
     ];
     let mut table = field.table("a table with the key kind")?;
     let kind = table.require("kind", "a behaviour")?.choice(&WORDS)?;
     let mut number = |key, range, default| number_or(&mut table, key, range, default);
     let behaviour = match kind {
         Kind::Constant => Behaviour::Constant,
+        Kind::Mutual => Behaviour::Mutual,
         Kind::Random => Behaviour::Random {
             every: number("every_s", TIME_CONSTANT, 20.0)?,
             factor: number("factor", FACTOR, 1.0)?,

@@ -51,6 +51,14 @@ impl ClaimError {
     }
 }
 
+/// Parses a document; the error names the field that is unreadable.
+pub(super) fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ClaimError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let file = serde_path_to_error::deserialize(&mut json).map_err(|error| unread(text, &error))?;
+    json.end().map_err(|error| ClaimError::at(".", error))?;
+    Ok(file)
+}
+
 /// Motion of a document.
 #[derive(Debug, Clone)]
 pub(super) enum ClaimedMotion {
@@ -90,10 +98,7 @@ impl Claim {
 
     /// Parses a document; the error is the first field that is unreadable or invalid.
     pub fn read(text: &str) -> Result<Self, ClaimError> {
-        let mut json = serde_json::Deserializer::from_str(text);
-        let file: PlanFile =
-            serde_path_to_error::deserialize(&mut json).map_err(|error| unread(text, &error))?;
-        json.end().map_err(|error| ClaimError::at(".", error))?;
+        let file: PlanFile = parse(text)?;
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }

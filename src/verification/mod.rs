@@ -27,8 +27,10 @@ mod reached;
 mod risk;
 mod samples;
 mod sets;
+mod simulation;
 
 pub use claim::ClaimError;
+pub use simulation::{SimulationVerification, is_simulation, verify_simulation};
 
 use claim::{Claim, ClaimedMotion};
 

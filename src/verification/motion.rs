@@ -128,7 +128,7 @@ fn pose(start: &StartDocument) -> Pose {
     )
 }
 
-fn segment(segment: &SegmentDocument) -> Segment {
+pub(super) fn segment(segment: &SegmentDocument) -> Segment {
     Segment::new(
         pose(&segment.start),
         segment.start.t_s,

@@ -30,6 +30,8 @@ pub enum Truth {
     GivesWayLate,
     /// Turns 40 degrees to port 120 s before
     TurnsToPort,
+    /// Plans as own ship does
+    Mutual,
 }
 
 /// What own ship sees.
@@ -95,6 +97,7 @@ impl How {
             Truth::GivesWay => turns(40.0, 300.0),
             Truth::GivesWayLate => turns(40.0, 120.0),
             Truth::TurnsToPort => turns(-40.0, 120.0),
+            Truth::Mutual => Behaviour::Mutual,
         }
     }
 

@@ -157,3 +157,62 @@ fn plans_do_not_depend_on_the_tables_of_the_simulation() {
     let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
     assert_eq!(plan(&file), plan(HEAD_ON_FILE));
 }
+
+#[test]
+fn the_shipped_closed_loops_are_sailed_without_contact() {
+    let found = document(&run("simulate scenarios/closed-loop --json").success());
+    let all = found["simulations"].as_array().expect("a list");
+    assert_eq!(all.len(), 6);
+    for sailed in all {
+        let title = &sailed["scenario"];
+        assert_eq!(sailed["safe"], true, "{title}");
+        assert_eq!(sailed["arrived"], true, "{title}");
+        assert_eq!(sailed["conduct"]["side_switches"], 0, "{title}");
+        assert_eq!(sailed["conduct"]["within_tracking_margin"], true, "{title}");
+    }
+}
+
+/// Contacts and distances are computed again from the motions alone.
+#[test]
+fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
+                  current = { speed_mps = 0.3, toward_deg = 10 }";
+    let steered = HEAD_ON.replace(
+        "safety_margin_m",
+        "tracking_margin_m = 20.0\nsafety_margin_m",
+    );
+    let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
+    let steered = write(folder.path(), "steered.toml", steered);
+    for file in [HEAD_ON_FILE, &steered] {
+        let sailed = document(&searoom(&["simulate", file, "--json"]).success());
+        let check = |change: &dyn Fn(&mut serde_json::Value)| {
+            let mut changed = sailed.clone();
+            change(&mut changed);
+            let name = write(folder.path(), "sailed.json", changed.to_string());
+            searoom(&["verify", &name])
+        };
+        let shown = stdout(&check(&|_| {}).success());
+        assert!(
+            shown.starts_with("Head-on: verified: no contact, least distance "),
+            "{shown}"
+        );
+        for (pointer, value) in [
+            ("/contact", true.into()),
+            ("/safe", false.into()),
+            ("/targets/0/least_clearance_m", 400.0.into()),
+            ("/targets/0/contact_t_s", 100.0.into()),
+            ("/targets/0/track/0/north_m", 170.0.into()),
+            ("/sailed/0/start/north_m", 20.0.into()),
+            ("/duration_s", 900.0.into()),
+            ("/replans/1/safe", false.into()),
+        ] {
+            let altered = check(&|document| {
+                *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);
+            });
+            let shown = stdout(&altered.code(1));
+            assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
+        }
+        check(&|document| document["sailed"] = 3.into()).code(2);
+    }
+}

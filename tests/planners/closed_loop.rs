@@ -209,3 +209,29 @@ fn what_the_loop_cannot_sail_is_refused_with_its_place() {
         "targets[0]"
     );
 }
+
+#[test]
+fn two_ships_that_plan_alike_see_each_other_act_and_do_not_meet() {
+    for kind in EncounterKind::ALL {
+        for seed in 0..3 {
+            let truth = Truth::Mutual;
+            let sailed = sail(meeting(kind, seed, &How { truth, ..CONSTANT }));
+            let target = &sailed.targets[0];
+            assert!(!sailed.contact, "{kind:?} {seed}");
+            // a ship that turns has a state in each step, one that changes speed alone has few
+            let acts = matches!(kind, EncounterKind::HeadOn | EncounterKind::StandOn);
+            assert!(!acts || target.track.len() > 2, "{kind:?} {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_target_at_rest_cannot_plan() {
+    let truth = Truth::Mutual;
+    let mut scenario = meeting(EncounterKind::HeadOn, 1, &How { truth, ..CONSTANT });
+    if let searoom::target::Motion::Ship(ship) = &mut scenario.targets[0].motion {
+        ship.speed = 0.0;
+    }
+    let fault = Simulation::new(scenario, false).expect_err("refused");
+    assert_eq!(fault.path, "targets[0].behaviour");
+}

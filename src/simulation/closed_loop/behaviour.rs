@@ -58,7 +58,7 @@ impl TrueTarget {
         let (heading, speed) = (self.middle.pose.heading, self.middle.speed);
         let is_due = time >= self.next_change - INSTANT;
         match &self.behaviour {
-            Behaviour::Constant => {}
+            Behaviour::Constant | Behaviour::Mutual => {}
             Behaviour::Random { every, factor } if is_due => {
                 self.next_change = time + every;
                 let mut within = |spread: f64| factor * spread * self.rng.random_range(-1.0..=1.0);

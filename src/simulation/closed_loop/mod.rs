@@ -4,6 +4,7 @@ mod behaviour;
 mod contact;
 mod cycle;
 mod guidance;
+mod mutual;
 mod own;
 mod record;
 mod sensor;
@@ -14,6 +15,7 @@ mod vessel;
 use behaviour::TrueTarget;
 use contact::Clearance;
 use cycle::Cycle;
+use mutual::OtherBridge;
 use own::Own;
 use sensor::Sight;
 use tracker::Track;
@@ -90,6 +92,8 @@ struct Simulated {
     truth: TrueTarget,
     sight: Sight,
     track: Track,
+    /// Who steers a target that plans as own ship does.
+    bridge: Option<OtherBridge>,
     clearance: Clearance,
     states: Vec<(f64, SteadyShip)>,
     outside_sets: usize,
@@ -121,6 +125,7 @@ impl Simulation {
         let duration = settings.duration.unwrap_or(scenario.horizon);
         check(&scenario, duration)?;
         let exact = settings.sensor.kind == SensorKind::Exact;
+        let mut bridges = mutual::bridges(&scenario)?.into_iter();
         let behaviours = settings.behaviours.iter().cloned();
         let behaviours = behaviours.chain(std::iter::repeat(crate::scenario::Behaviour::Constant));
         let ships = scenario.targets.iter().zip(behaviours);
@@ -130,6 +135,7 @@ impl Simulation {
             let mut simulated = Simulated {
                 name: target.name.clone(),
                 truth: TrueTarget::new(&target.name, ship, behaviour, seed),
+                bridge: bridges.next().flatten(),
                 sight: Sight::new(&settings.sensor, &target.name, seed),
                 track: Track::new(ship, &settings.sensor),
                 clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
@@ -216,16 +222,7 @@ impl Simulation {
         if self.finished() {
             return;
         }
-        self.see();
-        self.activate();
-        if self.time >= self.next_cycle - INSTANT {
-            let (delay, replan) = (self.settings().delay, self.settings().replan);
-            self.next_cycle = self.time + replan;
-            if self.active.end() > self.time + delay + INSTANT {
-                self.cycle(delay);
-            }
-            self.activate();
-        }
+        self.watch();
         let events = [
             self.pending
                 .as_ref()
@@ -240,6 +237,20 @@ impl Simulation {
             step = next;
         }
         self.advance(step);
+    }
+
+    /// Sees the targets, and plans where a plan is due.
+    fn watch(&mut self) {
+        self.see();
+        self.activate();
+        if self.time >= self.next_cycle - INSTANT {
+            let (delay, replan) = (self.settings().delay, self.settings().replan);
+            self.next_cycle = self.time + replan;
+            if self.active.end() > self.time + delay + INSTANT {
+                self.cycle(delay);
+            }
+            self.activate();
+        }
     }
 
     /// Everything that is seen at the present time.
@@ -337,6 +348,9 @@ impl Simulation {
         let now = self.own.steady(&self.active.trajectory, in_plan);
         for target in &mut self.targets {
             target.truth.steer(time, step, &now);
+            if let Some(bridge) = &mut target.bridge {
+                bridge.steer(&mut target.truth.now, &now, step);
+            }
             let ship = target.truth.now;
             let course_and_speed = |ship: &SteadyShip| (ship.pose.heading, ship.speed);
             let before = target.states.last().map(|(_, ship)| course_and_speed(ship));

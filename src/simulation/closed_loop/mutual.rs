@@ -1,0 +1,111 @@
+//! A target that is run by this planner: its own closed loop, with the roles exchanged.
+
+use super::Simulation;
+use crate::colregs::SteadyShip;
+use crate::frame::heading_of;
+use crate::scenario::{Behaviour, Fault, Memory, Scenario, Sensor, SimulationSettings};
+use crate::target::{Motion, ShipTrack, Target};
+use crate::trajectory::DesiredTrajectory;
+use crate::vessel::OwnShip;
+
+/// Speeds of the other ship, fractions of its own speed, as own ship has them by default.
+const SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
+
+/// m/s. A slower ship has no mission.
+const NO_WAY: f64 = 0.1;
+
+/// The closed loop of a target, whose only target is own ship.
+#[derive(Debug)]
+pub(super) struct OtherBridge(Box<Simulation>);
+
+/// The loops of the targets that have one, in the scenario's order.
+pub(super) fn bridges(scenario: &Scenario) -> Result<Vec<Option<OtherBridge>>, Fault> {
+    let behaviours = &scenario.simulation.behaviours;
+    let targets = scenario.targets.iter().enumerate();
+    let bridges = targets.map(
+        |(index, target)| match (behaviours.get(index), target.ship()) {
+            (Some(Behaviour::Mutual), Some(ship)) => {
+                let exchanged = exchanged(scenario, target, ship).ok_or_else(|| {
+                    Fault::new(
+                        format!("targets[{index}].behaviour"),
+                        format_args!("a ship of {} m/s that plans", ship.speed),
+                        format_args!("a speed of at least {NO_WAY} m/s"),
+                    )
+                })?;
+                let simulation = Simulation::new(exchanged, false)?;
+                Ok(Some(OtherBridge(Box::new(simulation))))
+            }
+            _ => Ok(None),
+        },
+    );
+    bridges.collect()
+}
+
+/// The scenario from the target's bridge: it is to keep its course and speed, and knows of own ship
+/// what own ship knows of it.
+fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<Scenario> {
+    if !(ship.speed >= NO_WAY) {
+        return None;
+    }
+    let own = &scenario.own_ship;
+    let way = ship.pose.ahead() * (ship.speed * scenario.horizon);
+    let waypoints = [ship.pose.position, ship.pose.position + way];
+    let larger = (ship.hull.length / own.hull.length).max(1.0);
+    let seen = ShipTrack {
+        pose: own.pose,
+        speed: own.speed,
+        hull: own.hull,
+        ..ship.clone()
+    };
+    Some(Scenario {
+        title: target.name.clone(),
+        horizon: 2.0 * scenario.horizon,
+        own_ship: OwnShip {
+            pose: ship.pose,
+            speed: ship.speed,
+            hull: ship.hull,
+            turning_radius: larger * own.turning_radius,
+            speeds: SPEEDS.map(|factor| factor * ship.speed).to_vec(),
+            ..own.clone()
+        },
+        desired: DesiredTrajectory::new(&waypoints, &[ship.speed]).ok()?,
+        time_weight: ship.speed * ship.speed,
+        targets: vec![Target {
+            name: "own ship".to_owned(),
+            motion: Motion::Ship(seen),
+            representation: target.representation,
+        }],
+        memory: Memory::default(),
+        simulation: SimulationSettings {
+            sensor: Sensor::EXACT,
+            behaviours: Vec::new(),
+            ..scenario.simulation.clone()
+        },
+        ..scenario.clone()
+    })
+}
+
+impl OtherBridge {
+    /// Sees own ship, plans where a plan is due, and sets course and speed of the target for a step
+    /// so that it is on its plan at the end. At the end of its plan it keeps both.
+    pub fn steer(&mut self, ship: &mut SteadyShip, own: &SteadyShip, step: f64) {
+        let simulation = &mut self.0;
+        if simulation.finished() {
+            return;
+        }
+        for seen in &mut simulation.targets {
+            seen.truth.now = *own;
+        }
+        simulation.watch();
+        simulation.advance(step);
+        let plan = &simulation.active;
+        let pose = simulation
+            .own
+            .pose(&plan.trajectory, simulation.time - plan.start);
+        let way = pose.position - ship.pose.position;
+        ship.speed = way.norm() / step;
+        if ship.speed > NO_WAY {
+            ship.pose.heading = heading_of(way);
+        }
+    }
+}

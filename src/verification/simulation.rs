@@ -1,0 +1,218 @@
+//! Checks a simulation document alone: contacts and least distances from the motions in it.
+
+use serde::Deserialize;
+
+use super::claim::ClaimError;
+use super::mismatch;
+use super::motion::segment;
+use crate::document::{SIMULATION_FORMAT, SimulationDocument, StateDocument};
+use crate::evaluation::{Body, MovingSlabs, Violation};
+use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::geometry::ConvexPolygon;
+use crate::target::Uncertainty;
+use crate::trajectory::Segment;
+use crate::vessel::Hull;
+
+/// Metres beside the gaps of a motion that is given step by step.
+const DISTANCE_M: f64 = 1e-3;
+
+/// Seconds: a later time of the same distance.
+const TIME_S: f64 = 1e-6;
+
+/// Result of the check of a simulation document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationVerification {
+    /// Title of the scenario.
+    pub scenario: String,
+    /// True where hulls met, by the motions in the document.
+    pub contact: bool,
+    /// True without a contact, where every plan was safe and in time.
+    pub safe: bool,
+    /// Least distance of the hulls over all targets, metres; infinite without any.
+    pub least_clearance: f64,
+    /// All statements that the motions contradict.
+    pub violations: Vec<Violation>,
+}
+
+impl SimulationVerification {
+    /// How the simulation ended, in a word.
+    pub fn outcome(&self) -> &'static str {
+        if self.contact {
+            "contact"
+        } else {
+            "no contact"
+        }
+    }
+}
+
+/// True for the text of a simulation document.
+pub fn is_simulation(text: &str) -> bool {
+    #[derive(Deserialize)]
+    struct Format {
+        format: String,
+    }
+    serde_json::from_str::<Format>(text).is_ok_and(|found| found.format == SIMULATION_FORMAT)
+}
+
+/// Checks the text of a simulation document: that own ship's motion and the targets' tracks are
+/// without a gap, and that contacts and least distances are those of the motions.
+///
+/// A ship that was steered is given by a segment per step. The gaps between them bound by how much
+/// a distance may differ. Plans are documents of their own. O(segments × targets).
+pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimError> {
+    let document: SimulationDocument = super::claim::parse(text)?;
+    let sailed: Vec<Segment> = document.sailed.iter().map(segment).collect();
+    let mut violations = Vec::new();
+    let mut gap = 0.0_f64;
+    for (index, pair) in sailed.windows(2).enumerate() {
+        let jump = (pair[0].end().position - pair[1].start.position).norm();
+        gap = gap.max(jump);
+        let late = (pair[0].end_time() - pair[1].start_time).abs();
+        // negated so that a NaN is a gap
+        if !(late <= TIME_S && jump <= most_gap(&document)) {
+            let what = format!(
+                "sailed: a gap of {jump} m, {late} s before segment {}",
+                index + 1
+            );
+            violations.push(Violation::new(what, pair[1].start_time));
+        }
+    }
+    if !sailed.iter().all(Segment::is_valid) || sailed.is_empty() {
+        violations.push(Violation::new(
+            "sailed: no motion of finite numbers".to_owned(),
+            0.0,
+        ));
+    }
+    let covered = sailed.first().map_or(f64::NAN, |s| s.start_time.abs())
+        + (sailed.last().map_or(f64::NAN, Segment::end_time) - document.duration_s).abs();
+    if !(covered <= TIME_S * (1.0 + document.duration_s)) {
+        violations.push(mismatch("sailed", "the whole duration", "another time"));
+    }
+    let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
+    let (mut contact, mut least_clearance) = (false, f64::INFINITY);
+    for target in &document.targets {
+        let name = &target.name;
+        let hull = Hull::new(target.length_m, target.beam_m);
+        let track = &target.track;
+        if !(track.first().is_some_and(|state| state.at.t_s == 0.0)) {
+            violations.push(mismatch(
+                &format!("track of '{name}'"),
+                "from 0 s",
+                "from later",
+            ));
+        }
+        for pair in track.windows(2) {
+            let jump = (at(&pair[0], pair[1].at.t_s).position - pose(&pair[1]).position).norm();
+            if !(pair[1].at.t_s > pair[0].at.t_s && jump <= DISTANCE_M) {
+                let what = format!("track of '{name}': a gap of {jump} m");
+                violations.push(Violation::new(what, pair[1].at.t_s));
+            }
+        }
+        let least = least_distance(&sailed, &own, track, &hull);
+        // a NaN is a contact
+        let met = !(least > 0.0);
+        let allowed = gap + DISTANCE_M;
+        let near_touch = least.abs() <= allowed;
+        if met != target.contact_t_s.is_some() && !near_touch {
+            let word = |met: bool| if met { "a contact" } else { "none" };
+            let claimed = word(target.contact_t_s.is_some());
+            violations.push(mismatch(
+                &format!("contact with '{name}'"),
+                claimed,
+                word(met),
+            ));
+        }
+        let claimed = target.least_clearance_m.unwrap_or(f64::NAN);
+        // the depth of an overlap depends on where each step begins
+        let same = met && claimed <= allowed || (claimed - least).abs() <= allowed;
+        if !same {
+            let what = format!("least distance from '{name}'");
+            violations.push(mismatch(
+                &what,
+                format_args!("{claimed} m"),
+                format_args!("{least} m"),
+            ));
+        }
+        contact |= target.contact_t_s.is_some() || met && !near_touch;
+        least_clearance = least_clearance.min(least);
+    }
+    if contact != document.contact {
+        violations.push(mismatch("contact", document.contact, contact));
+    }
+    let is_safe = |replan: &crate::document::ReplanDocument| replan.safe && replan.followed;
+    let safe = !contact && document.replans.iter().all(is_safe);
+    if safe != document.safe {
+        violations.push(mismatch("safe", document.safe, safe));
+    }
+    violations.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(SimulationVerification {
+        scenario: document.scenario,
+        contact,
+        safe,
+        least_clearance,
+        violations,
+    })
+}
+
+/// Gaps of a motion: none where own ship follows its plan, else what drift moves it in a step.
+fn most_gap(document: &SimulationDocument) -> f64 {
+    let steered = document.settings.vessel != "kinematic"
+        || document.settings.current_mps != [0.0, 0.0]
+        || document.settings.current_std_mps > 0.0;
+    if steered {
+        // a ship that drifts at the speed of its course, at most
+        let fastest = document
+            .sailed
+            .iter()
+            .map(|s| s.speed_mps)
+            .fold(0.0, f64::max);
+        fastest * document.settings.step_s
+    } else {
+        DISTANCE_M
+    }
+}
+
+fn least_distance(sailed: &[Segment], own: &Hull, track: &[StateDocument], hull: &Hull) -> f64 {
+    let mut least = f64::INFINITY;
+    for (index, state) in track.iter().enumerate() {
+        let until = track
+            .get(index + 1)
+            .map_or(f64::INFINITY, |next| next.at.t_s);
+        let from = state.at.t_s;
+        let within = sailed
+            .iter()
+            .filter(|s| s.end_time() > from && s.start_time < until);
+        let pieces: Vec<Segment> = within
+            .map(|s| {
+                let part = s.between(from, until);
+                Segment {
+                    start_time: part.start_time - from,
+                    ..part
+                }
+            })
+            .collect();
+        let there = pose(state);
+        let velocity = ConvexPolygon::point(there.ahead() * state.speed_mps);
+        let set = MovingSlabs::new(&Uncertainty::constant(hull.polygon(&there), velocity));
+        let found = set.least_distance(&pieces, Body::hull(own)).value;
+        // negated on purpose: a NaN stays
+        if !(found >= least) && !least.is_nan() {
+            least = found;
+        }
+    }
+    least
+}
+
+fn pose(state: &StateDocument) -> Pose {
+    Pose::new(
+        Vector::new(state.at.east_m, state.at.north_m),
+        heading_from_course_deg(state.at.course_deg),
+    )
+}
+
+/// Where a target is that has kept its course and speed since a state.
+fn at(state: &StateDocument, time: f64) -> Pose {
+    let then = pose(state);
+    let way = then.ahead() * (state.speed_mps * (time - state.at.t_s));
+    Pose::new(then.position + way, then.heading)
+}
