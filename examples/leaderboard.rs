@@ -82,8 +82,8 @@ cargo run --release --no-default-features --example leaderboard > docs/benchmark
 | score | mean over targets of their least score |
 | ms | planning time on one core: the median of {runs} plans for a scene, then statistics over scenes |
 
-Only the times depend on the machine. With `rules` no stand-on plan complies, because the plan
-contains its escape, which the monitors count as an alteration.
+Only the times depend on the machine. [rules.md](rules.md) measures plans by the rules on more
+random encounters, and [closed-loop.md](closed-loop.md) what is sailed.
 "
     );
     println!(

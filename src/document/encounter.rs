@@ -44,7 +44,7 @@ pub struct RoleDocument {
 
 /// Rule violation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BreachDocument {
+pub struct RuleViolationDocument {
     pub rule: String,
     pub what: String,
     pub t_s: f64,
@@ -65,7 +65,7 @@ pub struct MonitorDocument {
 pub struct ConductDocument {
     pub roles: Vec<RoleDocument>,
     pub scores: BTreeMap<String, f64>,
-    pub breaches: Vec<BreachDocument>,
+    pub violations: Vec<RuleViolationDocument>,
     pub monitors: Vec<MonitorDocument>,
     /// Null without a role.
     #[serde(default)]
@@ -97,7 +97,10 @@ pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
 pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
     let violated = conduct.monitors.iter();
     let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.name());
-    let rules = conduct.breaches.iter().map(|breach| breach.rule.as_str());
+    let rules = conduct
+        .violations
+        .iter()
+        .map(|violation| violation.rule.as_str());
     let broken = rules.chain(violated.map(|m| m.monitor.as_str()));
     let mut broken: Vec<&str> = broken.collect();
     broken.sort_unstable();
@@ -177,11 +180,14 @@ impl ConductDocument {
             from_s: interval.from,
             until_s: interval.until,
         });
-        let breaches = conduct.violations.iter().map(|breach| BreachDocument {
-            rule: breach.rule.to_owned(),
-            what: breach.what.clone(),
-            t_s: breach.time,
-        });
+        let violations = conduct
+            .violations
+            .iter()
+            .map(|violation| RuleViolationDocument {
+                rule: violation.rule.to_owned(),
+                what: violation.what.clone(),
+                t_s: violation.time,
+            });
         let monitors = conduct.monitors.iter().map(|finding| {
             let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {
                 Measure::Distance => ("m", |metres| metres),
@@ -201,7 +207,7 @@ impl ConductDocument {
             scores: (conduct.scores.by_name().into_iter())
                 .map(|(name, score)| (name.to_owned(), score))
                 .collect(),
-            breaches: breaches.collect(),
+            violations: violations.collect(),
             monitors: monitors.collect(),
             manoeuvre: conduct.manoeuvre.map(|m| ManoeuvreDocument {
                 lead_s: m.lead.filter(|lead| lead.is_finite()),

@@ -183,8 +183,8 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
         if let Some(manoeuvre) = &conduct.manoeuvre {
             add("", manoeuvre_text(manoeuvre));
         }
-        for breach in &conduct.breaches {
-            let (rule, time, what) = (&breach.rule, breach.t_s, &breach.what);
+        for violation in &conduct.violations {
+            let (rule, time, what) = (&violation.rule, violation.t_s, &violation.what);
             add("", format!("violates {rule} at {time:.0} s: {what}"));
         }
         for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {

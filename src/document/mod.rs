@@ -28,8 +28,8 @@ pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
 pub use encounter::{
-    BreachDocument, ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument,
-    RoleDocument, breaks, conduct_breaks,
+    ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument, RoleDocument,
+    RuleViolationDocument, breaks, conduct_breaks,
 };
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};

@@ -120,11 +120,19 @@ impl Relaxer<'_> {
         );
         let problem = self.problem(&first.obstacles);
         if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
-            if let (Outcome::Infeasible(why), 1..) = (&first.planned.outcome, kept.broken) {
-                first.why = Some(why.clone());
+            let none = first.planned.outcome.plan().is_none();
+            if none && kept.broken > 0 {
                 first.level = RelaxationLevel::Domains;
             }
+            first.why = match &first.planned.outcome {
+                Outcome::Infeasible(why) if kept.broken > 0 => Some(why.clone()),
+                _ => None,
+            };
+            let is_late = matches!(first.planned.outcome, Outcome::Deadline(None));
             first.planned = kept.planned;
+            if is_late {
+                first = out_of_time(first);
+            }
         }
         if self.scenario.planner.facts().relaxes_domains_only {
             return self.without_domains(first, with_domain);
@@ -133,7 +141,7 @@ impl Relaxer<'_> {
             Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
                 return self.finished(with_domain, &first).unwrap_or(first);
             }
-            Outcome::Deadline(None) => return self.leaving_sets(first),
+            Outcome::Deadline(None) => return self.late(with_domain, first),
             Outcome::Infeasible(reason) => reason.clone(),
         };
         let relaxed = self.relaxed(first, &why, with_domain);
@@ -158,28 +166,40 @@ impl Relaxer<'_> {
             .find_map(|plan| plan(self, with_domain));
         match found {
             Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
-            Some(out_of_time) => self.leaving_sets(out_of_time),
+            Some(found) => self.late(with_domain, found),
             None => self.leaving_sets(first),
+        }
+    }
+
+    /// The answer where the time ran out before there was a plan: the remainder of the last plan
+    /// where that is clear of the hard sets, which takes no search.
+    fn late(&self, with_domain: bool, attempt: Attempt) -> Attempt {
+        match self.remainder(with_domain) {
+            Some(found) => out_of_time(found),
+            None => self.leaving_sets(attempt),
         }
     }
 
     /// [`RelaxationLevel::Rules`]: the remainder of the last plan, if it is clear of the hard sets
     /// and breaks no rule.
     fn remainder_by_the_rules(&self, with_domain: bool) -> Option<Attempt> {
+        if !self.are_rules_asked() {
+            return None;
+        }
         let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
-        (self.are_rules_asked() && found.1 == 0).then_some(found.0)
+        (found.1 == 0).then_some(found.0)
     }
 
     /// [`RelaxationLevel::Rules`]: the manoeuvre under way, finished in smaller domains, where the
     /// plan of an attempt begins another and breaks no fewer rules.
     fn finished(&self, with_domain: bool, attempt: &Attempt) -> Option<Attempt> {
-        if !begins_another(self.scenario, &attempt.planned) {
+        if !(self.are_rules_asked() && begins_another(self.scenario, &attempt.planned)) {
             return None;
         }
         let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
         let breaks = |trajectory| rules::breaks(self.scenario, trajectory);
         let fewest = attempt.trajectory().map_or(usize::MAX, breaks);
-        (self.are_rules_asked() && found.1 <= fewest).then_some(found.0)
+        (found.1 <= fewest).then_some(found.0)
     }
 
     /// [`RelaxationLevel::ReducedDomains`]: the remainder of the last plan, if it is clear of the

@@ -7,6 +7,7 @@ use crate::obstacle::PolytopeObstacle;
 use crate::planner::path_time::PathTimePlanner;
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::scenario::Compliance;
+use crate::simulation::{EncounterKind, Placement, random_encounter};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -160,7 +161,6 @@ fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
 /// reduction.
 #[test]
 fn domains_that_no_plan_clears_are_reduced_as_far_as_the_plan_needs() {
-    use crate::simulation::{EncounterKind, Placement, random_encounter};
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
     let sets = &run.targets[0].sets;
@@ -521,4 +521,31 @@ fn the_hard_set_contains_the_hull_at_every_heading() {
             }
         }
     }
+}
+
+/// The time is up before anything is planned again: own ship keeps its plan, which has entered a
+/// ship domain but no hard set.
+#[test]
+fn out_of_time_own_ship_keeps_a_plan_that_is_clear_of_the_hard_sets() {
+    let drawn = random_encounter(EncounterKind::GiveWay, 277, Placement::Origin);
+    let mut first = drawn.expect("drawn").scenario;
+    first.compliance = Compliance::Rules;
+    let before = run(first.clone());
+    assert!(!before.relaxations.is_empty() && before.safe());
+    let trajectory = &before.planned.outcome.plan().expect("a plan").trajectory;
+    let elapsed = 40.0;
+    let mut scenario = first.clone();
+    scenario.time += elapsed;
+    scenario.desired = first.desired.remaining(elapsed);
+    scenario.own_ship.pose = trajectory.pose_at(elapsed);
+    if let Motion::Ship(ship) = &mut scenario.targets[0].motion {
+        ship.pose = ship.pose_at(elapsed);
+    }
+    let document = crate::document::PlanDocument::of(&before);
+    crate::document::remember(&document, &mut scenario).expect("own ship is on its plan");
+    scenario.deadline = 0.0;
+    let after = run(scenario);
+    assert!(matches!(after.planned.outcome, Outcome::Deadline(Some(_))));
+    assert!(after.planned.is_remainder && after.safe());
+    assert_eq!(after.level, RelaxationLevel::ReducedDomains);
 }

@@ -39,7 +39,7 @@ fn is_said_only(pointer: &str) -> bool {
         || ["/tcpa_s", "/undisturbed_tcpa_s", "/undisturbed_dcpa_m"]
             .iter()
             .any(|unproven| pointer.ends_with(unproven))
-        || ["roles", "scores", "breaches", "monitors", "manoeuvre"]
+        || ["roles", "scores", "violations", "monitors", "manoeuvre"]
             .iter()
             .any(|judged| pointer.contains(&format!("/{judged}")))
 }

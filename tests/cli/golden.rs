@@ -25,7 +25,7 @@ fn cells(run: &Value) -> Vec<String> {
     let mut breaks = Vec::new();
     for encounter in run["encounters"].as_array().into_iter().flatten() {
         let list = |key: &str| encounter[key].as_array().cloned().unwrap_or_default();
-        breaks.extend(list("breaches").iter().map(|b| word(&b["rule"])));
+        breaks.extend(list("violations").iter().map(|b| word(&b["rule"])));
         let monitors = list("monitors");
         let violated = monitors.iter().filter(|m| m["verdict"] == "violated");
         breaks.extend(violated.map(|m| word(&m["monitor"])));

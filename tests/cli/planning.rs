@@ -585,12 +585,12 @@ fn a_plan_goes_on_from_the_previous_one() {
     let begins = |plan: &Value| plan["manoeuvres"][0]["begins_s"].as_f64().expect("a time");
     assert!((begins(&first) - 60.0 - begins(&second)).abs() < 1e-9);
     assert_eq!(second["encounters"][0]["roles"][0]["from_s"], -60.0);
-    assert_eq!(second["encounters"][0]["breaches"], Value::Array(vec![]));
+    assert_eq!(second["encounters"][0]["violations"], Value::Array(vec![]));
     // without the previous plan own ship turns back at once
     let anew = document(&searoom(&["plan", &file, "--json"]).success());
     let side = |plan: &Value| plan["cost"]["first_turn"]["side"].clone();
     assert_eq!(side(&anew), "port");
-    assert_ne!(anew["encounters"][0]["breaches"], Value::Array(vec![]));
+    assert_ne!(anew["encounters"][0]["violations"], Value::Array(vec![]));
     let verified = write(folder.path(), "second.json", second.to_string());
     searoom(&["verify", &verified]).success();
 
@@ -603,7 +603,7 @@ fn a_plan_goes_on_from_the_previous_one() {
     let third = document(&go_on(&beside).success());
     assert!((begins(&first) - 60.0 - begins(&third)).abs() < 1e-9);
     assert_eq!(third["memory"]["keeps_plan"], false);
-    assert_eq!(third["encounters"][0]["breaches"], Value::Array(vec![]));
+    assert_eq!(third["encounters"][0]["violations"], Value::Array(vec![]));
 
     // within its tracking margin own ship goes on from the plan
     let first_ship = |margin: &str, beside| {

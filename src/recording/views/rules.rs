@@ -221,15 +221,15 @@ mod tests {
         let run = stand_on(Compliance::Shape);
         let model = ViewModel::new(&run);
         let conduct = model.conduct[0].as_ref().expect("a ship");
-        let breach = conduct.violations.iter().find(|b| b.rule == "17(c)");
-        let breach = breach.expect("a turn to port");
+        let violation = conduct.violations.iter().find(|b| b.rule == "17(c)");
+        let violation = violation.expect("a turn to port");
         let [roles, broken] = &lanes(&model)[..] else {
             panic!("two lanes");
         };
         assert_eq!(roles.at(conduct.roles[0].from), "target: stand-on");
         assert_eq!(roles.at(model.motion.end()), "");
-        assert!(!broken.at(breach.time - 1e-6).contains("17(c)"));
-        assert!(broken.at(breach.time).contains("17(c)"));
+        assert!(!broken.at(violation.time - 1e-6).contains("17(c)"));
+        assert!(broken.at(violation.time).contains("17(c)"));
         assert_eq!(broken.at(model.motion.end()), "");
     }
 
