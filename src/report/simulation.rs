@@ -25,7 +25,17 @@ fn headline(simulation: &SimulationDocument) -> String {
     let outcome = match (simulation.contact, simulation.safe) {
         (true, _) => format!("CONTACT with {}", met.join(", ")),
         (false, true) => "no contact, every plan safe".to_owned(),
-        (false, false) => "no contact, but not every plan safe and in time".to_owned(),
+        (false, false) => "no contact, but NOT SAFE".to_owned(),
+    };
+    let mut broken = Vec::new();
+    if !simulation.conduct.within_tracking_margin {
+        broken.push("own ship left its tracking margin".to_owned());
+    }
+    let left = simulation.targets.iter().filter(|t| t.outside_sets > 0);
+    broken.extend(left.map(|target| format!("'{}' left its set", target.name)));
+    let broken = match broken.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", broken.join(", ")),
     };
     let arrived = if simulation.arrived {
         "arrived"
@@ -33,7 +43,7 @@ fn headline(simulation: &SimulationDocument) -> String {
         "not arrived"
     };
     format!(
-        "{}: {outcome}; {arrived} after {:.0} s",
+        "{}: {outcome}{broken}; {arrived} after {:.0} s",
         simulation.scenario, simulation.duration_s
     )
 }

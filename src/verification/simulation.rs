@@ -16,6 +16,12 @@ use crate::vessel::Hull;
 /// Metres beside the gaps of a motion that is given step by step.
 const DISTANCE_M: f64 = 1e-3;
 
+/// Standard deviations of a current that are not exceeded.
+const CURRENT_SIGMAS: f64 = 6.0;
+
+/// Fraction of its way by which a ship may be off the arc of its mean turn rate in a step.
+const MEAN_SHARE: f64 = 0.02;
+
 /// Seconds: a later time of the same distance.
 const TIME_S: f64 = 1e-6;
 
@@ -57,16 +63,17 @@ pub fn is_simulation(text: &str) -> bool {
 /// Checks the text of a simulation document: that own ship's motion and the targets' tracks are
 /// without a gap, and that contacts and least distances are those of the motions.
 ///
-/// A ship that was steered is given by a segment per step. The gaps between them bound by how much
-/// a distance may differ. Plans are documents of their own. O(segments × targets).
+/// A ship that was steered is given by a segment per step. The gap after a segment bounds by how
+/// much a distance on it may differ. Plans are documents of their own. O(segments × targets).
 pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimError> {
     let document: SimulationDocument = super::claim::parse(text)?;
     let sailed: Vec<Segment> = document.sailed.iter().map(segment).collect();
     let mut violations = Vec::new();
-    let mut gap = 0.0_f64;
+    // what the motion leaves open after each segment, metres
+    let mut gaps = vec![0.0; sailed.len()];
     for (index, pair) in sailed.windows(2).enumerate() {
         let jump = (pair[0].end().position - pair[1].start.position).norm();
-        gap = gap.max(jump);
+        gaps[index] = jump;
         let late = (pair[0].end_time() - pair[1].start_time).abs();
         // negated so that a NaN is a gap
         if !(late <= TIME_S && jump <= most_gap(&document)) {
@@ -108,10 +115,9 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
                 violations.push(Violation::new(what, pair[1].at.t_s));
             }
         }
-        let least = least_distance(&sailed, &own, track, &hull);
+        let (least, allowed) = least_distance((&sailed, &gaps), &own, track, &hull);
         // a NaN is a contact
         let met = !(least > 0.0);
-        let allowed = gap + DISTANCE_M;
         let near_touch = least.abs() <= allowed;
         if met != target.contact_t_s.is_some() && !near_touch {
             let word = |met: bool| if met { "a contact" } else { "none" };
@@ -140,7 +146,8 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
         violations.push(mismatch("contact", document.contact, contact));
     }
     let is_safe = |replan: &crate::document::ReplanDocument| replan.safe && replan.followed;
-    let safe = !contact && document.replans.iter().all(is_safe);
+    let within = document.conduct.within_tracking_margin;
+    let safe = !contact && within && document.replans.iter().all(is_safe);
     if safe != document.safe {
         violations.push(mismatch("safe", document.safe, safe));
     }
@@ -154,50 +161,56 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     })
 }
 
-/// Gaps of a motion: none where own ship follows its plan, else what drift moves it in a step.
+/// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a step,
+/// and what the mean of a step leaves out.
 fn most_gap(document: &SimulationDocument) -> f64 {
     let steered = document.settings.vessel != "kinematic"
         || document.settings.current_mps != [0.0, 0.0]
         || document.settings.current_std_mps > 0.0;
     if steered {
-        // a ship that drifts at the speed of its course, at most
+        let [east, north] = document.settings.current_mps;
+        let drift = east.hypot(north) + CURRENT_SIGMAS * document.settings.current_std_mps;
         let fastest = document
             .sailed
             .iter()
             .map(|s| s.speed_mps)
             .fold(0.0, f64::max);
-        fastest * document.settings.step_s
+        (drift + MEAN_SHARE * fastest) * document.settings.step_s + DISTANCE_M
     } else {
         DISTANCE_M
     }
 }
 
-fn least_distance(sailed: &[Segment], own: &Hull, track: &[StateDocument], hull: &Hull) -> f64 {
-    let mut least = f64::INFINITY;
+/// The least distance of the hulls, metres, and by how much it may differ where it is.
+fn least_distance(
+    (sailed, gaps): (&[Segment], &[f64]),
+    own: &Hull,
+    track: &[StateDocument],
+    hull: &Hull,
+) -> (f64, f64) {
+    let mut least = (f64::INFINITY, DISTANCE_M);
     for (index, state) in track.iter().enumerate() {
         let until = track
             .get(index + 1)
             .map_or(f64::INFINITY, |next| next.at.t_s);
         let from = state.at.t_s;
-        let within = sailed
-            .iter()
-            .filter(|s| s.end_time() > from && s.start_time < until);
-        let pieces: Vec<Segment> = within
-            .map(|s| {
-                let part = s.between(from, until);
-                Segment {
-                    start_time: part.start_time - from,
-                    ..part
-                }
-            })
-            .collect();
         let there = pose(state);
         let velocity = ConvexPolygon::point(there.ahead() * state.speed_mps);
         let set = MovingSlabs::new(&Uncertainty::constant(hull.polygon(&there), velocity));
-        let found = set.least_distance(&pieces, Body::hull(own)).value;
-        // negated on purpose: a NaN stays
-        if !(found >= least) && !least.is_nan() {
-            least = found;
+        for (s, gap) in sailed.iter().zip(gaps) {
+            if !(s.end_time() > from && s.start_time < until) {
+                continue;
+            }
+            let part = s.between(from, until);
+            let piece = Segment {
+                start_time: part.start_time - from,
+                ..part
+            };
+            let found = set.least_distance(&[piece], Body::hull(own)).value;
+            // negated on purpose: a NaN stays
+            if !(found >= least.0) && !least.0.is_nan() {
+                least = (found, gap + DISTANCE_M);
+            }
         }
     }
     least

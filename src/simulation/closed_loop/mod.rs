@@ -335,8 +335,15 @@ impl Simulation {
         let Some(plan) = self.pending.take_if(is_due) else {
             return;
         };
+        let mut outside = Vec::new();
         for (target, assumed) in self.targets.iter_mut().zip(&plan.assumed) {
-            target.outside_sets += usize::from(!cycle::holds(assumed, &target.truth.now));
+            if !cycle::holds(assumed, &target.truth.now) {
+                target.outside_sets += 1;
+                outside.push(target.name.clone());
+            }
+        }
+        for name in outside {
+            self.alarm("outside the set of the plan", Some(&name));
         }
         self.active = plan;
     }
@@ -368,9 +375,19 @@ impl Simulation {
         own::join(&mut self.sailed, &motion, time);
         self.time = time + step;
         let off = self.off_plan();
+        let most = self.tracking_margin();
+        if off > most && self.farthest_off.0 <= most {
+            self.alarm("beyond the tracking margin", None);
+        }
         if off > self.farthest_off.0 {
             self.farthest_off = (off, self.time);
         }
+    }
+
+    /// Metres that own ship may be off its plan; rounding without a tracking margin.
+    fn tracking_margin(&self) -> f64 {
+        let margin = self.scenario.own_ship.tracking_margin;
+        margin.max(crate::tolerance::JOINT_M)
     }
 
     /// Metres between own ship and where its plan has it.
@@ -404,6 +421,13 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
             "planner.kind",
             format_args!("{:?}", facts.name),
             "\"space-time\": the closed loop goes on from its plans alone",
+        ));
+    }
+    if scenario.land.is_some() {
+        return Err(Fault::new(
+            "map",
+            "land",
+            "nothing: the closed loop does not watch land yet",
         ));
     }
     let explicit = scenario

@@ -3,13 +3,13 @@
 use super::Simulation;
 use crate::colregs::SteadyShip;
 use crate::frame::heading_of;
-use crate::scenario::{Behaviour, Fault, Memory, Scenario, Sensor, SimulationSettings};
+use crate::scenario::{Behaviour, Fault, Memory, Scenario, SimulationSettings};
 use crate::target::{Motion, ShipTrack, Target};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
 /// Speeds of the other ship, fractions of its own speed, as own ship has them by default.
-const SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
+const SPEEDS: [f64; 2] = [0.5, 1.0];
 
 /// m/s. A slower ship has no mission.
 const NO_WAY: f64 = 0.1;
@@ -76,10 +76,13 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
             representation: target.representation,
         }],
         memory: Memory::default(),
+        // the sensor, the vessel and the current are own ship's
         simulation: SimulationSettings {
-            sensor: Sensor::EXACT,
-            behaviours: Vec::new(),
-            ..scenario.simulation.clone()
+            step: scenario.simulation.step,
+            replan: scenario.simulation.replan,
+            delay: scenario.simulation.delay,
+            seed: scenario.simulation.seed,
+            ..SimulationSettings::default()
         },
         ..scenario.clone()
     })

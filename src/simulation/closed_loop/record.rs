@@ -9,7 +9,6 @@ use crate::document::{
     segment_document, state_document,
 };
 use crate::planner::cost::whole_space_time_error;
-use crate::tolerance;
 
 impl Simulation {
     /// What was sailed so far.
@@ -49,15 +48,17 @@ impl Simulation {
             .count();
         let without_plan = self.replans.iter().filter(|r| r.cost_m2.is_none()).count();
         let late = self.replans.iter().any(|r| !r.followed);
+        let within_tracking_margin = self.farthest_off.0 <= self.tracking_margin();
         SimulationDocument {
             format: SIMULATION_FORMAT.to_owned(),
             build: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.title.clone(),
             settings: self.settings_document(),
-            safe: !contact && unsafe_plans == 0 && !late,
+            safe: !contact && unsafe_plans == 0 && !late && within_tracking_margin,
             contact,
             arrived: self.time >= self.active.end() - super::INSTANT
-                && self.active.document.is_some(),
+                && self.active.document.is_some()
+                && self.off_plan() <= self.tracking_margin(),
             duration_s: self.time,
             targets: (self.targets.iter().enumerate())
                 .filter_map(|(index, target)| {
@@ -81,8 +82,7 @@ impl Simulation {
                 unsafe_plans,
                 largest_off_plan_m: self.farthest_off.0,
                 largest_off_plan_t_s: self.farthest_off.1,
-                within_tracking_margin: self.farthest_off.0
-                    <= own.tracking_margin.max(tolerance::JOINT_M),
+                within_tracking_margin,
             },
             alarms: self.alarms.clone(),
             replans: self.replans.clone(),

@@ -257,20 +257,22 @@ impl Track {
             self.anchor();
         }
         let age = (time - self.estimate.time).max(0.0);
+        let unseen = age.max(delay);
+        let turned = self.file.turn_rate * unseen;
         let pose = Pose::new(self.estimate.position, self.anchor.heading);
         let mut ship = ShipTrack {
             pose,
             speed: self.anchor.speed,
             position_std: self.estimate.position_std,
             speed_spread: self.anchor.speed_spread,
-            course_spread: self.anchor.heading_spread.min(std::f64::consts::PI),
+            // it may have turned since
+            course_spread: (self.anchor.heading_spread + turned).min(std::f64::consts::PI),
             kept_velocities: None,
             ..self.file.clone()
         };
         let middle = ship.velocity();
         let reach = |v: &Vector| (v - middle).norm();
         // the widest set within the age
-        let unseen = age.max(delay);
         let sets = ship.outer_velocity_sets(ship.turn_rate, unseen.max(ROUNDING));
         let velocities = sets.iter().find(|set| set.until >= unseen);
         let widest = velocities.and_then(|set| set.velocities.as_polygon());
