@@ -52,6 +52,15 @@ impl Simulation {
             if remember(previous, &mut scenario).is_err() {
                 self.alarm("far off the plan", None);
             }
+            for (target, known) in scenario.targets.iter_mut().zip(&self.targets) {
+                if let (Motion::Ship(ship), true) = (&mut target.motion, known.track.is_broken()) {
+                    // nothing of the last set is known to hold
+                    (ship.kept_positions, ship.kept_velocities) = (None, None);
+                    if !scenario.memory.is_outside(&target.name) {
+                        scenario.memory.outside_velocities.push(target.name.clone());
+                    }
+                }
+            }
         }
         let run = pipeline::run(scenario);
         let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;

@@ -4,11 +4,12 @@ use super::vessel::{Order, Vessel, VesselState};
 use crate::frame::{Vector, direction, heading_of, wrap};
 use crate::trajectory::Trajectory;
 
-/// Distance ahead on the path at which own ship aims, lengths.
-const LOOKAHEAD_LENGTHS: f64 = 3.0;
+/// Distance ahead on the path at which own ship aims, lengths: corrections are small, so that they are
+/// no alterations of course.
+const LOOKAHEAD_LENGTHS: f64 = 8.0;
 
 /// Seconds in which a delay on the schedule is to be made up.
-const CATCH_UP_S: f64 = 20.0;
+const CATCH_UP_S: f64 = 10.0;
 
 /// Own ship may exceed its largest planned speed by this fraction to catch up.
 const MOST_SPEED: f64 = 1.1;
@@ -42,7 +43,8 @@ pub(super) fn follow(
     let early = nearest + vessel.lag(state.speed);
     let turned = plan.pose_at(early + RATE_S).heading - plan.pose_at(early).heading;
     let course = path.heading - (aside / (LOOKAHEAD_LENGTHS * vessel.length)).atan();
-    let planned = plan.speed_at(time);
+    // so is a change of speed
+    let planned = plan.speed_at((time + vessel.speed_lag()).min(plan.end_time()));
     let behind = planned.max(plan.speed_at(nearest)) * (time - nearest);
     let most = MOST_SPEED * max_speed;
     let speed = (planned + behind / CATCH_UP_S).clamp(0.0, most);

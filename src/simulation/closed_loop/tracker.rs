@@ -18,6 +18,9 @@ const ANY_VELOCITY: f64 = 15.0;
 /// Least standard deviation of a measured position, metres.
 const LEAST_STD_M: f64 = 1e-3;
 
+/// A velocity within this factor of the spreads widens them; another one begins the set anew.
+const WIDENED: f64 = 2.0;
+
 /// m/s and radians: rounding of velocities.
 const ROUNDING: f64 = 1e-9;
 
@@ -144,12 +147,24 @@ impl Anchor {
         }
     }
 
-    /// True for an estimate that may be of a velocity in the set.
-    fn holds(&self, estimate: &Estimate) -> bool {
+    /// True for an estimate that may be of a velocity in the set of `factor` times the spreads.
+    fn holds(&self, estimate: &Estimate, factor: f64) -> bool {
+        let (turned, faster) = self.off(estimate);
+        turned <= factor * self.heading_spread + SIGMAS * estimate.heading_std + ROUNDING
+            && faster <= factor * self.speed_spread + SIGMAS * estimate.speed_std + ROUNDING
+    }
+
+    /// Differences of course and speed.
+    fn off(&self, estimate: &Estimate) -> (f64, f64) {
         let turned = wrap(estimate.heading - self.heading).abs();
-        let faster = (estimate.speed - self.speed).abs();
-        turned <= self.heading_spread + SIGMAS * estimate.heading_std + ROUNDING
-            && faster <= self.speed_spread + SIGMAS * estimate.speed_std + ROUNDING
+        (turned, (estimate.speed - self.speed).abs())
+    }
+
+    /// Widens the spreads to hold an estimate.
+    fn widen(&mut self, estimate: &Estimate) {
+        let (turned, faster) = self.off(estimate);
+        self.heading_spread = self.heading_spread.max(turned);
+        self.speed_spread = self.speed_spread.max(faster);
     }
 }
 
@@ -161,6 +176,8 @@ pub(super) struct Track {
     filter: Option<Filter>,
     estimate: Estimate,
     anchor: Anchor,
+    /// True where the last set does not keep the velocities of the one before.
+    is_broken: bool,
 }
 
 impl Track {
@@ -181,6 +198,7 @@ impl Track {
             sensor: sensor.clone(),
             filter: None,
             estimate,
+            is_broken: false,
         }
     }
 
@@ -245,15 +263,24 @@ impl Track {
         self.anchor = Anchor::at(&self.estimate, &self.file);
     }
 
+    /// True where the last set does not keep the velocities of the one before.
+    pub fn is_broken(&self) -> bool {
+        self.is_broken
+    }
+
     pub fn estimate(&self) -> &Estimate {
         &self.estimate
     }
 
     /// The set for a plan that starts at `time`. Its velocities stay as they are as long as they
-    /// hold the present estimate. Its disc of positions holds every motion since the last report,
+    /// hold the present estimate. A target that does little more than assumed may do so again: its
+    /// spreads are widened. One that does much more has turned, and its set begins anew. Its disc of positions holds every motion since the last report,
     /// and during the `delay` of a plan also in the first one: each set then holds the next one.
     pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
-        if !self.anchor.holds(&self.estimate) {
+        self.is_broken = !self.anchor.holds(&self.estimate, 1.0);
+        if self.is_broken && self.anchor.holds(&self.estimate, WIDENED) {
+            self.anchor.widen(&self.estimate);
+        } else if self.is_broken {
             self.anchor();
         }
         let age = (time - self.estimate.time).max(0.0);
@@ -381,15 +408,30 @@ mod tests {
     }
 
     #[test]
-    fn a_small_alteration_keeps_the_velocities_and_a_large_one_begins_them_anew() {
+    fn a_small_alteration_keeps_the_velocities_a_larger_one_widens_them_or_begins_them_anew() {
         let mut track = Track::new(&file(), &Sensor::EXACT);
         let mut ship = SteadyShip::on_track(&file(), 0.0);
         ship.pose.heading += radians_from_deg(4.9);
         track.know(20.0, &ship);
         assert_eq!(track.set_at(20.0, 0.0).pose.heading, 0.5);
+        assert!(!track.is_broken());
         ship.pose.heading += radians_from_deg(1.0);
         track.know(40.0, &ship);
-        assert_eq!(track.set_at(40.0, 0.0).pose.heading, ship.pose.heading);
+        let wider = track.set_at(40.0, 0.0);
+        assert_eq!(wider.pose.heading, 0.5);
+        assert!((wider.course_spread - radians_from_deg(5.9)).abs() < 1e-9);
+        assert!(
+            track.is_broken()
+                && !{
+                    track.set_at(60.0, 0.0);
+                    track.is_broken()
+                }
+        );
+        ship.pose.heading += radians_from_deg(10.0);
+        track.know(80.0, &ship);
+        let anew = track.set_at(80.0, 0.0);
+        assert_eq!(anew.pose.heading, ship.pose.heading);
+        assert!((anew.course_spread - radians_from_deg(5.0)).abs() < 1e-9 && track.is_broken());
     }
 
     #[test]

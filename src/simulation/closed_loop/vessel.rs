@@ -68,6 +68,16 @@ impl Vessel {
         }
     }
 
+    /// Seconds by which the ship answers late to an order of speed.
+    pub fn speed_lag(&self) -> f64 {
+        match self.model {
+            VesselModel::Kinematic => 0.0,
+            VesselModel::FirstOrder { speed_time, .. } | VesselModel::Nomoto { speed_time, .. } => {
+                speed_time
+            }
+        }
+    }
+
     /// The motion under constant orders in a current (m/s) for `step` seconds from t = 0, as a
     /// cubic through its ends.
     pub fn advance(
