@@ -89,7 +89,11 @@ impl Simulation {
     fn pose_at(&self, time: f64) -> Pose {
         let plan = &self.active;
         let [now, then] = [self.time, time].map(|t| plan.trajectory.pose_at(t - plan.start));
-        let own = self.own.pose(&plan.trajectory, self.time - plan.start);
+        // the course over ground: in a current the heading is another
+        let own = self
+            .own
+            .steady(&plan.trajectory, self.time - plan.start)
+            .pose;
         let off = now.body_coordinates(own.position);
         Pose::new(
             then.world_coordinates(off),
