@@ -48,6 +48,16 @@ impl<'a> Table<'a> {
         field
     }
 
+    /// The value of a key without which the others cannot be read: it is a fault at once.
+    pub(crate) fn require_first(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
+        let field = self.take(key);
+        if field.is_none() {
+            let allowed = format_args!("{allowed}; it is required");
+            self.field.fault_at(key, "nothing", allowed);
+        }
+        field
+    }
+
     /// The table at a key that must be there.
     pub(crate) fn required_table(&mut self, key: &str) -> Option<Table<'a>> {
         self.require(key, "a table")?.table("a table")

@@ -335,7 +335,9 @@ fn vessel(field: &Field) -> Option<VesselModel> {
         ("nomoto", Kind::Nomoto),
     ];
     let mut table = field.table("a table with the key kind")?;
-    let kind = table.require("kind", "a model")?.choice(&WORDS);
+    let kind = table
+        .require_first("kind", "\"kinematic\", \"first-order\" or \"nomoto\"")?
+        .choice(&WORDS);
     let model = match kind? {
         Kind::Kinematic => VesselModel::Kinematic,
         Kind::FirstOrder => VesselModel::FirstOrder {
@@ -396,7 +398,9 @@ fn sensor(field: &Field) -> Option<Sensor> {
         ("radar", SensorKind::Radar),
     ];
     let mut table = field.table("a table with the key kind")?;
-    let mut kind = table.require("kind", "a sensor")?.choice(&KINDS)?;
+    let mut kind = table
+        .require_first("kind", "\"exact\", \"ais\" or \"radar\"")?
+        .choice(&KINDS)?;
     if kind == SensorKind::Exact {
         table.finish();
         return Some(Sensor::EXACT);
@@ -501,7 +505,9 @@ pub(super) fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> 
         ("mutual", Kind::Mutual),
     ];
     let mut table = field.table("a table with the key kind")?;
-    let kind = table.require("kind", "a behaviour")?.choice(&WORDS)?;
+    let kind = table
+        .require_first("kind", "a behaviour, such as \"constant\"")?
+        .choice(&WORDS)?;
     let mut number = |key, range, default| number_or(&mut table, key, range, default);
     let behaviour = match kind {
         Kind::Constant => Behaviour::Constant,
@@ -524,7 +530,7 @@ pub(super) fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> 
             turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)?),
         },
         Kind::Track => {
-            let field = table.require("points", "a list of tables with t_s and position")?;
+            let field = table.require_first("points", "a list of tables with t_s and position")?;
             let points = field.list(1..=TRACK_POINTS, "tables with t_s and position")?;
             Behaviour::Track(track(&points, plane)?)
         }

@@ -241,7 +241,7 @@ fn speeds(ship: &ShipTrack) -> (f64, f64) {
 /// Points whose convex hull contains every velocity that a ship may have until a time. All are
 /// possible velocities, except the intersections of tangents to the outer arc.
 pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
-    if ship.kept_velocities.is_some() {
+    if ship.kept_velocities.is_some() && ship.turn_rate == 0.0 {
         return ship.outer_velocity_set().vertices().to_vec();
     }
     let (slow, fast) = speeds(ship);

@@ -20,7 +20,7 @@ const DISTANCE_M: f64 = 1e-3;
 const CURRENT_SIGMAS: f64 = 6.0;
 
 /// Fraction of its way by which a ship may be off the arc of its mean turn rate in a step.
-const MEAN_SHARE: f64 = 0.02;
+const MEAN_SHARE: f64 = 0.05;
 
 /// Seconds: a later time of the same distance.
 const TIME_S: f64 = 1e-6;
@@ -69,11 +69,17 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     let document: SimulationDocument = super::claim::parse(text)?;
     let sailed: Vec<Segment> = document.sailed.iter().map(segment).collect();
     let mut violations = Vec::new();
-    // what the motion leaves open after each segment, metres
-    let mut gaps = vec![0.0; sailed.len()];
+    // what the motion leaves open on and after each segment, metres
+    let share = if is_steered(&document) {
+        MEAN_SHARE
+    } else {
+        0.0
+    };
+    let within = sailed.iter().map(|s| share * s.speed * s.duration);
+    let mut gaps: Vec<f64> = within.collect();
     for (index, pair) in sailed.windows(2).enumerate() {
         let jump = (pair[0].end().position - pair[1].start.position).norm();
-        gaps[index] = jump;
+        gaps[index] += jump;
         let late = (pair[0].end_time() - pair[1].start_time).abs();
         // negated so that a NaN is a gap
         if !(late <= TIME_S && jump <= most_gap(&document)) {
@@ -95,6 +101,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     if !(covered <= TIME_S * (1.0 + document.duration_s)) {
         violations.push(mismatch("sailed", "the whole duration", "another time"));
     }
+    violations.extend(contradictions(&document));
     let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
@@ -119,7 +126,9 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
         // a NaN is a contact
         let met = !(least > 0.0);
         let near_touch = least.abs() <= allowed;
-        if met != target.contact_t_s.is_some() && !near_touch {
+        // what cannot be told apart is a contact
+        let met = met || near_touch;
+        if met != target.contact_t_s.is_some() && !(near_touch && target.contact_t_s.is_some()) {
             let word = |met: bool| if met { "a contact" } else { "none" };
             let claimed = word(target.contact_t_s.is_some());
             violations.push(mismatch(
@@ -139,7 +148,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
                 format_args!("{least} m"),
             ));
         }
-        contact |= target.contact_t_s.is_some() || met && !near_touch;
+        contact |= target.contact_t_s.is_some() || met;
         least_clearance = least_clearance.min(least);
     }
     if contact != document.contact {
@@ -161,13 +170,91 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     })
 }
 
+/// Statements of a document that contradict one another.
+fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut require = |holds: bool, what: &str, time: f64| {
+        if !holds {
+            found.push(Violation::new(what.to_owned(), time));
+        }
+    };
+    let (settings, end) = (&document.settings, document.duration_s);
+    // own ship off its plan does not arrive at its end
+    let is_off = !document.conduct.within_tracking_margin;
+    let ends =
+        document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end);
+    require(
+        ends,
+        "it ends neither at the arrival nor at its duration",
+        end,
+    );
+    let hulls = [settings.own_length_m, settings.own_beam_m].into_iter();
+    let hulls = hulls.chain(document.targets.iter().flat_map(|t| [t.length_m, t.beam_m]));
+    require(
+        hulls.into_iter().all(|size| size > 0.0),
+        "a hull without size",
+        0.0,
+    );
+    let names: Vec<&str> = document.targets.iter().map(|t| t.name.as_str()).collect();
+    for target in &document.targets {
+        let times = target
+            .contact_t_s
+            .into_iter()
+            .chain([target.least_clearance_t_s]);
+        let within = |time: f64| (0.0..=end + TIME_S * (1.0 + end)).contains(&time);
+        require(
+            times.into_iter().all(within),
+            "a time outside the simulation",
+            end,
+        );
+    }
+    let mut last = 0.0;
+    for replan in &document.replans {
+        let due = last + settings.replan_s + settings.step_s;
+        require(
+            replan.t_s <= due.min(end) + TIME_S * (1.0 + end),
+            "a plan at another time",
+            replan.t_s,
+        );
+        last = replan.t_s;
+        let bad = ["NOT SAFE", "COLLIDES"].contains(&replan.verdict.as_str());
+        require(
+            !(bad && replan.safe),
+            "a plan that is not safe and is said to be",
+            last,
+        );
+        let planned: Vec<&str> = replan.estimates.iter().map(|e| e.target.as_str()).collect();
+        require(planned == names, "a plan for other targets", last);
+    }
+    // the last plan ends within one period, or another would have been due
+    let due = last + settings.replan_s + settings.delay_s + settings.step_s;
+    let is_complete = !document.replans.is_empty() && end <= due + TIME_S * (1.0 + end);
+    require(is_complete, "plans are missing", end);
+    let unsafe_plans = document
+        .replans
+        .iter()
+        .filter(|r| r.cost_m2.is_some() && !r.safe)
+        .count();
+    require(
+        unsafe_plans == document.conduct.unsafe_plans,
+        "another number of plans that are not safe",
+        end,
+    );
+    found
+}
+
+/// True for a ship that does not follow its plan exactly.
+fn is_steered(document: &SimulationDocument) -> bool {
+    let settings = &document.settings;
+    settings.vessel != "kinematic"
+        || settings.current_mps != [0.0, 0.0]
+        || settings.current_std_mps > 0.0
+}
+
 /// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a step,
 /// and what the mean of a step leaves out.
 fn most_gap(document: &SimulationDocument) -> f64 {
-    let steered = document.settings.vessel != "kinematic"
-        || document.settings.current_mps != [0.0, 0.0]
-        || document.settings.current_std_mps > 0.0;
-    if steered {
+    if is_steered(document) {
         let [east, north] = document.settings.current_mps;
         let drift = east.hypot(north) + CURRENT_SIGMAS * document.settings.current_std_mps;
         let fastest = document

@@ -285,6 +285,11 @@ impl Simulation {
             }
         }
         self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
+        for target in &mut self.targets {
+            let is_outside = |names: &[String]| names.contains(&target.name);
+            let left = is_outside(&replan.outside_velocities) || is_outside(&replan.outside_places);
+            target.outside_sets += usize::from(left);
+        }
         for name in &replan.outside_velocities {
             self.alarm("another velocity than assumed", Some(name));
         }
