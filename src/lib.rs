@@ -70,7 +70,7 @@
 //! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |
 //! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
-//! | [`simulation`] | random encounters, and targets with any motion within their sets |
+//! | [`simulation`] | random encounters; scenarios sailed in the closed loop |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
 //! | [`document`] | published documents: the single description of a result |
 //! | [`report`] | tables, HTML pages and figures |
