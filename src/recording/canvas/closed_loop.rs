@@ -123,10 +123,22 @@ impl<'a> ClosedLoop<'a> {
         self.plans[..begun].last()
     }
 
-    /// Metres between own ship and where its plan has it.
+    /// Metres between own ship and where its plan has it; at the start of a plan, where the one
+    /// before has it.
     pub fn off_plan(&self, time: f64) -> Option<f64> {
-        let planned = on(&self.plan_at(time)?.segments, time);
+        let before = self.plan_at(time - 2.0 * tolerance::TIME_S);
+        let planned = on(&before.or_else(|| self.plan_at(time))?.segments, time);
         Some((self.own_at(time).pose.position - planned.pose.position).norm())
+    }
+
+    /// The distances of the hulls that matter, metres; `None` without a target.
+    pub fn near_clearances(&self) -> Option<[f64; 2]> {
+        let targets = self.simulation.targets.iter();
+        let least = targets.filter_map(|target| target.least_clearance_m);
+        let least = least.reduce(f64::min)?;
+        let own = &self.canvas.scenario.own_ship;
+        let near = (10.0 * own.safety_margin).max(4.0 * own.hull.length);
+        Some([least.min(0.0), near.max(4.0 * least)])
     }
 
     /// Metres between the hulls, negative in overlap.

@@ -4,8 +4,8 @@ mod panes;
 
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimeAxis,
-    TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns,
+    TimeAxis, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
@@ -19,7 +19,7 @@ use rerun::{EntityPath, RecordingStreamResult};
 use panes::{Pane, Panes};
 
 use crate::frame::{Vector, to_starboard};
-use crate::recording::canvas::{Canvas, ViewModel, style};
+use crate::recording::canvas::{Canvas, ClosedLoop, ViewModel, style};
 use crate::recording::views::closed_loop::{OFF_PLAN, PLANNING};
 use crate::recording::views::curves::{
     self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
@@ -91,7 +91,8 @@ pub fn of_comparison(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
 }
 
 /// Lays out a simulation: the chart over the events, beside them the summary over the curves.
-pub fn of_simulation(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
+pub fn of_simulation(model: &ClosedLoop) -> RecordingStreamResult<Recorder> {
+    let canvas = &model.canvas;
     let mut layout = Panes::default();
     let to = &mut layout;
     let chart = chart_view(to, canvas)?;
@@ -110,8 +111,16 @@ pub fn of_simulation(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
         ("Distance off the plan (m)", OFF_PLAN),
         ("Time of planning (ms)", PLANNING),
     ];
-    let first = usize::from(canvas.scenario.targets.is_empty());
-    right.extend(plot_views(to, canvas, &plots[first..])?);
+    let first = usize::from(model.targets.is_empty());
+    let plots = plot_views(to, canvas, &plots[first..])?;
+    if let Some(range) = model.near_clearances() {
+        to.set(
+            &plots[0],
+            "ScalarAxis",
+            &ScalarAxis::new().with_range(range),
+        )?;
+    }
+    right.extend(plots);
     let shares = [0.4, 0.24, 0.18, 0.18].into_iter().take(right.len());
     let right = to.below(&right, shares)?;
     let root = to.beside(&[left, right], [0.55, 0.45])?;

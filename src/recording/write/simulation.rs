@@ -90,7 +90,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> RecordingStreamResult<Recor
     closed_loop::log_chart(rec, &model)?;
     closed_loop::log_curves(rec, &model)?;
     log_events(rec, document)?;
-    layout::of_simulation(&model.canvas)
+    layout::of_simulation(&model)
 }
 
 /// How to read the chart.
@@ -145,21 +145,33 @@ fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> RecordingStr
     rec.send_columns(path(&[EVENTS]), Some(times), columns)
 }
 
-/// The first plan, and those with another outcome than the one before.
+/// The plans that are not the remainder of the one before with the same outcome.
 fn outcomes(document: &SimulationDocument) -> Vec<Event> {
     let mut events = Vec::new();
     let mut before = None;
     for replan in &document.replans {
-        let outcome = (&replan.verdict, &replan.relaxations);
-        if before == Some(outcome) {
+        let mut relaxed: Vec<&str> = replan.relaxations.iter().map(String::as_str).collect();
+        relaxed.sort_unstable();
+        relaxed.dedup();
+        let outcome = Some((replan.verdict.as_str(), relaxed.clone()));
+        if replan.followed && replan.keeps_plan && before == outcome {
             continue;
         }
-        before = Some(outcome);
-        let mut text = format!("plan from {:.0} s: {}", replan.start_t_s, replan.verdict);
-        if !replan.relaxations.is_empty() {
-            text += &format!("; relaxed: {}", replan.relaxations.join(", "));
+        before = outcome;
+        let kind = match (replan.followed, replan.keeps_plan) {
+            (false, _) => "not followed",
+            (true, true) => "plan kept",
+            (true, false) => "new plan",
+        };
+        let mut text = format!("{kind} from {:.0} s: {}", replan.start_t_s, replan.verdict);
+        if let Some(turn) = replan.turn_deg {
+            let side = if turn < 0.0 { "port" } else { "starboard" };
+            text += &format!("; turns {:.0}° to {side}", turn.abs());
         }
-        let level = if replan.safe {
+        if !relaxed.is_empty() {
+            text += &format!("; relaxed: {}", relaxed.join(", "));
+        }
+        let level = if replan.safe && replan.followed {
             TextLogLevel::INFO
         } else {
             TextLogLevel::WARN
