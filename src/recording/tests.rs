@@ -405,7 +405,7 @@ position_std_m = 5.0
 behaviour = { kind = "random" }
 [simulation]
 sensor = { kind = "ais", position_std_m = 5.0 }
-vessel = { kind = "first-order" }
+vessel = { kind = "nomoto" }
 "#;
 
 fn sailed(scenario: &Scenario) -> Simulation {

@@ -137,23 +137,20 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()
     rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &dots, columns)
 }
 
-/// Logs where hulls met.
+/// Logs where hulls met, from then on.
 fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
-    let met = model.simulation.targets.iter();
-    let met: Vec<_> = met
-        .filter_map(|target| Some((target, target.contact_t_s?)))
-        .collect();
-    if met.is_empty() {
-        return Ok(());
+    for target in &model.simulation.targets {
+        let Some(time) = target.contact_t_s else {
+            continue;
+        };
+        let place = flat(model.own_at(time).pose.position);
+        let label = format!("contact with {} at {time:.0} s", target.name);
+        let mark = labelled([place], style::ALARM, 6.0, [label]);
+        let times = TimeColumn::new_duration_secs(TIMELINE, [time]);
+        let entity = path(&[MAP, "contacts", &target.name]);
+        rec.send_columns(entity, Some(times), mark.columns_of_unit_batches()?)?;
     }
-    let places = met
-        .iter()
-        .map(|(_, time)| flat(model.own_at(*time).pose.position));
-    let labels = met
-        .iter()
-        .map(|(target, time)| format!("contact with {} at {time:.0} s", target.name));
-    let marks = labelled(places, style::ALARM, 6.0, labels);
-    rec.log_static(path(&[MAP, "contacts"]), &marks)
+    Ok(())
 }
 
 /// Logs lines at every cursor time; none where `at` has none.
