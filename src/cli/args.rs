@@ -154,6 +154,9 @@ pub struct SimulateArgs {
     /// Write the document of every plan into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
+    /// Write one Rerun recording per scenario: a file ending in .rrd, or a folder
+    #[arg(long, value_name = "PATH")]
+    pub rrd: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
-use searoom::document::{PlanDocument, ScenarioComparisonDocument};
+use searoom::document::{PlanDocument, ScenarioComparisonDocument, SimulationDocument};
 use searoom::recording::{EntityContents, EntityTable, Recorded, TimelineContents};
-use searoom::report::{comparison_table, plan_document_text};
+use searoom::report::{comparison_table, plan_document_text, simulation_text};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -52,9 +52,14 @@ pub fn plan_document(path: &Path) -> anyhow::Result<String> {
 }
 
 fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
-    if recorded.comparison().is_some() {
+    let other = match (recorded.comparison(), recorded.simulation()) {
+        (Some(_), _) => Some("comparison"),
+        (_, Some(_)) => Some("simulation"),
+        (None, None) => None,
+    };
+    if let Some(other) = other {
         bail!(
-            "{}: the recording of a comparison, which holds no plan document; `searoom inspect --json` prints its own",
+            "{}: the recording of a {other}, which holds no plan document; `searoom inspect --json` prints its own",
             path.display()
         );
     }
@@ -119,10 +124,14 @@ struct Contents {
     targets: Vec<Value>,
     /// Entry of `compare --json`; null for a plan.
     comparison: Value,
+    /// `simulate --json` without the motions and the estimates; null for a plan.
+    simulation: Value,
     #[serde(skip)]
     plan: Option<PlanDocument>,
     #[serde(skip)]
     compared: Option<ScenarioComparisonDocument>,
+    #[serde(skip)]
+    sailed: Option<SimulationDocument>,
     timelines: Vec<TimelineContents>,
     entities: Vec<EntityContents>,
 }
@@ -149,7 +158,11 @@ impl Contents {
             .pointer_mut("/comparisons/0")
             .map(Value::take)
             .unwrap_or_default();
-        let scenario = [&document, &comparison]
+        let simulation: Value = recorded
+            .simulation()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        let scenario = [&document, &comparison, &simulation]
             .into_iter()
             .find_map(|d| d.get("scenario"))
             .cloned();
@@ -173,6 +186,8 @@ impl Contents {
             plan: serde_json::from_value(document).ok(),
             compared: serde_json::from_value(comparison.clone()).ok(),
             comparison,
+            sailed: serde_json::from_value(simulation.clone()).ok(),
+            simulation,
             timelines: recorded.timelines(),
             entities: recorded.entities(),
         }
@@ -188,10 +203,11 @@ impl Contents {
                 .as_deref()
                 .unwrap_or("of an unknown version")
         )];
-        lines.push(match (&self.plan, &self.compared) {
-            (Some(plan), _) => plan_document_text(plan),
-            (None, Some(compared)) => comparison_table(compared, false),
-            (None, None) => "no plan document in it".to_owned(),
+        lines.push(match (&self.plan, &self.compared, &self.sailed) {
+            (Some(plan), _, _) => plan_document_text(plan),
+            (None, Some(compared), _) => comparison_table(compared, false),
+            (None, None, Some(sailed)) => simulation_text(sailed, false),
+            (None, None, None) => "no plan document in it".to_owned(),
         });
         lines.push(String::new());
         let timelines = list(&self.timelines, "none");

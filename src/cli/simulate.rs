@@ -9,8 +9,9 @@ use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::input::files;
+use super::input::files::{self, Found};
 use super::input::scenes::{self, Scene};
+use super::output::products::{Products, Wanted};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
 use super::runner::guarded;
@@ -22,15 +23,22 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
         std::fs::create_dir_all(folder)
             .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
     }
+    let scenes = scenes::open(files::find(&args.paths, output), &assumed, output);
+    let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
+    let wanted = Wanted {
+        recordings: args.rrd.as_deref(),
+        ..Wanted::default()
+    };
+    let products = Products::prepare(&found, wanted)?;
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
-    for scene in scenes::open(files::find(&args.paths, output), &assumed, output) {
+    for scene in scenes {
         let sailed = match &scene {
-            Ok(scene) => guarded(|| sail(scene, args, output)),
+            Ok(scene) => guarded(|| sail(scene, args, &products, output)),
             Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
         };
         status = status.max(match sailed {
-            Ok(Ok(document)) => {
+            Ok(Ok((document, written))) => {
                 let shown = if args.json {
                     ExitStatus::Good
                 } else {
@@ -42,7 +50,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                     ExitStatus::NoPlan
                 };
                 documents.push(document);
-                shown.max(reached)
+                shown.max(written).max(reached)
             }
             Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
             Err(fault) => output.fault(&fault),
@@ -57,7 +65,12 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     Ok(status)
 }
 
-fn sail(scene: &Scene, args: &SimulateArgs, output: &Output) -> anyhow::Result<SimulationDocument> {
+fn sail(
+    scene: &Scene,
+    args: &SimulateArgs,
+    products: &Products,
+    output: &Output,
+) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
     let made = scene.scenario(&args.assumed.assumed())?;
     for note in &made.notes {
@@ -68,8 +81,8 @@ fn sail(scene: &Scene, args: &SimulateArgs, output: &Output) -> anyhow::Result<S
         file: file.clone(),
         faults: vec![fault],
     };
-    let mut simulation = Simulation::new(scenario, args.measured_delay).map_err(refused)?;
-    if args.plans.is_some() {
+    let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
+    if args.plans.is_some() || args.rrd.is_some() {
         simulation.keep_plans();
     }
     while !simulation.finished() {
@@ -78,7 +91,9 @@ fn sail(scene: &Scene, args: &SimulateArgs, output: &Output) -> anyhow::Result<S
     if let Some(folder) = &args.plans {
         write_plans(folder, &scene.found.stem, &simulation)?;
     }
-    Ok(simulation.record())
+    let document = simulation.record();
+    let written = products.write_simulation(&scene.found.stem, &scenario, &simulation, &document);
+    Ok((document, output.written(written)))
 }
 
 /// The scenario with the options of the command line.

@@ -487,7 +487,7 @@ fn ship_then(previous: &PlanDocument, name: &str) -> Option<ShipTrack> {
 }
 
 /// The tracked ship of a document; its domain is unknown.
-fn track(ship: &ShipDocument) -> ShipTrack {
+pub(crate) fn track(ship: &ShipDocument) -> ShipTrack {
     ShipTrack {
         pose: Pose::new(
             Vector::new(ship.position.east_m, ship.position.north_m),
@@ -626,7 +626,8 @@ fn pose(at: &StartDocument) -> Pose {
     )
 }
 
-fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
+/// The state of a ship, at a time that counts from `elapsed` seconds later.
+pub(crate) fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
     let ship = SteadyShip {
         pose: pose(&state.at),
         speed: state.speed_mps,
@@ -647,7 +648,8 @@ fn risk(known: &KnownRoleDocument, elapsed: f64) -> Option<Risk> {
     })
 }
 
-fn segment(document: &SegmentDocument) -> Segment {
+/// The segment of a document.
+pub(crate) fn segment(document: &SegmentDocument) -> Segment {
     Segment {
         start: pose(&document.start),
         start_time: document.start.t_s,

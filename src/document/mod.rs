@@ -38,6 +38,8 @@ pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
     TargetMemoryDocument, remember,
 };
+#[cfg(feature = "recording")]
+pub(crate) use memory::{segment, steady, track};
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};

@@ -3,7 +3,7 @@
 //! - `canvas`: what all views share, such as times, bounds and colours
 //! - `views`: one file per view, which logs its entities
 //! - `layout`: how the viewer arranges the views
-//! - `write`: a run or a comparison → one file
+//! - `write`: a run, a comparison or a simulation → one file
 //! - `read`: one file → entities, tables, documents
 //! - `checksum`: how a cut or damaged file is detected
 //!
@@ -24,7 +24,7 @@ mod write;
 pub use read::{
     EntityContents, EntityRow, EntityTable, ReadError, Recorded, TimelineContents, is_recording,
 };
-pub use write::{Compared, RecordingError, write, write_comparison};
+pub use write::{Compared, RecordingError, Simulated, write, write_comparison, write_simulation};
 
 use rerun::{EntityPath, EntityPathPart};
 
@@ -33,6 +33,7 @@ const TIMELINE: &str = "sim_time";
 const SUMMARY: &str = "summary";
 const DOCUMENT: &str = "plan_document";
 const COMPARISON: &str = "comparison_document";
+const SIMULATION: &str = "simulation_document";
 const CHART: &str = "chart";
 const MAP: &str = "chart/map";
 const TRAILS: &str = "chart/map/trails";
@@ -41,6 +42,7 @@ const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
 const RULES: &str = "rules";
+const EVENTS: &str = "events";
 
 /// An entity path. The first part may hold slashes; the others are taken literally, as targets may
 /// have any name.

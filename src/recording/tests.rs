@@ -14,6 +14,7 @@ use crate::evaluation::Violation;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};
 use crate::scenario::Scenario;
+use crate::simulation::Simulation;
 use crate::study::compare::{Entry, Method};
 use crate::target::Representation;
 
@@ -395,5 +396,144 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
         written(&run_without_plan(), &plan),
     ] {
         assert!(names(&first).is_disjoint(&names(&other)));
+    }
+}
+
+/// A target that is seen with errors, and own ship off its plan.
+const CLOSED_LOOP: &str = r#"
+position_std_m = 5.0
+behaviour = { kind = "random" }
+[simulation]
+sensor = { kind = "ais", position_std_m = 5.0 }
+vessel = { kind = "nomoto" }
+"#;
+
+fn sailed(scenario: &Scenario) -> Simulation {
+    let mut simulation = Simulation::new(scenario.clone(), false).expect("a closed loop");
+    simulation.keep_plans();
+    while !simulation.finished() {
+        simulation.step();
+    }
+    simulation
+}
+
+fn recorded_simulation(scenario: &Scenario, simulation: &Simulation, path: &Path) -> Recorded {
+    let simulated = Simulated {
+        scenario,
+        document: &simulation.record(),
+        plans: simulation.plans(),
+        text: "the result",
+    };
+    write_simulation(&simulated, path).expect("writes");
+    Recorded::read(path).expect("whole")
+}
+
+/// The values of a component in the rows in time.
+fn moving(recorded: &Recorded, entity: &str, component: &str) -> Vec<(f64, serde_json::Value)> {
+    let table = recorded.table(entity).expect(entity);
+    let is_meant = |c: &String| c.ends_with(component);
+    let place = table.components.iter().position(is_meant).expect(component);
+    let rows = table.rows.into_iter();
+    rows.filter_map(|mut row| Some((row.time?, row.values.swap_remove(place))))
+        .collect()
+}
+
+#[test]
+fn a_simulation_is_read_back_as_it_was_sailed() {
+    let folder = tempfile::tempdir().expect("folder");
+    let text = format!("{HEAD_ON}{CLOSED_LOOP}").replace("\"shape\"", "\"none\"");
+    let scenario = Scenario::parse(&text).expect("a valid scenario");
+    let simulation = sailed(&scenario);
+    let document = simulation.record();
+    let path = folder.path().join("sailed.rrd");
+    let recorded = recorded_simulation(&scenario, &simulation, &path);
+    assert_numbers(&recorded);
+    assert_eq!(recorded.document(), None);
+    let kept: crate::document::SimulationDocument =
+        serde_json::from_str(&recorded.simulation().expect("there")).expect("a simulation");
+    assert_eq!(kept.conduct, document.conduct);
+    let [span] = &recorded.timelines()[..] else {
+        panic!("one timeline");
+    };
+    assert!((span.last - document.duration_s).abs() < 1e-6 && span.first == 0.0);
+
+    // every plan at its time
+    let drawn: Vec<f64> = (moving(&recorded, "chart/map/planned", ":strips").iter())
+        .map(|(time, _)| *time)
+        .collect();
+    let followed = document.replans.iter().filter(|replan| replan.followed);
+    let followed: Vec<f64> = followed.map(|replan| replan.start_t_s).collect();
+    assert!(followed.len() > 10);
+    assert_eq!(drawn, followed);
+
+    // the curves reach what is reported
+    let least = |values: &serde_json::Value| values[0].as_f64().expect("a number");
+    let curve = |entity: &str| -> Vec<f64> {
+        let rows = moving(&recorded, entity, ":scalars");
+        rows.iter().map(|(_, values)| least(values)).collect()
+    };
+    let clearance = curve("curves/clearance_m")
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let reported = document.targets[0].least_clearance_m.expect("a number");
+    assert!(
+        (clearance - reported).abs() < 0.01,
+        "{clearance} {reported}"
+    );
+    let off = curve("curves/off_plan_m").into_iter().fold(0.0, f64::max);
+    let reported = document.conduct.largest_off_plan_m;
+    assert!(
+        reported > 0.1 && (off - reported).abs() < 0.01,
+        "{off} {reported}"
+    );
+
+    // without domains the plan is clear of the hard set, which is in its document
+    let (time, strips) = &moving(&recorded, "chart/map/hard_sets", ":strips")[0];
+    let crate::document::InitialSetDocument::Polygon { vertices_m } =
+        &simulation.plans()[0].obstacles[0].initial_set
+    else {
+        panic!("a polygon");
+    };
+    assert_eq!(*time, 0.0);
+    for (drawn, vertex) in strips[0].as_array().expect("points").iter().zip(vertices_m) {
+        for axis in 0..2 {
+            let drawn = drawn[axis].as_f64().expect("a number");
+            assert!((drawn - vertex[axis]).abs() < 1e-3, "{drawn} {vertex:?}");
+        }
+    }
+
+    // the wall clock alone differs
+    let again = recorded_simulation(&scenario, &sailed(&scenario), &path);
+    for entity in recorded.entities() {
+        let timed = ["/curves/planning_ms", "/simulation_document"];
+        if !timed.contains(&entity.path.as_str()) {
+            let same = recorded.table(&entity.path) == again.table(&entity.path);
+            assert!(same, "{}", entity.path);
+        }
+    }
+}
+
+#[test]
+fn an_hour_with_ten_targets_is_small() {
+    let folder = tempfile::tempdir().expect("folder");
+    let (own, target) = HEAD_ON.split_once("[[targets]]").expect("two parts");
+    let own = own.replace("400.0", "4000.0").replace("1500.0", "20000.0");
+    let mut text = format!("{own}\n[simulation]\nduration_s = 3600\nreplan_s = 10\nstep_s = 5\n");
+    for number in 0..10 {
+        let target = target.replace(NAME, &format!("ship {number}")).replace(
+            "north_m = 0.0",
+            &format!("north_m = {}", 9000 + 500 * number),
+        );
+        text += &format!("[[targets]]{target}behaviour = {{ kind = \"random\" }}\n");
+    }
+    let scenario = Scenario::parse(&text).expect("a valid scenario");
+    let simulation = sailed(&scenario);
+    assert_eq!(simulation.plans().len(), 360);
+    let path = folder.path().join("hour.rrd");
+    let recorded = recorded_simulation(&scenario, &simulation, &path);
+    assert!(recorded.bytes < 2_000_000, "{}", recorded.bytes);
+    for entity in ["ships", "hard_sets", "estimates"] {
+        let rows = moving(&recorded, &format!("chart/map/{entity}"), ":strips");
+        assert_eq!(rows.len(), 361, "{entity}");
     }
 }

@@ -406,6 +406,10 @@ fn recordings_need_their_feature() {
         .code(2)
         .stdout(is_empty())
         .stderr(contains("built without recordings"));
+    searoom(&["simulate", "scenarios/colregs", "--rrd", "recordings/"])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("built without recordings"));
 }
 
 #[cfg(feature = "recording")]

@@ -84,6 +84,29 @@ fn every_plan_that_was_followed_verifies() {
     searoom(&args).success();
 }
 
+#[cfg(feature = "recording")]
+#[test]
+fn a_recording_tells_what_simulate_tells() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = text(&folder.path().join("sailed.rrd")).to_owned();
+    let sailed = stdout(&searoom(&["simulate", HEAD_ON_FILE, "--rrd", &file]).success());
+    let inspected = stdout(&searoom(&["inspect", &file]).success());
+    assert!(inspected.contains(sailed.trim_end()), "{inspected}");
+    let found = document(&searoom(&["inspect", "--json", &file]).success());
+    assert_eq!(found["scenario"], "Head-on");
+    assert_eq!(found["simulation"]["format"], "searoom-simulation/1");
+    for command in [&["inspect", "--plan", &file][..], &["verify", &file]] {
+        let refused = stderr(&searoom(command).code(2));
+        assert!(
+            refused.contains("the recording of a simulation"),
+            "{refused}"
+        );
+    }
+    searoom(&["simulate", "scenarios/colregs", "--rrd", &file])
+        .code(2)
+        .stderr(predicates::str::contains("4 scenarios; name a folder"));
+}
+
 #[test]
 fn a_shorter_time_ends_the_simulation_before_arrival() {
     let found =

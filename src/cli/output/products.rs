@@ -4,12 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use searoom::document::{ComparisonDocument, PlanDocument};
+use searoom::document::{ComparisonDocument, PlanDocument, SimulationDocument};
 use searoom::pipeline::Run;
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
 use searoom::report::page::{HtmlReport, Subject, link_from};
 use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
+use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
 use super::super::input::files::{Found, refuse_clashes};
@@ -189,6 +190,21 @@ impl Products {
         };
         attempt(|| record_comparison(side, &place.file(stem, "rrd")))
     }
+
+    /// Writes the recording of a simulation that kept its plans, if requested.
+    pub fn write_simulation(
+        &self,
+        stem: &str,
+        scenario: &Scenario,
+        simulation: &Simulation,
+        document: &SimulationDocument,
+    ) -> Result<(), Failure> {
+        let Some(place) = &self.recordings else {
+            return Ok(());
+        };
+        let file = place.file(stem, "rrd");
+        attempt(|| record_simulation(scenario, simulation, document, &file))
+    }
 }
 
 impl Place {
@@ -256,6 +272,32 @@ fn record_comparison(side: &ScenarioCompared, file: &Path) -> anyhow::Result<()>
         document: &document,
     };
     Ok(searoom::recording::write_comparison(&compared, file)?)
+}
+
+#[cfg(feature = "recording")]
+fn record_simulation(
+    scenario: &Scenario,
+    simulation: &Simulation,
+    document: &SimulationDocument,
+    file: &Path,
+) -> anyhow::Result<()> {
+    let simulated = searoom::recording::Simulated {
+        scenario,
+        document,
+        plans: simulation.plans(),
+        text: &searoom::report::simulation_text(document, false),
+    };
+    Ok(searoom::recording::write_simulation(&simulated, file)?)
+}
+
+#[cfg(not(feature = "recording"))]
+fn record_simulation(
+    _: &Scenario,
+    _: &Simulation,
+    _: &SimulationDocument,
+    file: &Path,
+) -> anyhow::Result<()> {
+    bail!("{}: built without recordings", file.display())
 }
 
 #[cfg(not(feature = "recording"))]

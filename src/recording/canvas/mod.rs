@@ -1,11 +1,13 @@
 //! Data that all views of a recording share: the scenario with its sets, the times and the part of
 //! the sea that are shown, colours.
 
+mod closed_loop;
 mod lines;
 mod motion;
 pub mod style;
 mod view_model;
 
+pub use closed_loop::ClosedLoop;
 pub use lines::{Lines, labelled};
 pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;
@@ -45,6 +47,19 @@ impl Bounds {
             bounds.high = bounds.high.sup(&p);
         }
         bounds
+    }
+
+    /// Bounds that leave sea around the points.
+    fn around(points: impl IntoIterator<Item = Vector>) -> Self {
+        let bounds = Self::of(points);
+        let bounds = bounds.grown(0.06 * bounds.extent());
+        // a straight run is a line: leave sea on both sides of it
+        let short = 0.45 * bounds.extent();
+        let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
+        Self {
+            low: bounds.low - missing,
+            high: bounds.high + missing,
+        }
     }
 
     pub fn grown(self, by: f64) -> Self {
@@ -104,8 +119,7 @@ impl<'a> Canvas<'a> {
         end: f64,
         palette: Palette,
     ) -> Self {
-        let cursor_step = (end / CURSOR_TIMES).ceil().max(CURSOR_STEP_S);
-        let cursor_times = steps(end, cursor_step);
+        let cursor_times = cursor_times(end, CURSOR_TIMES);
         let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
         let bounds = bounds(scenario, motions, &cursor_times);
         Self {
@@ -181,6 +195,11 @@ fn one_digit(value: f64) -> f64 {
     (value / power).round() * power
 }
 
+/// The times of what moves, `most` and two at most.
+fn cursor_times(end: f64, most: f64) -> Vec<f64> {
+    steps(end, (end / most).ceil().max(CURSOR_STEP_S))
+}
+
 /// 0, every `step`, and `end`.
 fn steps(end: f64, step: f64) -> Vec<f64> {
     let count = (end / step).ceil() as usize;
@@ -203,13 +222,5 @@ fn bounds(scenario: &Scenario, motions: &[ShownMotion], times: &[f64]) -> Bounds
             points.extend(targets.filter(|p| (p - own).norm() < near));
         }
     }
-    let bounds = Bounds::of(points);
-    let bounds = bounds.grown(0.06 * bounds.extent());
-    // a straight run is a line: leave sea on both sides of it
-    let short = 0.45 * bounds.extent();
-    let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
-    Bounds {
-        low: bounds.low - missing,
-        high: bounds.high + missing,
-    }
+    Bounds::around(points)
 }

@@ -4,21 +4,23 @@ mod panes;
 
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, TimeAxis,
-    TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns,
+    TimeAxis, TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
+use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
 use rerun::external::re_sdk_types::blueprint::views::{
-    Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TimeSeriesView,
+    Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TextLogView, TimeSeriesView,
 };
 use rerun::{EntityPath, RecordingStreamResult};
 
 use panes::{Pane, Panes};
 
 use crate::frame::{Vector, to_starboard};
-use crate::recording::canvas::{Canvas, ViewModel, style};
+use crate::recording::canvas::{Canvas, ClosedLoop, ViewModel, style};
+use crate::recording::views::closed_loop::{OFF_PLAN, PLANNING};
 use crate::recording::views::curves::{
     self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
 };
@@ -26,7 +28,7 @@ use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EXPLORED, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
+    CHART, EVENTS, EXPLORED, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
 };
 
 /// How long it takes to play the whole run, seconds.
@@ -85,6 +87,43 @@ pub fn of_comparison(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
     let curves = to.below(&curves, [])?;
     let below = to.beside(&[table, curves], [0.56, 0.44])?;
     let root = to.below(&[pictures, below], [0.62, 0.38])?;
+    layout.finished(&root, &time_panel(canvas))
+}
+
+/// Lays out a simulation: the chart over the events, beside them the summary over the curves.
+pub fn of_simulation(model: &ClosedLoop) -> RecordingStreamResult<Recorder> {
+    let canvas = &model.canvas;
+    let mut layout = Panes::default();
+    let to = &mut layout;
+    let chart = chart_view(to, canvas)?;
+    let events = to.view::<TextLogView>("Events", EVENTS)?;
+    let shown = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
+    let shown = shown.map(|kind| TextLogColumn {
+        kind,
+        visible: true.into(),
+    });
+    let columns = TextLogColumns::new().with_text_log_columns(shown);
+    to.set(&events, "TextLogColumns", &columns)?;
+    let left = to.below(&[chart, events], [0.78, 0.22])?;
+    let mut right = vec![to.view::<TextDocumentView>("Summary", SUMMARY)?];
+    let plots = [
+        ("Distance of the hulls (m)", CLEARANCE),
+        ("Distance off the plan (m)", OFF_PLAN),
+        ("Time of planning (ms)", PLANNING),
+    ];
+    let first = usize::from(model.targets.is_empty());
+    let plots = plot_views(to, canvas, &plots[first..])?;
+    if let Some(range) = model.near_clearances() {
+        to.set(
+            &plots[0],
+            "ScalarAxis",
+            &ScalarAxis::new().with_range(range),
+        )?;
+    }
+    right.extend(plots);
+    let shares = [0.4, 0.24, 0.18, 0.18].into_iter().take(right.len());
+    let right = to.below(&right, shares)?;
+    let root = to.beside(&[left, right], [0.55, 0.45])?;
     layout.finished(&root, &time_panel(canvas))
 }
 

@@ -13,7 +13,7 @@ use rerun::external::re_log_encoding::{DecoderApp, RRD_FOURCC, StreamHeader};
 use rerun::log::{Chunk, LogMsg};
 
 use super::checksum::is_sealed;
-use super::{COMPARISON, DOCUMENT, TIMELINE};
+use super::{COMPARISON, DOCUMENT, SIMULATION, TIMELINE};
 
 /// Longest file that is read: 1 GiB. The whole file is held in memory.
 const FILE_BYTES: u64 = 1 << 30;
@@ -152,6 +152,12 @@ impl Recorded {
     /// recording of anything else.
     pub fn comparison(&self) -> Option<String> {
         self.table(COMPARISON)?.text()
+    }
+
+    /// The document of a simulation, without the motions and the estimates; `None` in a recording of
+    /// anything else.
+    pub fn simulation(&self) -> Option<String> {
+        self.table(SIMULATION)?.text()
     }
 
     /// Lists every entity, sorted by path.

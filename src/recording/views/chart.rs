@@ -29,12 +29,17 @@ pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     log_violations(rec, model)
 }
 
-/// Logs what does not depend on own ship: the grid, the desired trajectory, the targets' tracks.
-pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+/// Logs the grid and the desired trajectory.
+pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     // views of Rerun are y-down: this turns north up for everything below
     rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     log_grid(rec, canvas)?;
-    log_desired(rec, canvas)?;
+    log_desired(rec, canvas)
+}
+
+/// Logs what does not depend on own ship: the grid, the desired trajectory, the targets' tracks.
+pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    log_sea(rec, canvas)?;
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         log_track(rec, canvas, index, target)?;
     }
@@ -137,19 +142,23 @@ pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, Vec<
         };
         return joined(motion.pieces().map(strip));
     }
-    trajectory
-        .segments()
-        .iter()
-        .filter(|segment| segment.duration > 0.0)
-        .map(|segment| {
-            let desired = desired_leg(desired, segment.start_time).speed;
-            (SpeedClass::of(segment.speed, desired), polyline(segment))
-        })
-        .collect()
+    segment_strips(canvas, trajectory.segments()).collect()
+}
+
+/// A polyline through `(position, time)` for each segment. Times count from the scenario's present.
+pub fn segment_strips(
+    canvas: &Canvas,
+    segments: &[Segment],
+) -> impl Iterator<Item = (SpeedClass, Vec<(Vector, f64)>)> {
+    let moving = segments.iter().filter(|segment| segment.duration > 0.0);
+    moving.map(|segment| {
+        let desired = desired_leg(&canvas.scenario.desired, segment.start_time).speed;
+        (SpeedClass::of(segment.speed, desired), polyline(segment))
+    })
 }
 
 /// Joins strips of one speed class that follow one another: a strip costs more than a point.
-fn joined(
+pub fn joined(
     strips: impl Iterator<Item = (SpeedClass, Vec<(Vector, f64)>)>,
 ) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
     let mut all: Vec<(SpeedClass, Vec<(Vector, f64)>)> = Vec::new();

@@ -9,6 +9,12 @@ use crate::recording::{MAP, VOLUME, path};
 
 /// Logs the land, where there is a map.
 pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    log_outlines(rec, canvas)?;
+    log_surface(rec, canvas)
+}
+
+/// Logs the outlines on the chart.
+pub fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     let Some(land) = &canvas.scenario.land else {
         return Ok(());
     };
@@ -19,8 +25,13 @@ pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()
         &LineStrips2D::new(strips.map(Vec::from_iter))
             .with_colors([style::LAND])
             .with_radii([style::points(1.2)]),
-    )?;
+    )
+}
 
+fn log_surface(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let Some(land) = &canvas.scenario.land else {
+        return Ok(());
+    };
     let window = Window::new(canvas.bounds.low, canvas.bounds.high);
     let mut corners: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();

@@ -2,6 +2,7 @@
 
 mod body;
 pub mod chart;
+pub mod closed_loop;
 pub mod curves;
 pub mod explored;
 pub mod land;

@@ -225,8 +225,12 @@ pub fn vector_seconds(canvas: &Canvas) -> f64 {
 
 /// A name north of a ship, as time marks have theirs south of it.
 fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
-    let off = (canvas.bounds.extent() / 22.0) as f32;
-    labelled([[0.0, off]], color, 0.0, [name])
+    labelled([flat(label_offset(canvas))], color, 0.0, [name])
+}
+
+/// Where the name of a ship is, from its place.
+pub fn label_offset(canvas: &Canvas) -> Vector {
+    Vector::new(0.0, canvas.bounds.extent() / 22.0)
 }
 
 /// About the vertical, counter-clockwise seen from above.

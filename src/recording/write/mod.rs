@@ -1,11 +1,13 @@
-//! Writes a run or a comparison as one Rerun recording (`.rrd`).
+//! Writes a run, a comparison or a simulation as one Rerun recording (`.rrd`).
 
 mod comparison;
 mod encoding;
 mod recorder;
+mod simulation;
 
 pub use comparison::{Compared, write_comparison};
 pub use recorder::Recorder;
+pub use simulation::{Simulated, write_simulation};
 
 use std::path::{Path, PathBuf};
 

@@ -1,0 +1,216 @@
+//! One simulation, prepared for the views.
+
+use super::{Bounds, Canvas, Palette, cursor_times};
+use crate::colregs::{self, SteadyShip};
+use crate::document::{self, PlanDocument, SimulationDocument};
+use crate::frame::Pose;
+use crate::geometry::ConvexPolygon;
+use crate::scenario::Scenario;
+use crate::target::{ShipTrack, Uncertainty};
+use crate::tolerance;
+use crate::trajectory::Segment;
+use crate::vessel::{Hull, OwnShip};
+
+/// Most rows of what moves: one in ten seconds of an hour.
+const CURSOR_TIMES: f64 = 360.0;
+
+/// A simulation on its canvas. Times count from the scenario's present.
+#[derive(Debug)]
+pub struct ClosedLoop<'a> {
+    pub simulation: &'a SimulationDocument,
+    pub canvas: Canvas<'a>,
+    /// The plans in the order in which own ship follows them.
+    pub plans: Vec<FollowedPlan>,
+    pub targets: Vec<TrueTarget>,
+    own: Vec<Segment>,
+}
+
+/// A plan that own ship follows from a time on.
+#[derive(Debug)]
+pub struct FollowedPlan {
+    pub from: f64,
+    pub segments: Vec<Segment>,
+    /// The targets that it assumes.
+    pub targets: Vec<AssumedTarget>,
+}
+
+/// A target as a plan assumes it. Times count from the plan's start.
+#[derive(Debug)]
+pub struct AssumedTarget {
+    ship: ShipTrack,
+    hard: Uncertainty,
+}
+
+/// A target as it was.
+#[derive(Debug)]
+pub struct TrueTarget {
+    pub name: String,
+    pub hull: Hull,
+    /// It keeps each until the next.
+    states: Vec<(f64, SteadyShip)>,
+}
+
+impl<'a> ClosedLoop<'a> {
+    /// `plans` are those that own ship followed, in their order.
+    pub fn new(
+        scenario: &'a Scenario,
+        simulation: &'a SimulationDocument,
+        plans: &[PlanDocument],
+    ) -> Self {
+        let end = simulation.duration_s.max(1.0);
+        let times = cursor_times(end, CURSOR_TIMES);
+        let sailed = simulation.sailed.iter().map(document::segment);
+        let mut own: Vec<Segment> = sailed.collect();
+        if own.is_empty() {
+            own.push(Segment::straight(scenario.own_ship.pose, 0.0, 0.0, 0.0));
+        }
+        let targets = simulation.targets.iter().map(|target| TrueTarget {
+            name: target.name.clone(),
+            hull: Hull::new(target.length_m, target.beam_m),
+            states: (target.track.iter())
+                .map(|state| document::steady(state, 0.0))
+                .collect(),
+        });
+        let followed = simulation.replans.iter().filter(|replan| replan.followed);
+        let plans = followed
+            .zip(plans)
+            .filter(|(replan, _)| replan.start_t_s <= end)
+            .map(|(replan, plan)| FollowedPlan::new(scenario, replan.start_t_s, plan));
+        let mut closed_loop = Self {
+            simulation,
+            canvas: Canvas::new(scenario, [], &[], end, Palette::Targets),
+            plans: plans.filter(|plan| !plan.segments.is_empty()).collect(),
+            targets: targets.collect(),
+            own,
+        };
+        // the curves reach the reported values
+        let samples = &mut closed_loop.canvas.samples;
+        samples.push(simulation.conduct.largest_off_plan_t_s);
+        samples.extend(simulation.targets.iter().map(|t| t.least_clearance_t_s));
+        samples.sort_by(f64::total_cmp);
+        samples.dedup();
+        closed_loop.canvas.bounds = closed_loop.bounds(&times);
+        closed_loop.canvas.cursor_times = times;
+        closed_loop
+    }
+
+    /// The desired trajectory, the plans, and every ship while it is near own ship.
+    fn bounds(&self, times: &[f64]) -> Bounds {
+        let desired = &self.canvas.scenario.desired;
+        let near = 0.6 * desired.length();
+        let mut points = desired.waypoints();
+        let planned = self.plans.iter().flat_map(|plan| &plan.segments);
+        points.extend(planned.map(|segment| segment.start.position));
+        for &time in times {
+            let own = self.own_at(time).pose.position;
+            points.push(own);
+            let targets = self.targets.iter().filter_map(|t| t.at(time));
+            let places = targets.map(|ship| ship.pose.position);
+            points.extend(places.filter(|place| (place - own).norm() < near));
+        }
+        Bounds::around(points)
+    }
+
+    /// Own ship.
+    pub fn own_at(&self, time: f64) -> SteadyShip {
+        on(&self.own, time)
+    }
+
+    /// The plan that own ship follows at a time; `None` before the first.
+    pub fn plan_at(&self, time: f64) -> Option<&FollowedPlan> {
+        let time = time + tolerance::TIME_S;
+        let begun = self.plans.partition_point(|plan| plan.from <= time);
+        self.plans[..begun].last()
+    }
+
+    /// Metres between own ship and where its plan has it; at the start of a plan, where the one
+    /// before has it.
+    pub fn off_plan(&self, time: f64) -> Option<f64> {
+        let before = self.plan_at(time - 2.0 * tolerance::TIME_S);
+        let planned = on(&before.or_else(|| self.plan_at(time))?.segments, time);
+        Some((self.own_at(time).pose.position - planned.pose.position).norm())
+    }
+
+    /// The distances of the hulls that matter, metres; `None` without a target.
+    pub fn near_clearances(&self) -> Option<[f64; 2]> {
+        let targets = self.simulation.targets.iter();
+        let least = targets.filter_map(|target| target.least_clearance_m);
+        let least = least.reduce(f64::min)?;
+        let own = &self.canvas.scenario.own_ship;
+        let near = (10.0 * own.safety_margin).max(4.0 * own.hull.length);
+        Some([least.min(0.0), near.max(4.0 * least)])
+    }
+
+    /// Metres between the hulls, negative in overlap.
+    pub fn clearance(&self, target: &TrueTarget, time: f64) -> Option<f64> {
+        let own = self.canvas.scenario.own_ship.hull;
+        let own = own.polygon(&self.own_at(time).pose);
+        let other = target.hull.polygon(&target.at(time)?.pose);
+        Some(own.separation(&other))
+    }
+}
+
+impl FollowedPlan {
+    fn new(scenario: &Scenario, from: f64, plan: &PlanDocument) -> Self {
+        let segments = plan.trajectory.iter().flat_map(|t| t.segments.iter());
+        let ships = plan.targets.iter().filter_map(|t| t.ship.as_ref());
+        let ships = ships.map(document::track);
+        Self {
+            from,
+            segments: (segments.flatten().map(document::segment))
+                .map(|segment| Segment {
+                    start_time: segment.start_time + from,
+                    ..segment
+                })
+                .collect(),
+            targets: ships
+                .map(|ship| AssumedTarget::new(&scenario.own_ship, ship, plan.horizon_s))
+                .collect(),
+        }
+    }
+}
+
+impl AssumedTarget {
+    fn new(own: &OwnShip, ship: ShipTrack, horizon: f64) -> Self {
+        let hard = colregs::shapes(own, &ship, None, horizon).hard;
+        let velocities = ship.outer_velocity_sets(ship.turn_rate, horizon);
+        Self {
+            hard: Uncertainty::new(hard, velocities),
+            ship,
+        }
+    }
+
+    /// The hull on the expected track.
+    pub fn hull_at(&self, time: f64) -> ConvexPolygon {
+        self.ship.hull.polygon(&self.ship.pose_at(time))
+    }
+
+    /// The set that own ship's centre has to keep out of, from the outside.
+    pub fn hard_at(&self, time: f64) -> ConvexPolygon {
+        self.hard.outer_section(time)
+    }
+}
+
+impl TrueTarget {
+    /// The ship; `None` where nothing of it is known.
+    pub fn at(&self, time: f64) -> Option<SteadyShip> {
+        let begun = self.states.partition_point(|(from, _)| *from <= time);
+        let (from, ship) = self.states.get(begun.saturating_sub(1))?;
+        let position = ship.pose.position + ship.velocity() * (time - from);
+        Some(SteadyShip {
+            pose: Pose::new(position, ship.pose.heading),
+            ..*ship
+        })
+    }
+}
+
+/// The ship on segments, of which there is at least one.
+fn on(segments: &[Segment], time: f64) -> SteadyShip {
+    let begun = segments.partition_point(|segment| segment.start_time <= time);
+    let segment = &segments[begun.saturating_sub(1)];
+    let time = time.clamp(segment.start_time, segment.end_time());
+    SteadyShip {
+        pose: segment.pose_at(time),
+        speed: segment.speed,
+    }
+}

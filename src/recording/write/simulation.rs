@@ -1,0 +1,211 @@
+//! Writes a simulation as one recording: what was sailed, and the plan at every time.
+
+use std::path::Path;
+
+use rerun::{MediaType, RecordingStreamResult, TextDocument, TextLog, TextLogLevel, TimeColumn};
+
+use super::{Recorder, RecordingError, encoding_error, put};
+use crate::document::{self, PlanDocument, SimulationDocument};
+use crate::recording::canvas::ClosedLoop;
+use crate::recording::views::{chart, closed_loop, land, ships};
+use crate::recording::{EVENTS, SIMULATION, SUMMARY, TIMELINE, layout, path};
+use crate::scenario::Scenario;
+
+/// An alarm goes on where it is raised again within this many times between plans.
+const GOES_ON: f64 = 1.5;
+
+/// A simulation, with the text of its recording.
+#[derive(Debug, Clone, Copy)]
+pub struct Simulated<'a> {
+    /// The scenario that was sailed.
+    pub scenario: &'a Scenario,
+    /// The record of the simulation.
+    pub document: &'a SimulationDocument,
+    /// The plans that own ship followed: [`crate::simulation::Simulation::plans`] of a simulation
+    /// that kept them from the start.
+    pub plans: &'a [PlanDocument],
+    /// The result as text.
+    pub text: &'a str,
+}
+
+/// Writes a simulation as one recording, in full or not at all, as [`super::write`] does a run.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::recording::{Recorded, Simulated, write_simulation};
+/// use searoom::scenario::Scenario;
+/// use searoom::simulation::Simulation;
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// let mut simulation = Simulation::new(scenario.clone(), false).expect("a closed loop");
+/// simulation.keep_plans();
+/// for _ in 0..100 {
+///     simulation.step();
+/// }
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("sailed.rrd");
+/// let simulated = Simulated {
+///     scenario: &scenario,
+///     document: &simulation.record(),
+///     plans: simulation.plans(),
+///     text: "Head-on: sailed for 50 s",
+/// };
+/// write_simulation(&simulated, &file)?;
+/// assert!(Recorded::read(&file)?.table("curves/off_plan_m").is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_simulation(simulated: &Simulated, path: &Path) -> Result<(), RecordingError> {
+    let text = serde_json::to_string(&without_motions(simulated.document));
+    let text = text.map_err(|source| encoding_error(path, source))?;
+    let title = &simulated.scenario.title;
+    put(path, title, (SIMULATION, &text), |rec| log(rec, simulated))
+}
+
+/// The document without what grows with the time sailed and is drawn.
+fn without_motions(document: &SimulationDocument) -> SimulationDocument {
+    let mut short = document.clone();
+    short.sailed.clear();
+    for target in &mut short.targets {
+        target.track.clear();
+    }
+    for replan in &mut short.replans {
+        replan.estimates.clear();
+    }
+    short
+}
+
+fn log(rec: &mut Recorder, simulated: &Simulated) -> RecordingStreamResult<Recorder> {
+    let Simulated {
+        scenario,
+        document,
+        plans,
+        text,
+    } = *simulated;
+    let model = ClosedLoop::new(scenario, document, plans);
+    let text = format!("```\n{text}\n```\n\n{}", key(&model));
+    let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
+    rec.log_static(SUMMARY, &text)?;
+    land::log_outlines(rec, &model.canvas)?;
+    closed_loop::log_chart(rec, &model)?;
+    closed_loop::log_curves(rec, &model)?;
+    log_events(rec, document)?;
+    layout::of_simulation(&model)
+}
+
+/// How to read the chart.
+fn key(model: &ClosedLoop) -> String {
+    format!(
+        "Chart at the cursor: own ship is white, and so is its plan where it has the desired speed; \
+         yellow and thick is faster, blue and thin slower. Each target has a colour for its true hull, \
+         its track, and thick for the hard set that the plan assumes; grey is the hull that the plan \
+         assumes. Sets apply to own ship's centre. Speed vectors are of {:.0} s, dots every {:.0} s; \
+         the grid has {:.0} m.",
+        ships::vector_seconds(&model.canvas),
+        model.canvas.cursor_times.get(1).copied().unwrap_or(0.0),
+        chart::grid_spacing(&model.canvas),
+    )
+}
+
+/// Something that happened.
+struct Event {
+    time: f64,
+    level: &'static str,
+    text: String,
+}
+
+/// Logs what happened, in order of time.
+fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> RecordingStreamResult<()> {
+    let mut events = outcomes(document);
+    events.extend(alarms(document));
+    for target in &document.targets {
+        events.extend(target.contact_t_s.map(|time| Event {
+            time,
+            level: TextLogLevel::ERROR,
+            text: format!("CONTACT with {}", target.name),
+        }));
+    }
+    events.push(Event {
+        time: document.duration_s,
+        level: TextLogLevel::INFO,
+        text: if document.arrived {
+            "arrived"
+        } else {
+            "end, not arrived"
+        }
+        .to_owned(),
+    });
+    // a stable sort: a plan comes before its alarms
+    events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let columns = TextLog::update_fields()
+        .with_many_text(events.iter().map(|event| event.text.as_str()))
+        .with_many_level(events.iter().map(|event| event.level))
+        .columns_of_unit_batches()?;
+    let times = TimeColumn::new_duration_secs(TIMELINE, events.iter().map(|event| event.time));
+    rec.send_columns(path(&[EVENTS]), Some(times), columns)
+}
+
+/// The plans that are not the remainder of the one before with the same outcome.
+fn outcomes(document: &SimulationDocument) -> Vec<Event> {
+    let mut events = Vec::new();
+    let mut before = None;
+    for replan in &document.replans {
+        let mut relaxed: Vec<&str> = replan.relaxations.iter().map(String::as_str).collect();
+        relaxed.sort_unstable();
+        relaxed.dedup();
+        let outcome = Some((replan.verdict.as_str(), relaxed.clone()));
+        if replan.followed && replan.keeps_plan && before == outcome {
+            continue;
+        }
+        before = outcome;
+        let kind = match (replan.followed, replan.keeps_plan) {
+            (false, _) => "not followed",
+            (true, true) => "plan kept",
+            (true, false) => "new plan",
+        };
+        let mut text = format!("{kind} from {:.0} s: {}", replan.start_t_s, replan.verdict);
+        if let Some(turn) = replan.turn_deg {
+            let side = if turn < 0.0 { "port" } else { "starboard" };
+            text += &format!("; turns {:.0}° to {side}", turn.abs());
+        }
+        if !relaxed.is_empty() {
+            text += &format!("; relaxed: {}", relaxed.join(", "));
+        }
+        let level = if replan.safe && replan.followed {
+            TextLogLevel::INFO
+        } else {
+            TextLogLevel::WARN
+        };
+        events.push(Event {
+            time: replan.t_s,
+            level,
+            text,
+        });
+    }
+    events
+}
+
+/// The alarms; one that goes on from plan to plan is there once.
+fn alarms(document: &SimulationDocument) -> impl Iterator<Item = Event> {
+    let goes_on = GOES_ON * document.settings.replan_s;
+    let begins = move |(index, alarm): &(usize, &document::AlarmDocument)| {
+        let mut earlier = document.alarms[..*index].iter().rev();
+        let same =
+            |a: &&document::AlarmDocument| (&a.alarm, &a.target) == (&alarm.alarm, &alarm.target);
+        earlier
+            .find(same)
+            .is_none_or(|last| alarm.t_s - last.t_s > goes_on)
+    };
+    let begun = document.alarms.iter().enumerate().filter(begins);
+    begun.map(|(_, alarm)| {
+        let target = alarm
+            .target
+            .as_ref()
+            .map_or(String::new(), |name| format!(": {name}"));
+        Event {
+            time: alarm.t_s,
+            level: TextLogLevel::WARN,
+            text: format!("alarm: {}{target}", alarm.alarm),
+        }
+    })
+}
