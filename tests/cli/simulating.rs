@@ -39,7 +39,7 @@ fn a_contact_ends_with_status_1_and_is_named() {
     let file = write(folder.path(), "ram.toml", head_on(ram, ""));
     let shown = stdout(&searoom(&["simulate", &file]).code(1));
     assert!(
-        shown.starts_with("Head-on: CONTACT with target; "),
+        shown.starts_with("Head-on: CONTACT with target ('target' left its set); "),
         "{shown}"
     );
     let found = document(&searoom(&["simulate", &file, "--json"]).code(1));
@@ -60,7 +60,8 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
     );
     let sail = |seed: &str| {
         untimed(document(
-            &searoom(&["simulate", &file, "--json", "--seed", seed]).success(),
+            // the current carries own ship out of its tracking margin of 0 m
+            &searoom(&["simulate", &file, "--json", "--seed", seed]).code(1),
         ))
     };
     let first = sail("7");

@@ -62,8 +62,11 @@ fn table_of_roles() -> String {
     text
 }
 
+/// A time, a turn in degrees to starboard, and the speed from then on.
+type Change = (f64, f64, f64);
+
 /// Own motion to the east: turns in degrees to starboard and speeds, each from a time on.
-fn motion(changes: &[(f64, f64, f64)]) -> Trajectory {
+fn motion(changes: &[Change]) -> Trajectory {
     let (mut at, mut time) = (Pose::new(Vector::zeros(), 0.0), 0.0);
     let mut segments = Vec::new();
     let mut speed = SPEED;
@@ -115,7 +118,7 @@ fn table_of_motions() -> String {
         ("overtaken", ship(Vector::new(-1080.0, 0.0), 0.0, 9.6)),
     ];
     let (full, half) = (SPEED, 0.5 * SPEED);
-    let motions: [(&str, &[(f64, f64, f64)]); 12] = [
+    let motions: [(&str, &[Change]); 12] = [
         ("holds course and speed", &[]),
         (
             "30° to starboard at 30 s, back at 400 s",

@@ -53,7 +53,8 @@ fn in_restricted_visibility_own_ship_turns_away() {
         assert_eq!(run.targets[0].sets.encounter.role, role, "{from:?}");
         let plan = run.planned.outcome.plan().expect("a plan");
         let turns = plan.trajectory.segments().iter().map(|s| s.turn_rate);
-        let first = turns.filter(|rate| *rate != 0.0).next();
+        let mut turns = turns.filter(|rate| *rate != 0.0);
+        let first = turns.next();
         assert!(run.relaxations.is_empty(), "{from:?} {:?}", run.relaxations);
         assert!(
             first.is_none_or(|rate| (rate < 0.0) == starboard),
