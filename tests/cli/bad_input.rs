@@ -46,7 +46,7 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut scenario = String::from(
         "title = \"many\"\nhorizon_s = 6400.0\n[own_ship]\nposition = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0\n\
-         speed_mps = 5.0\nlength_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\n[planner]\ncompliance = \"shape\"\ndeadline_s = 0.4\n",
+         speed_mps = 5.0\nlength_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\nspeeds_mps = [2.5, 5.0, 6.0]\n[planner]\ncompliance = \"shape\"\ndeadline_s = 0.4\n",
     );
     let zigzag: Vec<String> = (0..100)
         .map(|i| {
