@@ -126,8 +126,10 @@ fn taken(
     let then: Vec<Segment> = around(segments, time)
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
         .collect();
-    // A narrow set was enlarged for the planner, by a polygon around a disc.
-    let narrow_at = if set.from > 0.0 { 0.0 } else { time };
+    // A set that is narrow in its first time interval was enlarged for the planner, by a polygon
+    // around a disc, and for all times.
+    let first = whole.sets.velocities.first()?.until;
+    let narrow_at = if set.from > 0.0 { 0.0 } else { time.min(first) };
     let wide = MovingSlabs::new(&whole.sets).half_width(narrow_at) >= tolerance::HALF_WIDTH_M;
     let near = if wide {
         tolerance::DEPTH_M

@@ -112,6 +112,13 @@ fn a_needle_that_is_passed_is_no_risk() {
     assert_eq!(plan["cost"]["max_risk"], json!(0.0));
 }
 
+/// A set that is flat for two seconds was enlarged for the planner, also when it has grown.
+#[test]
+fn a_risk_in_a_set_that_was_flat_is_accepted() {
+    let plan = verified_file("flat-interval-risk");
+    assert!(plan["encounters"][1]["max_risk"].as_f64() > Some(0.0));
+}
+
 /// Half a turn is 36 times 5° or 37 times a little less: 12° are read as they were written.
 #[test]
 fn a_turn_rate_is_written_as_it_is_read() {
