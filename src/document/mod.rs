@@ -6,13 +6,11 @@
 
 mod assessment;
 mod comparison;
-mod control;
 mod encounter;
 mod lines;
 mod lint;
 mod memory;
 mod parts;
-mod path_time;
 mod plan;
 mod simulation;
 mod suite;
@@ -23,9 +21,6 @@ pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument,
-};
-pub use control::{
-    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
 pub use encounter::{
     ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument, RoleDocument,
@@ -41,8 +36,13 @@ pub use memory::{
 #[cfg(feature = "recording")]
 pub(crate) use memory::{segment, steady, track};
 pub use parts::*;
-pub(crate) use path_time::paths;
-pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
+pub use plan::control::{
+    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
+};
+pub(crate) use plan::path_time::paths;
+pub use plan::path_time::{
+    PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument,
+};
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub(crate) use plan::{finite, planner_names, position, segment_document};
 pub use simulation::*;

@@ -1,8 +1,13 @@
 //! Plan document, see docs/documents.md.
 
+pub(super) mod control;
+pub(super) mod path_time;
+
+use control::{ControlDocument, control};
+use path_time::{PathTimeDocument, path_time_document};
+
 use serde::{Deserialize, Serialize};
 
-use super::control::{ControlDocument, control};
 use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::parts::{
@@ -10,7 +15,6 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
-use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, initial_set, target, velocity_set};
 use crate::evaluation::Evaluation;
 use crate::frame::{

@@ -230,6 +230,13 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/sailed/0/start/north_m", 20.0.into()),
             ("/duration_s", 900.0.into()),
             ("/replans/1/safe", false.into()),
+            ("/replans/1/verdict", "NOT SAFE".into()),
+            ("/replans/1/estimates", serde_json::json!([])),
+            ("/replans", serde_json::json!([])),
+            ("/targets", serde_json::json!([])),
+            ("/targets/0/beam_m", 0.0.into()),
+            ("/targets/0/least_clearance_t_s", (-1e9).into()),
+            ("/conduct/unsafe_plans", 2.into()),
         ] {
             let altered = check(&|document| {
                 *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);

@@ -164,7 +164,8 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
             (true, false) => "new plan",
         };
         let mut text = format!("{kind} from {:.0} s: {}", replan.start_t_s, replan.verdict);
-        if let Some(turn) = replan.turn_deg {
+        // a manoeuvre by less speed turns nowhere
+        if let Some(turn) = replan.turn_deg.filter(|turn| turn.abs() >= 0.5) {
             let side = if turn < 0.0 { "port" } else { "starboard" };
             text += &format!("; turns {:.0}° to {side}", turn.abs());
         }
