@@ -139,6 +139,7 @@ pub mod map;
 mod numerics;
 pub mod obstacle;
 mod output;
+mod parallel;
 pub mod pipeline;
 pub mod planner;
 #[cfg(feature = "recording")]

@@ -16,6 +16,7 @@ tolerance:
 numerics:
 search:
 output:
+parallel:
 text:
 input: frame text
 geometry: tolerance frame numerics
@@ -26,10 +27,10 @@ target: frame geometry tolerance vessel
 colregs: frame tolerance geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory map
 planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
-evaluation: frame tolerance geometry map vessel target trajectory colregs
+evaluation: parallel frame tolerance geometry map vessel target trajectory colregs
 verification: document frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
-pipeline: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
+pipeline: parallel frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
 simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document
 study: document frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline
 document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation verification scenario pipeline study text

@@ -3,7 +3,7 @@
 use super::role::{Role, SteadyShip, role_within};
 use super::thresholds::{RiskLimits, Thresholds};
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
-use crate::target::{Motion, ShipTrack, Target};
+use crate::target::{Motion, ShipTrack, Target, Uncertainty};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 use crate::vessel::OwnShip;
 
@@ -180,29 +180,14 @@ pub fn encounter(
                     .hull
                     .polygon(&other)
                     .minkowski_sum(&own.hull.polygon(&heading).negated());
-                least(from, until, |time| {
+                let closing = leg.speed + ship.speed;
+                least([from, until], closing, found.undisturbed_dcpa, |time| {
                     both.signed_distance(position(time) - ship.pose_at(time).position)
                 })
             }
-            // convex between two changes of the velocities
             Motion::Sets(sets) => {
-                let mut ends: Vec<f64> = target.changes();
-                ends.retain(|&end| end > from && end < until);
-                ends.push(until);
-                let mut start = from;
-                let mut best: Option<Closest> = None;
-                for end in ends {
-                    let section = sets.outer_sections_from(start);
-                    let here = least(start, end, |time| {
-                        section(time).signed_distance(position(time))
-                    });
-                    if best.as_ref().is_none_or(|b| here.distance < b.distance) {
-                        best = Some(here);
-                    }
-                    start = end;
-                }
-                let Some(best) = best else { continue };
-                best
+                let known = found.undisturbed_dcpa;
+                closest_to_sets(sets, position, leg.speed, [from, until], known)
             }
         };
         if closest.distance < found.undisturbed_dcpa {
@@ -211,6 +196,39 @@ pub fn encounter(
         }
     }
     found
+}
+
+/// Closest approach of a point at a constant `speed` (m/s) to the growing set, if it is less than
+/// the `known` distance. The distance is convex between two changes of the velocities.
+fn closest_to_sets(
+    sets: &Uncertainty,
+    position: impl Fn(f64) -> Vector,
+    speed: f64,
+    [from, until]: [f64; 2],
+    known: f64,
+) -> Closest {
+    let mut section = sets.outer_section(from);
+    let mut start = from;
+    let mut best = Closest {
+        distance: known,
+        time: from,
+    };
+    for (end, velocities) in sets.outer_velocities_from(from) {
+        let end = end.min(until);
+        let at = |time: f64| section.minkowski_sum(&velocities.scaled(time - start));
+        let closing = speed + velocities.reach();
+        let here = least([start, end], closing, best.distance, |time| {
+            at(time).signed_distance(position(time))
+        });
+        if here.distance < best.distance {
+            best = here;
+        }
+        if !(end < until) {
+            break;
+        }
+        (section, start) = (at(end), end);
+    }
+    best
 }
 
 /// Angle in `[-pi, pi]` of own ship off the target's wake, positive to the target's starboard side.
@@ -234,16 +252,27 @@ struct Closest {
     time: f64,
 }
 
-/// Least value of a convex function on an interval by golden section, to about 1e-9 of the
-/// interval; among equal values the first one. The distance of two convex sets in steady motion is
-/// convex in time, overlap included.
-fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
+/// Least distance on an interval by golden section, to about 1e-9 of the interval; among equal
+/// values the first one. The distance of two convex sets in steady motion is convex in time,
+/// overlap included, and changes by at most `closing` (m/s). Where it is not less than the `known`
+/// one, only the ends are looked at.
+fn least(
+    [from, until]: [f64; 2],
+    closing: f64,
+    known: f64,
+    distance: impl Fn(f64) -> f64,
+) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const STEPS: usize = 48;
     let at = |time: f64| Closest {
         distance: distance(time),
         time,
     };
+    let (first, last) = (at(from), at(until));
+    let bound = 0.5 * (first.distance + last.distance - closing * (until - from));
+    if bound >= known {
+        return first;
+    }
     let (mut low, mut high) = (from, until);
     let mut left = at(high - GOLDEN * (high - low));
     let mut right = at(low + GOLDEN * (high - low));
@@ -258,8 +287,8 @@ fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
             right = at(low + GOLDEN * (high - low));
         }
     }
-    let mut best = at(from);
-    for candidate in [left, right, at(until)] {
+    let mut best = first;
+    for candidate in [left, right, last] {
         if candidate.distance < best.distance {
             best = candidate;
         }

@@ -38,6 +38,7 @@ use safety::{Claim, collision, grounding};
 use std::collections::HashMap;
 
 use crate::frame::Side;
+use crate::parallel;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -229,28 +230,23 @@ fn meetings<P: Piece>(
     judged: bool,
     violations: &mut Vec<Violation>,
 ) -> (Vec<Passage>, Safety) {
-    let margins: Vec<(Least, bool)> = request
-        .sets
-        .iter()
-        .map(|set| {
-            let label = format!("set of '{}'", set.name);
-            let (least, entered) = set.judged(&label, pieces);
-            let kept = entered.is_none();
-            violations.extend(entered.filter(|_| judged));
-            (least, kept)
-        })
-        .collect();
+    let margins = parallel::map(request.sets, |_, set| {
+        set.judged(&format!("set of '{}'", set.name), pieces)
+    });
     let mut by_name: HashMap<&str, Claim> = HashMap::new();
-    for (set, (least, kept)) in request.sets.iter().zip(&margins) {
+    for (set, (least, entered)) in request.sets.iter().zip(margins) {
         let claim = by_name.entry(&set.name).or_insert_with(Claim::new);
-        claim.see(least, *kept, set.from);
+        claim.see(&least, entered.is_none(), set.from);
+        violations.extend(entered.filter(|_| judged));
     }
     let mut worst = Safety::Safe;
     let mut passages = Vec::with_capacity(request.targets.len());
     let unclaimed = Claim::new();
-    for target in request.targets {
+    let found = parallel::map(request.targets, |_, target| {
         let claim = by_name.get(target.name.as_str()).unwrap_or(&unclaimed);
-        let (passage, clearance, safety) = passage(request, pieces, turns, target, claim);
+        passage(request, pieces, turns, target, claim)
+    });
+    for (target, (passage, clearance, safety)) in request.targets.iter().zip(found) {
         worst = worst.max(safety);
         // Explicit sets are already judged above, as sets.
         if judged && target.ship().is_some() {

@@ -28,6 +28,7 @@ use std::time::{Duration, Instant};
 use crate::evaluation::Evaluation;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
+use crate::parallel;
 use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::scenario::{Compliance, Scenario};
 
@@ -173,14 +174,13 @@ pub fn run(scenario: Scenario) -> Run {
     let answer = relaxer.answer();
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
-        let whole = answer.whole.iter().zip(&answer.released);
-        whole
-            .map(|(set, released)| match released {
+        parallel::map(&answer.whole, |index, set| {
+            match answer.released[index] {
                 // the set that the plan has left then
                 Some(_) => peak_risk(&set.outer_with_interior(), trajectory, answer.risk),
                 None => peak_risk(&set.outer_where_flat(), trajectory, answer.risk),
-            })
-            .collect()
+            }
+        })
     });
     let mut relaxations = outcome::relaxations(
         &sets,

@@ -5,6 +5,7 @@ use crate::colregs::compliance::{ComplianceReport, OwnSamples};
 use crate::colregs::{Duty, Encountered, Role, SteadyShip, Thresholds};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
+use crate::parallel;
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
@@ -94,13 +95,11 @@ fn conduct(
     let (own, memory) = (&scenario.own_ship, &scenario.memory);
     let track = trajectory
         .map(|trajectory| OwnSamples::along(&memory.sailed, trajectory, own.hull, own.speed));
-    let targets = scenario.targets.iter().enumerate();
-    let samples = targets.map(|(index, target)| {
+    let samples = parallel::map(&scenario.targets, |index, target| {
         let (track, ship) = (track.as_ref()?, target.ship()?);
         let known = memory.target(index);
         Some(ComplianceReport::samples(track, ship, known, thresholds))
     });
-    let samples: Vec<_> = samples.collect();
     let mut reports = ComplianceReport::of_all(samples.iter().flatten(), thresholds).into_iter();
     let report = |samples: &Option<_>| samples.as_ref().and_then(|_| reports.next());
     samples.iter().map(report).collect()

@@ -4,6 +4,7 @@ use super::rules::without_domains_of_give_way_targets;
 use crate::colregs::{self, Encounter, Role, Shapes, TargetMemory};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::parallel;
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target, Uncertainty};
 
@@ -79,8 +80,7 @@ impl TargetSets {
 
 /// The obstacles and the encounter of every target, in the scenario's order.
 pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
-    let targets = scenario.targets.iter().enumerate();
-    let sets = targets.map(|(index, target)| {
+    let sets = parallel::map(&scenario.targets, |index, target| {
         let mut sets = target_sets(scenario, index, target);
         let passed = |known: &TargetMemory| known.passed && sets.encounter.risk.is_none();
         if scenario.memory.target(index).is_some_and(passed) {
@@ -88,7 +88,7 @@ pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
         }
         sets
     });
-    without_domains_of_give_way_targets(scenario, sets.collect())
+    without_domains_of_give_way_targets(scenario, sets)
 }
 
 fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets {

@@ -70,27 +70,25 @@ impl Uncertainty {
             })
     }
 
-    /// [`Self::outer_section`] as a function of the times from `start` to the next change of the
-    /// velocities. The earlier velocities are summed once.
-    pub(crate) fn outer_sections_from(&self, start: f64) -> impl Fn(f64) -> ConvexPolygon {
-        let index = self.velocities.partition_point(|set| set.until <= start);
-        let index = index.min(self.velocities.len() - 1);
-        let begun = index
-            .checked_sub(1)
-            .map_or(0.0, |k| self.velocities[k].until);
-        let section = self.outer_section(begun);
-        let velocities = self.velocities[index].velocities.outer_polygon(SET_SIDES);
-        move |time| section.minkowski_sum(&velocities.scaled(time - begun))
+    /// The velocity sets that hold after `start`, seconds: the time at which each ends, and its
+    /// circumscribed polygon, m/s.
+    pub(crate) fn outer_velocities_from(
+        &self,
+        start: f64,
+    ) -> impl Iterator<Item = (f64, ConvexPolygon)> {
+        // negated so that a NaN is included
+        let later = self
+            .velocities
+            .iter()
+            .filter(move |set| !(set.until <= start));
+        later.map(|set| (set.until, set.velocities.outer_polygon(SET_SIDES)))
     }
 
     /// A polygon that contains every velocity after `time`, m/s: the convex hull of the sets, with
     /// the circumscribed 64-gons of ellipses.
     pub fn outer_velocities_after(&self, time: f64) -> ConvexPolygon {
-        // negated so that a NaN is included
-        let later = self.velocities.iter().filter(|set| !(set.until <= time));
-        let points: Vec<Vector> = later
-            .flat_map(|set| set.velocities.outer_polygon(SET_SIDES).vertices().to_vec())
-            .collect();
+        let later = self.outer_velocities_from(time);
+        let points: Vec<Vector> = later.flat_map(|(_, set)| set.vertices().to_vec()).collect();
         ConvexPolygon::hull(&points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
     }
 

@@ -11,7 +11,7 @@ use crate::vessel::Hull;
 const STEP_S: f64 = 1.0;
 
 /// Most steps; a longer trajectory has longer steps.
-const MOST_SAMPLES: u32 = 20_000;
+const MOST_SAMPLES: u32 = 5_000;
 
 /// m/s. Below this relative speed two ships keep their distance.
 const NO_RELATIVE_SPEED: f64 = 1e-9;

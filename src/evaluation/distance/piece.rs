@@ -4,7 +4,7 @@ use crate::frame::{Pose, Vector};
 use crate::trajectory::{Bounds, Cubic, Segment};
 
 /// Piece of own ship's motion, smooth within its time.
-pub(crate) trait Piece: Copy {
+pub(crate) trait Piece: Copy + Sync {
     /// Start time, seconds.
     fn start_time(&self) -> f64;
     /// End time, seconds.

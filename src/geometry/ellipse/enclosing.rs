@@ -1,5 +1,7 @@
 //! The smallest ellipse around a polygon.
 
+use std::f64::consts::FRAC_PI_4;
+
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::Ellipse;
@@ -75,33 +77,44 @@ fn loewner(vertices: &[Vector]) -> Ellipse {
     )
 }
 
-/// `sum w_i q_i q_i'` for the weights that maximise its determinant.
+/// `sum w_i q_i q_i'` for the weights that maximise its determinant. Few points have a weight: the
+/// ascent runs on a working set, which takes in the point farthest outside until none is.
 fn weighted_moment(points: &[Vector3<f64>]) -> Matrix3<f64> {
-    let mut weights = vec![1.0 / points.len() as f64; points.len()];
-    let moment = |weights: &[f64]| {
+    let mut working = extreme_points(points);
+    let mut weights = vec![1.0 / working.len() as f64; working.len()];
+    let moment = |working: &[usize], weights: &[f64]| {
         let mut sum = Matrix3::zeros();
-        for (w, q) in weights.iter().zip(points) {
-            sum += (q * q.transpose()) * *w;
+        for (w, i) in weights.iter().zip(working) {
+            sum += (points[*i] * points[*i].transpose()) * *w;
         }
         sum
     };
     for _ in 0..MAX_STEPS {
-        let Some(inverse) = moment(&weights).try_inverse() else {
+        let Some(inverse) = moment(&working, &weights).try_inverse() else {
             break;
         };
+        let value = |i: usize| points[i].dot(&(inverse * points[i]));
         let (mut most, mut least) = ((0, f64::NEG_INFINITY), (0, f64::INFINITY));
-        for (i, q) in points.iter().enumerate() {
-            let value = q.dot(&(inverse * q));
+        for (place, i) in working.iter().enumerate() {
+            let value = value(*i);
             if value > most.1 {
-                most = (i, value);
+                most = (place, value);
             }
-            if weights[i] > 0.0 && value < least.1 {
-                least = (i, value);
+            if weights[place] > 0.0 && value < least.1 {
+                least = (place, value);
             }
         }
         let (over, under) = (most.1 - 3.0, 3.0 - least.1);
         if !(over.max(under) > tolerance::LOEWNER) {
-            break;
+            let all = (0..points.len()).map(|i| (i, value(i)));
+            match all.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some((i, value)) if value - 3.0 > tolerance::LOEWNER && !working.contains(&i) => {
+                    working.push(i);
+                    weights.push(0.0);
+                    continue;
+                }
+                _ => break,
+            }
         }
         let (index, step) = if over > under {
             (most.0, over / (3.0 * (most.1 - 1.0)))
@@ -119,7 +132,21 @@ fn weighted_moment(points: &[Vector3<f64>]) -> Matrix3<f64> {
         }
         weights[index] = (weights[index] + step).max(0.0);
     }
-    moment(&weights)
+    moment(&working, &weights)
+}
+
+/// Indices of the farthest points in eight directions.
+fn extreme_points(points: &[Vector3<f64>]) -> Vec<usize> {
+    let mut found: Vec<usize> = (0..8)
+        .filter_map(|k| {
+            let (sine, cosine) = (f64::from(k) * FRAC_PI_4).sin_cos();
+            let along = |i: &usize| points[*i].x * cosine + points[*i].y * sine;
+            (0..points.len()).max_by(|a, b| along(a).total_cmp(&along(b)))
+        })
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// The ellipse scaled about its centre by the least factor that contains every point after
