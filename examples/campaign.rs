@@ -34,7 +34,13 @@ enum Campaign {
     /// Scenes with 2, 4 and 10 targets, a third of each
     Traffic(Scenes<3_000>),
     /// Costs against a dense search over east, north, heading and time
-    DenseSearch(Scenes<200>),
+    DenseSearch {
+        #[command(flatten)]
+        scenes: Scenes<200>,
+        /// Targets; with more than one, A* and the thorough search
+        #[arg(long, default_value_t = 1)]
+        targets: usize,
+    },
     /// Plans that keep to the rules, a fifth of each kind of encounter
     Compliance {
         #[command(flatten)]
@@ -141,7 +147,10 @@ fn run(campaign: Campaign) -> Report {
     match campaign {
         Campaign::Encounters(scenes) => encounters::run(scenes.of_each(5)),
         Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
-        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(5)),
+        Campaign::DenseSearch { scenes, targets: 1 } => dense_search::run(scenes.of_each(5)),
+        Campaign::DenseSearch { scenes, targets } => {
+            dense_search::run_among(targets, scenes.of_each(1))
+        }
         Campaign::Compliance { scenes, far } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             compliance::run(scenes.of_each(5), &meeting)

@@ -31,8 +31,8 @@ pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
 use super::{
-    Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts,
-    Problem, SearchKind, SearchStats,
+    ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanRequest, Planned, Planner,
+    PlannerFacts, Problem, SearchKind, SearchStats,
 };
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
@@ -48,6 +48,7 @@ use route::Route;
 use rules::groups;
 use selection::Selection;
 use selection::budget::SearchBudget;
+use selection::conflict_search;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
@@ -66,7 +67,11 @@ impl Planner for SpaceTimePlanner {
             uses_ellipses: false,
             relaxes_domains_only: false,
             has_no_return: true,
-            searches: &[SearchKind::AStar, SearchKind::Dijkstra],
+            searches: &[
+                SearchKind::AStar,
+                SearchKind::Dijkstra,
+                SearchKind::Thorough,
+            ],
         }
     }
 
@@ -232,15 +237,88 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
             return refuse(no_candidate(problem, contact, grounding));
         }
     }
-    let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    if first_conflict.is_some() {
+        conflicts = by_obstacle(proxies)
+            .filter_map(|h| Conflict::of(h, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
+            .collect();
+        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
+        conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
+    }
+    let targets = by_obstacle(proxies).count();
+    let attempt = |budget, incumbent| {
+        let nominal = (&nominal_motion[..], &conflicts[..]);
+        attempted(&context, budget, nominal, incumbent, clock)
+    };
+    let mut attempted = attempt(SearchBudget::of(targets), f64::INFINITY);
+    if problem.search == SearchKind::Thorough && targets > 1 && !conflicts.is_empty() {
+        let incumbent = attempted.cost();
+        attempted = attempted.or_cheaper(attempt(&SearchBudget::THOROUGH, incumbent));
+    }
+    let outcome = match (attempted.plan, attempted.timed_out) {
+        (plan, true) => Outcome::Deadline(plan),
+        (Some(plan), false) => Outcome::Solved(plan),
+        (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
+    };
+    Planned {
+        stats: attempted.stats,
+        explored: attempted.explored,
+        ..Planned::of(outcome)
+    }
+}
+
+/// The cheapest candidate of a search within a budget.
+struct Attempted {
+    plan: Option<Plan>,
+    timed_out: bool,
+    stats: SearchStats,
+    explored: ExploredGraph,
+}
+
+impl Attempted {
+    /// Cost of the plan, m²; infinite without one.
+    fn cost(&self) -> f64 {
+        self.plan.as_ref().map_or(f64::INFINITY, |plan| plan.cost)
+    }
+
+    /// This one with the other's plan if that is cheaper.
+    fn or_cheaper(mut self, other: Self) -> Self {
+        if other.cost() < self.cost() {
+            self.plan = other.plan;
+        }
+        self.timed_out |= other.timed_out;
+        self.stats.expanded += other.stats.expanded;
+        self.stats.generated += other.stats.generated;
+        self.stats.edges_checked += other.stats.edges_checked;
+        self
+    }
+}
+
+/// Searches the graph, refines its plan and the manoeuvres around the conflicts of the nominal
+/// motion, and resolves conflicts that are far apart one after another. Nothing dearer than the
+/// `incumbent` (m²) need be found.
+fn attempted(
+    context: &Context,
+    budget: &SearchBudget,
+    (nominal_motion, conflicts): (&[Segment], &[Conflict]),
+    incumbent: f64,
+    clock: Clock,
+) -> Attempted {
+    let &Context {
+        problem,
+        route,
+        proxies,
+        ..
+    } = context;
+    let mut graph = Graph::new(problem, proxies, route, nominal_motion, clock);
     let mut search = Search::new(graph.root());
-    let search_budget = SearchBudget::of(by_obstacle(proxies).count());
-    let mut selection = Selection::new(context, search_budget);
-    let mut stages = search_budget.stages.iter();
-    let mut budget = 0;
+    let mut selection = Selection::new(*context, budget);
+    let mut stages = budget.stages.iter();
+    let mut expansions = 0;
     let mut timed_out = false;
     loop {
-        match search.next_goal(&mut graph, budget) {
+        match search.next_goal(&mut graph, expansions) {
             Stop::Goal(goal) => {
                 let path = node::path_to(&search, goal);
                 let cost = search.nodes()[goal].cost;
@@ -252,7 +330,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
                     break;
                 };
                 search.weigh(*weight);
-                budget = *most;
+                expansions = *most;
             }
             Stop::Exhausted => break,
             Stop::Time => {
@@ -261,41 +339,36 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
             }
         }
     }
-    let mut conflicts: Vec<Conflict> = Vec::new();
-    if contact.is_some() || grounding.is_some() {
-        conflicts = by_obstacle(proxies)
-            .filter_map(|h| Conflict::of(h, &nominal_motion))
-            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
-            .collect();
-        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
-        conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
-        timed_out |= selection.refine(&conflicts, clock);
+    if budget.conflict_nodes > 0 {
+        for guess in conflict_search::resolve(
+            context,
+            nominal_motion,
+            (budget.conflict_nodes, incumbent),
+            clock,
+        ) {
+            selection.add_refined(guess);
+        }
     }
+    timed_out |= selection.refine(conflicts, clock);
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
     if !timed_out
-        && sequential::are_several(&conflicts)
+        && sequential::are_several(conflicts)
         && let Some(motion) =
-            sequential::resolve_sequentially(problem, proxies, &route, &nominal_motion, clock)
+            sequential::resolve_sequentially(problem, proxies, route, nominal_motion, clock)
     {
         selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
     let counts = search.counts();
-    let stats = SearchStats {
-        expanded: counts.expanded,
-        generated: counts.generated,
-        edges_checked: counts.tested,
-    };
-    let plan = selection.plan();
-    let outcome = match (plan, timed_out) {
-        (plan, true) => Outcome::Deadline(plan),
-        (Some(plan), false) => Outcome::Solved(plan),
-        (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
-    };
-    Planned {
-        stats,
+    Attempted {
+        plan: selection.plan(),
+        timed_out,
+        stats: SearchStats {
+            expanded: counts.expanded,
+            generated: counts.generated,
+            edges_checked: counts.tested,
+        },
         explored: node::explored(search),
-        ..Planned::of(outcome)
     }
 }
 

@@ -13,7 +13,7 @@ use crate::vessel::{Hull, OwnShip};
 const REACH_M: f64 = 1e-3;
 
 /// Convex piece inside a growing, moving disc.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Proxy<'a> {
     /// Index of the obstacle.
     pub obstacle: usize,

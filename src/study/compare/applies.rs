@@ -1,6 +1,7 @@
 //! Selection of the methods that apply to a scenario.
 
 use super::Method;
+use crate::planner::SearchKind;
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
@@ -34,6 +35,12 @@ pub fn methods(scenario: &Scenario) -> Methods {
         &[None]
     };
     let mut all = Method::of_planners(representations);
+    if scenario.targets.len() < 2 {
+        // finds the plan of A*
+        all.retain(
+            |m| !matches!(m, Method::Planner { search, .. } if *search == SearchKind::Thorough),
+        );
+    }
     all.extend([Method::HoldCourse, Method::ConstantVelocity]);
     let mut found = Methods {
         methods: Vec::new(),

@@ -1,10 +1,10 @@
 //! Costs of plans over those of the dense search.
 
 use rayon::prelude::*;
-use searoom::obstacle::LandObstacle;
-use searoom::pipeline::problem;
-use searoom::planner::Problem;
-use searoom::simulation::{EncounterKind, Placement, random_encounter};
+use searoom::obstacle::{LandObstacle, Obstacle};
+use searoom::pipeline::{self, problem};
+use searoom::planner::{Problem, SearchKind, space_time};
+use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
 use super::{Answer, DenseSearch, recheck};
 use crate::campaigns::encounters::planned;
@@ -33,6 +33,50 @@ fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
         cheaper: fine.cheaper.or(coarse.cheaper),
         ..fine
     }
+}
+
+/// Thorough plans among several targets. The coarse search alone is run, below the plan's cost.
+pub fn run_among(targets: usize, seeds: Seeds) -> Report {
+    let seeds: Vec<u64> = seeds.collect();
+    let compared = seeds.par_iter().filter_map(|&seed| {
+        let drawn = random_traffic(targets, seed, Placement::Origin).expect("drawn");
+        let obstacles: Vec<Obstacle> = (pipeline::sets(&drawn.scenario).into_iter())
+            .map(|sets| sets.with_domain)
+            .collect();
+        let problem = problem(&drawn.scenario, &obstacles, LandObstacle::none());
+        let cost = |search| {
+            let planned = space_time::plan(&Problem { search, ..problem });
+            planned.outcome.plan().map(|plan| plan.cost)
+        };
+        let costs = [cost(SearchKind::AStar)?, cost(SearchKind::Thorough)?];
+        let answer = DenseSearch::coarse(costs[1]).cheaper_than(&problem, costs[0]);
+        let found = answer.cheaper.map_or(costs[0], |found| found.cost);
+        Some((seed, costs, found, answer.complete))
+    });
+    let mut compared: Vec<_> = compared.collect();
+    compared.sort_by_key(|(seed, ..)| *seed);
+    let mut report = Report::default();
+    for (seed, [quick, thorough], found, _) in &compared {
+        println!(
+            "{targets} targets {seed}: a-star {quick:.0} m², thorough {thorough:.0} m², dense search {found:.0} m²"
+        );
+        report.require(thorough <= quick, || {
+            format!("{seed}: the thorough plan costs {thorough} m², that of A* {quick} m²")
+        });
+    }
+    for (k, name) in ["a-star", "thorough"].into_iter().enumerate() {
+        let over = |c: &(u64, [f64; 2], f64, bool)| (c.1[k] + TINY) / (c.2 + TINY);
+        let ratios: Vec<f64> = compared.iter().map(over).collect();
+        let [half, most, worst] = [0.5, 0.9, 1.0].map(|share| quantile(&ratios, share));
+        println!("{name}: J over dense search: median {half:.3}, 90 % {most:.3}, worst {worst:.3}");
+        report.require(k == 0 || most <= WORST_RATIO, || format!("{ratios:?}"));
+    }
+    let short = compared.iter().filter(|c| !c.3).count();
+    println!(
+        "{} scenes with a plan; {short} searches cut short",
+        compared.len()
+    );
+    report
 }
 
 /// Encounters with one target: `seeds` of each kind. With more than two of each, the fine search

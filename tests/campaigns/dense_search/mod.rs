@@ -27,7 +27,7 @@ use searoom::trajectory::{DesiredLeg, Segment, Trajectory};
 
 use bound::Bound;
 use closing::{chain, returns, turn_then_straight};
-pub use comparison::run;
+pub use comparison::{run, run_among};
 
 /// Metres before the end from which the ship also steers straight for the last waypoint.
 const HOMING: f64 = 500.0;

@@ -273,7 +273,7 @@ impl Scene {
             _ => &[0.001, 0.01, 0.1, 0.1, 1.0],
         };
         let deadline = self.one(deadlines);
-        let search = self.one(&["a-star", "a-star", "a-star", "dijkstra"]);
+        let search = self.one(&["a-star", "a-star", "thorough", "dijkstra"]);
         let risk = self.one(&[0.0, 0.0, 0.0, 0.05, 0.3, 0.8]);
         self.line(format!(
             "compliance = \"{compliance}\"\ndeadline_s = {deadline:?}\nsearch = \"{search}\"\nmax_risk = {risk:?}"

@@ -112,7 +112,7 @@ impl<'a> Graph<'a> {
             })
             .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
-        let heuristic = (problem.search == SearchKind::AStar).then(|| {
+        let heuristic = (problem.search != SearchKind::Dijkstra).then(|| {
             let obstacle_bound = ObstacleBound::new(problem, proxies);
             Heuristic::new(
                 problem.desired,

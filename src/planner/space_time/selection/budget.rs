@@ -22,6 +22,8 @@ pub(crate) struct SearchBudget {
     pub leaders: usize,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
+    /// Largest number of nodes of the conflict search; 0 for none.
+    pub conflict_nodes: usize,
 }
 
 impl SearchBudget {
@@ -34,6 +36,7 @@ impl SearchBudget {
         rounds: 8,
         leaders: 2,
         insert_twice: true,
+        conflict_nodes: 0,
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
@@ -47,6 +50,15 @@ impl SearchBudget {
         rounds: 5,
         leaders: 1,
         insert_twice: false,
+        conflict_nodes: 0,
+    };
+
+    /// Budget of the second attempt of a thorough search among several targets.
+    pub(crate) const THOROUGH: Self = Self {
+        stages: &[(2_000, 1.0), (4_000, 1.5)],
+        leaders: 4,
+        conflict_nodes: 64,
+        ..Self::ONE_TARGET
     };
 
     /// Budget of a warm start. A manoeuvre that is clear of other sets is clear of these soon or

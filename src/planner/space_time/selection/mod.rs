@@ -2,6 +2,7 @@
 //! candidate wins.
 
 pub(crate) mod budget;
+pub(crate) mod conflict_search;
 pub(crate) mod initial_guess;
 pub(crate) mod warm_start;
 
@@ -92,6 +93,7 @@ pub(crate) struct Selection<'a> {
     context: Context<'a>,
     search_budget: &'a SearchBudget,
     guesses: Vec<InitialGuess>,
+    refined: Vec<Refinement>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
 }
@@ -102,6 +104,7 @@ impl<'a> Selection<'a> {
             context,
             search_budget,
             guesses: Vec::new(),
+            refined: Vec::new(),
             best: None,
             graph_cost: None,
         }
@@ -110,6 +113,15 @@ impl<'a> Selection<'a> {
     /// Adds a manoeuvre to refine.
     pub(crate) fn add_initial_guess(&mut self, guess: InitialGuess) {
         self.guesses.push(guess);
+    }
+
+    /// Adds a manoeuvre that is refined already.
+    pub(crate) fn add_refined(&mut self, guess: InitialGuess) {
+        let refined = Refinement::fitting(&self.context, guess);
+        if let Some(motion) = refined.as_ref().and_then(|r| r.best_motion(&self.context)) {
+            self.add_candidate(motion);
+        }
+        self.refined.extend(refined);
     }
 
     /// Adds a tested plan of the graph, given by the states after the root.
@@ -185,6 +197,7 @@ impl<'a> Selection<'a> {
                 refinement.finish(&context);
             }
         }
+        running.append(&mut self.refined);
         let tidy = self.insert_and_prune(&mut running, clock);
         self.collect(tidy.iter().chain(ranked(&running)));
         clock.is_up()

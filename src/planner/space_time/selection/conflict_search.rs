@@ -1,0 +1,391 @@
+//! Conflict search: on which side, ahead or astern each of several targets is passed.
+//!
+//! A node is a manoeuvre that is refined clear of the targets considered so far. The cheapest node
+//! is taken first. If it meets a further target, it has a child for each way of passing that
+//! target; if it meets none, it is the answer. This is conflict-based search (Sharon et al. 2015,
+//! doi:10.1016/j.artint.2014.11.006) on targets in place of agents.
+
+use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
+use crate::planner::clock::Clock;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_contact};
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::refinement::{InitialGuess, Refinement};
+use crate::planner::space_time::selection::initial_guess::{
+    Conflict, InitialGuessBuilder, ManoeuvreSpeeds,
+};
+use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
+use crate::trajectory::Segment;
+
+/// Most answers: the cheapest one before insertions need not be the cheapest one after them.
+const MAX_ANSWERS: usize = 3;
+
+/// Refinement steps of a child.
+const STEPS: usize = 10;
+
+/// Most corners of a manoeuvre: with more, its segment variables do not fit.
+const MAX_CORNERS: usize = 6;
+
+/// Most corners with turns at the slow speed too, and with lines at the normal speed.
+const MOST_WITH_SLOW_TURNS: usize = 3;
+const MOST_WITH_ALL_SPEEDS: usize = 4;
+
+/// A corner this near to the route is on it, in turning radii; lines at less than this angle to it,
+/// in radians, do not return to it.
+const ON_ROUTE: f64 = 0.05;
+
+/// Turn out of the way of a target, radians.
+const TURN_OUT: f64 = 0.6;
+
+/// Turns below this are no corners, radians.
+const STRAIGHT: f64 = 0.03;
+
+/// Longest turn at a corner, radians.
+const SHARPEST: f64 = 2.2;
+
+/// Corner of a manoeuvre: where its lines meet, and about when.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    time: f64,
+    position: Vector,
+}
+
+/// Manoeuvre that is clear of the targets considered.
+#[derive(Debug)]
+struct Node {
+    guess: Option<InitialGuess>,
+    motion: Vec<Segment>,
+    cost: f64,
+    /// Corners from the departure from the route to the return; one for a manoeuvre by speed
+    /// alone, none for the nominal motion.
+    corners: Vec<Corner>,
+    to_goal: bool,
+    considered: Vec<usize>,
+}
+
+/// Manoeuvres that are clear of every target and cost less than `limit` (m²), the cheapest first;
+/// takes at most `most` nodes.
+pub(crate) fn resolve(
+    context: &Context,
+    nominal_motion: &[Segment],
+    (most, limit): (usize, f64),
+    clock: Clock,
+) -> Vec<InitialGuess> {
+    let mut found = Vec::new();
+    let mut open = vec![Node {
+        guess: None,
+        motion: nominal_motion.to_vec(),
+        cost: 0.0,
+        corners: Vec::new(),
+        to_goal: false,
+        considered: Vec::new(),
+    }];
+    for _ in 0..most {
+        let cheapest = (0..open.len()).min_by(|a, b| open[*a].cost.total_cmp(&open[*b].cost));
+        let (false, Some(cheapest)) = (clock.is_up() || found.len() == MAX_ANSWERS, cheapest)
+        else {
+            break;
+        };
+        let node = open.swap_remove(cheapest);
+        let Some((obstacle, _)) = first_contact(context.proxies, &node.motion) else {
+            if !land::meets(context.problem.land_obstacle, &node.motion) {
+                found.extend(node.guess);
+            }
+            continue;
+        };
+        if node.considered.contains(&obstacle) {
+            continue;
+        }
+        let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
+        if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
+            let children = children(context, &node, obstacle, &conflict);
+            open.extend(children.into_iter().filter(|child| child.cost < limit));
+        }
+    }
+    found
+}
+
+/// A child for each way of passing a target.
+fn children(context: &Context, node: &Node, obstacle: usize, conflict: &Conflict) -> Vec<Node> {
+    let mut considered = node.considered.clone();
+    considered.push(obstacle);
+    let proxies: Vec<Proxy> = context
+        .proxies
+        .iter()
+        .filter(|proxy| considered.contains(&proxy.obstacle))
+        .copied()
+        .collect();
+    let context = Context {
+        proxies: &proxies,
+        ..*context
+    };
+    let mut ways = beside(&context, node, conflict, Side::Starboard);
+    ways.extend(beside(&context, node, conflict, Side::Port));
+    ways.push(along(node, conflict.astern, -1.0));
+    ways.push(along(node, conflict.ahead, 1.0));
+    ways.into_iter()
+        .filter_map(|corners| child(&context, node, &corners, &considered))
+        .collect()
+}
+
+/// Corners of manoeuvres that pass a target at a distance on one side.
+fn beside(context: &Context, node: &Node, conflict: &Conflict, side: Side) -> Vec<Vec<Corner>> {
+    let offset = conflict.offset(side);
+    let speeds = ManoeuvreSpeeds::of(context.problem);
+    let at = |time: f64| {
+        let pose = pose_at(&node.motion, time);
+        let beam = to_port(pose.ahead()) * side.turn_sign();
+        Corner {
+            time,
+            position: pose.position + beam * offset,
+        }
+    };
+    let (from, to) = (conflict.from, conflict.to);
+    let lead = offset / (speeds.normal * TURN_OUT.sin());
+    if conflict.through > offset {
+        let mut all = vec![inserted(node, &[at(from), at(to)], lead)];
+        if !node.corners.is_empty() {
+            all.push(inserted(node, &[at(to)], lead));
+        }
+        all
+    } else {
+        vec![inserted(node, &[at(0.5 * (from + to))], lead)]
+    }
+}
+
+/// Corners of a manoeuvre that is ahead of the node's, or behind it.
+fn along(node: &Node, (distance, time): (f64, f64), sign: f64) -> Vec<Corner> {
+    let pose = pose_at(&node.motion, time);
+    let position = pose.position + pose.ahead() * (sign * distance);
+    inserted(node, &[Corner { time, position }], 0.0)
+}
+
+/// The node's corners and those of passing a target; those meanwhile are replaced.
+fn inserted(node: &Node, passing: &[Corner], lead: f64) -> Vec<Corner> {
+    let (first, last) = (passing[0], passing[passing.len() - 1]);
+    let leaves = (first.time - lead).max(0.0);
+    let before = node
+        .corners
+        .iter()
+        .filter(|c| c.time < leaves.min(first.time - 1.0));
+    let mut corners: Vec<Corner> = before.copied().collect();
+    let ends = node.corners.last().map_or(0.0, |c| c.time);
+    // on the route, before the first turn or after the last
+    if lead > 0.0 && (corners.is_empty() || leaves > ends) {
+        corners.push(Corner {
+            time: leaves,
+            position: pose_at(&node.motion, leaves).position,
+        });
+    }
+    corners.extend(passing);
+    corners.extend(node.corners.iter().filter(|c| c.time > last.time + 1.0));
+    corners
+}
+
+/// Pose at a time, or at the end.
+fn pose_at(motion: &[Segment], time: f64) -> Pose {
+    let found = motion.iter().find(|s| s.end_time() >= time);
+    let segment = found.unwrap_or(&motion[motion.len() - 1]);
+    segment.pose_at(time.max(segment.start_time))
+}
+
+/// Refines a manoeuvre with these corners.
+fn child(context: &Context, node: &Node, corners: &[Corner], considered: &[usize]) -> Option<Node> {
+    let angles = MANOEUVRE_RETURN_ANGLES.into_iter();
+    let mut refinement = angles
+        .filter_map(|angle| guess(context, node, corners, angle))
+        .find_map(|guess| Refinement::fitting(context, guess))?;
+    for _ in 0..STEPS {
+        if refinement.is_finished() {
+            break;
+        }
+        refinement.step(context);
+    }
+    refinement.finish(context);
+    let guess = refinement.best()?;
+    let rollout = guess
+        .structure
+        .roll_out(context.problem, context.route, &guess.lengths)?;
+    let motion = rollout.motion();
+    let legs: Vec<Segment> = rollout.legs[..rollout.return_segments]
+        .iter()
+        .map(|leg| leg.segment)
+        .collect();
+    Some(Node {
+        corners: corners_of(&legs),
+        to_goal: matches!(guess.structure.ending, Ending::Goal { .. }),
+        cost: refinement.best_cost(),
+        considered: considered.to_vec(),
+        motion,
+        guess: Some(guess),
+    })
+}
+
+/// Where the lines of a motion meet; its end if there is no turn.
+fn corners_of(legs: &[Segment]) -> Vec<Corner> {
+    let mut corners: Vec<Corner> = Vec::new();
+    let mut turn: Option<(Segment, f64)> = None;
+    let mut end = |turn: &mut Option<(Segment, f64)>| {
+        if let Some((first, angle)) = turn.take()
+            && angle.abs() > STRAIGHT
+        {
+            let radius = first.speed / first.turn_rate.abs();
+            corners.push(Corner {
+                time: first.start_time + 0.5 * angle.abs() / first.turn_rate.abs(),
+                position: first.start.position
+                    + first.start.ahead() * (radius * (0.5 * angle.abs()).min(1.2).tan()),
+            });
+        }
+    };
+    for leg in legs.iter().filter(|leg| leg.duration > 0.0) {
+        let angle = leg.turn_rate * leg.duration;
+        match &mut turn {
+            Some((_, sum)) if angle * *sum > 0.0 => *sum += angle,
+            _ if angle != 0.0 => {
+                end(&mut turn);
+                turn = Some((*leg, angle));
+            }
+            Some(_) if leg.length() > 1.0 => end(&mut turn),
+            _ => {}
+        }
+    }
+    end(&mut turn);
+    if corners.is_empty() {
+        corners.extend(legs.last().map(|leg| Corner {
+            time: leg.end_time(),
+            position: leg.end().position,
+        }));
+    }
+    corners
+}
+
+/// Manoeuvre through corners. After the last one it goes to the last waypoint if the node does, and
+/// else back onto the route, at an angle unless that corner is where it returns.
+fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Option<InitialGuess> {
+    let (problem, route) = (context.problem, context.route);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let radius = problem.own.turning_radius;
+    let first = corners.first()?;
+    let parts = node.motion.iter().map(|s| s.between(0.0, first.time));
+    let sailed: f64 = parts.map(|s| s.length()).sum();
+    let (departure, _) = route.pose_at(sailed);
+    let mut builder = InitialGuessBuilder::default();
+    let run = |builder: &mut InitialGuessBuilder, length: f64| {
+        let [slow, normal, fast] = mixed(&speeds, length.max(0.0), first.time);
+        builder.runs(&speeds, normal, fast, slow);
+    };
+    if corners.len() == 1 {
+        let off = departure
+            .ahead()
+            .dot(&(first.position - departure.position));
+        run(&mut builder, sailed + off);
+        return builder.build(Ending::Follow);
+    }
+    let (leg, end) = ending(context, node, corners, angle);
+    let mut points = corners.to_vec();
+    points.extend(end);
+    let turns = points.len() - 1;
+    if turns > MAX_CORNERS {
+        return None;
+    }
+    let mut heading = departure.heading;
+    let mut angles = Vec::with_capacity(turns);
+    for pair in points.windows(2) {
+        let next = heading_of(pair[1].position - pair[0].position);
+        angles.push(wrap(next - heading));
+        heading = next;
+    }
+    // negated on purpose: a NaN is too sharp
+    if angles.iter().any(|angle| !(angle.abs() < SHARPEST)) {
+        return None;
+    }
+    let tangent = |angle: f64| radius * (0.5 * angle.abs()).tan();
+    run(&mut builder, sailed - tangent(angles[0]));
+    for (i, &angle) in angles.iter().enumerate() {
+        let side = Side::of_turn(angle).unwrap_or(Side::Starboard);
+        let last = i + 1 == turns;
+        if last && node.to_goal {
+            let speed = speeds.fast;
+            return builder.build(Ending::Goal { side, speed });
+        }
+        let arc = |speed: f64| SegmentVariable::Arc { side, speed };
+        if turns <= MOST_WITH_SLOW_TURNS {
+            builder.push(arc(speeds.slow), 0.0);
+        }
+        builder.push(arc(speeds.fast), radius * angle.abs());
+        if last {
+            break;
+        }
+        let way = (points[i + 1].position - points[i].position).norm();
+        let length = (way - tangent(angle) - tangent(angles[i + 1])).max(0.0);
+        let time = (points[i + 1].time - points[i].time) * length / way;
+        let [slow, normal, fast] = mixed(&speeds, length, time);
+        let line = |speed: f64| SegmentVariable::Line { speed };
+        builder.push(line(speeds.slow), slow);
+        if turns <= MOST_WITH_ALL_SPEEDS {
+            builder.push(line(speeds.normal), normal);
+            builder.push(line(speeds.fast), fast);
+        } else {
+            builder.push(line(speeds.fast), normal + fast);
+        }
+    }
+    builder.build(Ending::Return {
+        leg,
+        speed: speeds.fast,
+    })
+}
+
+/// The leg to which a manoeuvre through corners returns, and the corner there; none if the last
+/// corner is that already. The end of the path for a manoeuvre that goes there.
+fn ending(
+    context: &Context,
+    node: &Node,
+    corners: &[Corner],
+    angle: f64,
+) -> (usize, Option<Corner>) {
+    let problem = context.problem;
+    let legs = problem.desired.legs();
+    let [.., before, last] = corners else {
+        return (0, None);
+    };
+    let leg = legs.iter().position(|l| l.end_time() > last.time);
+    let leg = leg.unwrap_or(legs.len() - 1);
+    if node.to_goal {
+        let position = problem.desired.end();
+        let time = f64::INFINITY;
+        return (leg, Some(Corner { time, position }));
+    }
+    let line = &legs[leg];
+    let offset = |p: Vector| cross(line.direction, p - line.start);
+    let way = last.position - before.position;
+    let is_back = offset(last.position).abs() < ON_ROUTE * problem.own.turning_radius
+        && cross(line.direction, way).abs() > ON_ROUTE * way.norm()
+        && line.direction.dot(&way) > 0.0;
+    if is_back {
+        return (leg, None);
+    }
+    let back = offset(last.position).abs() / angle.tan();
+    let along = line.direction.dot(&(last.position - line.start)) + back;
+    let end = Corner {
+        time: last.time + back / problem.own.max_speed(),
+        position: line.start + line.direction * along,
+    };
+    (leg, Some(end))
+}
+
+/// Lengths at the slow, the normal and the fast speed that together take a time, as nearly as
+/// possible.
+fn mixed(speeds: &ManoeuvreSpeeds, length: f64, time: f64) -> [f64; 3] {
+    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
+    let spare = time - length / normal;
+    let other = if spare > 0.0 { slow } else { fast };
+    let share = (spare / (1.0 / other - 1.0 / normal)).min(length);
+    // negated on purpose: there may be no other speed
+    let share = if !(share > 0.0) { 0.0 } else { share };
+    if spare > 0.0 {
+        [share, length - share, 0.0]
+    } else {
+        [0.0, length - share, share]
+    }
+}
