@@ -138,6 +138,10 @@ pub struct SuiteArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario: a file ending in .rrd, or a folder")),
+    mut_arg("figure", |arg| arg.help("Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, or a folder")),
+)]
 pub struct SimulateArgs {
     /// Scenario files, files of other formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
@@ -154,12 +158,8 @@ pub struct SimulateArgs {
     /// Write the document of every plan into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
-    /// Write one Rerun recording per scenario: a file ending in .rrd, or a folder
-    #[arg(long, value_name = "PATH")]
-    pub rrd: Option<PathBuf>,
-    /// Print one JSON document instead of text
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub written: Written,
     #[command(flatten)]
     pub assumed: AssumedArgs,
 }

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::encounter::ConductDocument;
-use super::memory::StateDocument;
+use super::memory::{StateDocument, segment, steady};
 use super::parts::{PositionDocument, SegmentDocument};
+use crate::colregs::SteadyShip;
+use crate::frame::Pose;
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
@@ -29,6 +31,25 @@ pub struct SimulationDocument {
     /// need not begin exactly where the one before ends.
     pub sailed: Vec<SegmentDocument>,
     pub timing: CycleTimingDocument,
+}
+
+impl SimulationDocument {
+    /// Own ship at a time in seconds; `None` where nothing was sailed. O(log segments).
+    pub fn own_at(&self, time: f64) -> Option<Pose> {
+        let begun = self.sailed.partition_point(|s| s.start.t_s <= time);
+        let last = segment(self.sailed.get(begun.saturating_sub(1))?);
+        Some(last.pose_at(time.clamp(last.start_time, last.end_time())))
+    }
+}
+
+impl SimulatedTargetDocument {
+    /// The target at a time in seconds; `None` without a track. O(log states).
+    pub fn at(&self, time: f64) -> Option<SteadyShip> {
+        let begun = self.track.partition_point(|state| state.at.t_s <= time);
+        let (from, mut ship) = steady(self.track.get(begun.saturating_sub(1))?, 0.0);
+        ship.pose.position += ship.velocity() * (time - from);
+        Some(ship)
+    }
 }
 
 /// Several simulations.

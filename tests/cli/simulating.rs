@@ -109,6 +109,53 @@ fn a_recording_tells_what_simulate_tells() {
 }
 
 #[test]
+fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = text(&folder.path().join("sailed.svg")).to_owned();
+    let sailed =
+        document(&searoom(&["simulate", HEAD_ON_FILE, "--json", "--figure", &file]).success());
+    let drawn = std::fs::read_to_string(&file).expect("written");
+    let least = &sailed["targets"][0];
+    let apart = least["least_clearance_m"].as_f64().expect("a distance");
+    let time = least["least_clearance_t_s"].as_f64().expect("a time");
+    let closest = format!("closest approach: {apart:.1} m to target at {time:.0} s");
+    for label in [
+        &closest,
+        "own ship, and hulls, at 0, 60, 120, 180, 240 s",
+        "hull and track of target",
+        ">180 s<",
+    ] {
+        assert!(drawn.contains(label), "{label}: {drawn}");
+    }
+    searoom(&["simulate", "scenarios/colregs", "--figure", &file])
+        .code(2)
+        .stderr(predicates::str::contains("4 scenarios; name a folder"));
+}
+
+#[test]
+fn a_report_shows_every_simulation_and_why_one_was_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sail = |name: &str| {
+        let report = folder.path().join(name);
+        let refused = "scenarios/paper/figure_9.toml";
+        searoom(&["simulate", HEAD_ON_FILE, refused, "--report", text(&report)]).code(2);
+        assert!(report.join("head-on-1.svg").is_file());
+        std::fs::read_to_string(report.join("index.html")).expect("written")
+    };
+    let page = sail("a");
+    for shown in [
+        "Head-on: no contact, every plan safe; arrived after 300 s",
+        "src=\"./head-on-1.svg\"",
+        "Plans that differ from the one before",
+        "not applicable",
+        "the closed loop goes on from its plans alone",
+    ] {
+        assert!(page.contains(shown), "{shown}: {page}");
+    }
+    assert_eq!(page, sail("b"));
+}
+
+#[test]
 fn a_shorter_time_ends_the_simulation_before_arrival() {
     let found =
         document(&run(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45")).success());
