@@ -21,7 +21,8 @@ use super::output::status::ExitStatus;
 ///
 /// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one
 /// that takes a risk or enters a set, or a plan that is rejected, 2 bad input or usage, or a result
-/// that cannot be written, 3 a fault of the program; the highest of a run wins.
+/// that cannot be written, 3 a fault of the program, 130 a simulation ended by Ctrl-C; the highest
+/// of a run wins.
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100)]
 pub struct Arguments {

@@ -1,6 +1,8 @@
 //! `searoom simulate`: scenarios sailed in the closed loop.
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, SimulationDocument, SimulationsDocument, UNREADABLE,
@@ -20,6 +22,7 @@ use super::runner::guarded;
 
 /// Sails every file, one after another; a broken one does not stop the others.
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let interrupted = catch_interrupt(output);
     let assumed = args.assumed.assumed();
     let scenes = scenes::open(files::find(&args.paths, output), &assumed, output);
     let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
@@ -33,7 +36,9 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let mut report = HtmlReport::new();
     for scene in scenes {
         let sailed = match &scene {
-            Ok(scene) => guarded(|| sail(scene, args, &products, &mut report, output)),
+            Ok(scene) => {
+                guarded(|| sail(scene, args, &interrupted, &products, &mut report, output))
+            }
             Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
         };
         let (file, refused) = match &scene {
@@ -69,6 +74,11 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
             Err(fault) => output.fault(&fault),
         });
+        if interrupted.load(Ordering::Relaxed) {
+            output.note(&"interrupted; no more scenarios are sailed");
+            status = ExitStatus::Interrupted;
+            break;
+        }
     }
     let lead = "Sailed by Searoom in the closed loop.";
     let written = products.write_report(&report, "Searoom: simulations", lead);
@@ -82,9 +92,25 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     Ok(status)
 }
 
+/// A flag that Ctrl-C sets. A second one ends the program at once.
+fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    let handler = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(ExitStatus::Interrupted.code().into());
+        }
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        output.note(&format_args!("Ctrl-C ends the program at once: {error}"));
+    }
+    interrupted
+}
+
 fn sail(
     scene: &Scene,
     args: &SimulateArgs,
+    interrupted: &AtomicBool,
     products: &Products,
     report: &mut HtmlReport,
     output: &Output,
@@ -105,6 +131,9 @@ fn sail(
     }
     while !simulation.finished() {
         simulation.step();
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
     }
     if let Some(folder) = &args.plans {
         write_plans(folder, &scene.found.stem, &simulation)?;

@@ -22,6 +22,8 @@ pub struct SimulationDocument {
     pub safe: bool,
     pub contact: bool,
     pub arrived: bool,
+    /// True where it was ended before the arrival and before its time.
+    pub interrupted: bool,
     pub duration_s: f64,
     pub targets: Vec<SimulatedTargetDocument>,
     pub conduct: SailedDocument,

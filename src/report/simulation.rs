@@ -55,10 +55,10 @@ pub(super) fn headline(simulation: &SimulationDocument) -> String {
         true => String::new(),
         false => format!(" ({})", broken.join(", ")),
     };
-    let arrived = if simulation.arrived {
-        "arrived"
-    } else {
-        "not arrived"
+    let arrived = match (simulation.arrived, simulation.interrupted) {
+        (true, _) => "arrived",
+        (false, true) => "INTERRUPTED",
+        (false, false) => "not arrived",
     };
     format!(
         "{}: {outcome}{broken}; {arrived} after {:.0} s",

@@ -181,8 +181,12 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let (settings, end) = (&document.settings, document.duration_s);
     // own ship off its plan does not arrive at its end
     let is_off = !document.conduct.within_tracking_margin;
-    let ends =
-        document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end);
+    let ends = match document.interrupted {
+        true => !document.arrived && end < settings.duration_s,
+        false => {
+            document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end)
+        }
+    };
     require(
         ends,
         "it ends neither at the arrival nor at its duration",

@@ -243,6 +243,58 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
     }
 }
 
+/// The time of Ctrl-C depends on the machine; a step of 0.01 s makes the simulation long.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_what_was_sailed_so_far() {
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().expect("a folder");
+    let far = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 900000.0");
+    let far = far.replace("east_m = 1500.0", "east_m = 4000000.0");
+    let far = format!("{far}\n[simulation]\nstep_s = 0.01\nreplan_s = 900000.0\n");
+    let file = write(folder.path(), "far.toml", far);
+    let plans = folder.path().join("plans");
+    let sailing = Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .args([
+            "simulate",
+            &file,
+            HEAD_ON_FILE,
+            "--json",
+            "--plans",
+            text(&plans),
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    // the folder is made after Ctrl-C is caught
+    while !plans.is_dir() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = Command::new("kill")
+        .args(["-INT", &sailing.id().to_string()])
+        .status();
+    assert!(kill.expect("kill").success());
+    let ended = sailing.wait_with_output().expect("ended");
+    assert_eq!(ended.status.code(), Some(130));
+    let note = String::from_utf8(ended.stderr).expect("text");
+    assert!(note.contains("no more scenarios are sailed"), "{note}");
+    let sailed = String::from_utf8(ended.stdout).expect("text");
+    let found: serde_json::Value = serde_json::from_str(&sailed).expect("one document");
+    assert_eq!(
+        (&found["interrupted"], &found["arrived"]),
+        (&true.into(), &false.into())
+    );
+    let time = found["duration_s"].as_f64().expect("a time");
+    assert!(time > 0.0 && time < 800_000.0, "{time}");
+    let file = write(folder.path(), "sailed.json", sailed.clone());
+    let shown = stdout(&searoom(&["verify", &file]).success());
+    assert!(shown.contains("verified: no contact"), "{shown}");
+    let altered = sailed.replace("\"interrupted\": true", "\"interrupted\": false");
+    let file = write(folder.path(), "altered.json", altered);
+    searoom(&["verify", &file]).code(1);
+}
+
 /// Contacts and distances are computed again from the motions alone.
 #[test]
 fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {

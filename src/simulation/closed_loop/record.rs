@@ -59,6 +59,7 @@ impl Simulation {
             arrived: self.time >= self.active.end() - super::INSTANT
                 && self.active.document.is_some()
                 && self.off_plan() <= self.tracking_margin(),
+            interrupted: !self.finished(),
             duration_s: self.time,
             targets: (self.targets.iter().enumerate())
                 .filter_map(|(index, target)| {
