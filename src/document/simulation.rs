@@ -64,7 +64,9 @@ pub struct SimulationsDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimulationSettingsDocument {
     pub step_s: f64,
+    /// Longest time between plans, and whether events ask for one before.
     pub replan_s: f64,
+    pub replan_on_events: bool,
     pub delay_s: f64,
     pub measured_delay: bool,
     pub duration_s: f64,
@@ -136,6 +138,8 @@ pub struct ReplanDocument {
     /// Time of the data, and from which the plan holds.
     pub t_s: f64,
     pub start_t_s: f64,
+    /// Why it was made then.
+    pub reason: String,
     pub verdict: String,
     pub safe: bool,
     /// False where the plan came too late or there is none: own ship keeps the plan before.

@@ -227,6 +227,9 @@ pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
             continue;
         }
         let mut remarks = Vec::new();
+        if !["start", "period"].contains(&replan.reason.as_str()) {
+            remarks.push(format!("asked for by an event: {}", replan.reason));
+        }
         if !replan.followed {
             remarks.push("not followed".to_owned());
         }

@@ -11,8 +11,10 @@ use crate::input::{Field, Range, Table};
 pub struct SimulationSettings {
     /// Step of the simulation.
     pub step: f64,
-    /// Time from one plan to the next.
+    /// Longest time from one plan to the next.
     pub replan: f64,
+    /// True where an event asks for a plan before that.
+    pub replan_on_events: bool,
     /// Time from the data of a plan to its start.
     pub delay: f64,
     /// Time after which the simulation ends; `None` for the horizon.
@@ -233,6 +235,7 @@ impl Default for SimulationSettings {
         Self {
             step: 0.5,
             replan: 20.0,
+            replan_on_events: false,
             delay: 1.0,
             duration: None,
             seed: 1,
@@ -287,6 +290,10 @@ pub(super) fn simulation(
     let mut table = field.table("a table")?;
     let step = number_or(&mut table, "step_s", STEP, standard.step);
     let replan = number_or(&mut table, "replan_s", limits::DURATION, standard.replan);
+    let replan_on_events = match table.take("replan") {
+        Some(field) => field.choice(&[("period", false), ("events", true)]),
+        None => Some(standard.replan_on_events),
+    };
     let delay = number_or(&mut table, "delay_s", DELAY, standard.delay);
     let duration = match table.take("duration_s") {
         Some(field) => field.number(limits::DURATION).map(Some),
@@ -312,6 +319,7 @@ pub(super) fn simulation(
     Some(SimulationSettings {
         step: step?,
         replan: replan?,
+        replan_on_events: replan_on_events?,
         delay: delay?,
         duration: duration?,
         seed: seed?,

@@ -243,6 +243,28 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
     }
 }
 
+#[test]
+fn a_plan_is_asked_for_when_a_target_is_heard_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
+                  sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
+    let file = write(folder.path(), "a.toml", head_on("", tables));
+    let found = document(&searoom(&["simulate", &file, "--json"]).success());
+    assert_eq!(found["settings"]["replan_on_events"], true);
+    let replans = found["replans"].as_array().expect("a list");
+    let again = replans.iter().find(|r| r["reason"] == "heard anew: target");
+    let time = again.expect("an event")["t_s"].as_f64().expect("a time");
+    assert!((60.0..63.0).contains(&time), "{time}");
+    let file = write(
+        folder.path(),
+        "b.toml",
+        head_on("", "[simulation]\nreplan = \"often\""),
+    );
+    let refused = stderr(&searoom(&["simulate", &file]).code(2));
+    let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
+    assert!(refused.contains(fault), "{refused}");
+}
+
 /// The time of Ctrl-C depends on the machine; a step of 0.01 s makes the simulation long.
 #[cfg(unix)]
 #[test]

@@ -157,6 +157,92 @@ fn a_plan_that_takes_longer_than_the_delay_is_not_followed() {
     assert!((sailed.conduct.cost_m2 - first).abs() < 1e-6 * first);
 }
 
+/// A plan for a target that turns away from its course, without another event, is asked for as soon
+/// as it leaves its velocities.
+#[test]
+fn an_event_asks_for_a_plan_before_its_time() {
+    let with_events = |behaviour: Behaviour| {
+        let mut scenario = meeting(EncounterKind::HeadOn, 1, &CONSTANT);
+        scenario.simulation.replan = 100.0;
+        scenario.simulation.replan_on_events = true;
+        scenario.simulation.behaviours = vec![behaviour];
+        sail(scenario)
+    };
+    let quiet = with_events(Behaviour::Constant);
+    let reasons: Vec<&str> = quiet.replans.iter().map(|r| r.reason.as_str()).collect();
+    assert!(reasons.len() > 1 && reasons[1..].iter().all(|reason| *reason == "period"));
+    let turns = with_events(Behaviour::GivesWay {
+        turn: 0.7,
+        before: 90.0,
+        probability: 1.0,
+        turn_rate: 0.03,
+    });
+    let spread = turns.replans[0].estimates[0].course_spread_deg;
+    let (track, replans) = (&turns.targets[0].track, &turns.replans);
+    let left = (track.iter()).find(|s| (s.at.course_deg - track[0].at.course_deg).abs() > spread);
+    let left = left.expect("it turns").at.t_s;
+    let asked = replans
+        .iter()
+        .find(|r| r.reason.starts_with("another velocity: "));
+    let asked = asked.expect("an event").t_s;
+    assert!((left..left + 1.0).contains(&asked), "{left} {asked}");
+    assert!(!turns.contact && replans.len() < 60, "{}", replans.len());
+    // the next plan by time counts from the last one
+    for pair in replans.windows(2).filter(|pair| pair[1].reason == "period") {
+        assert!((pair[1].t_s - pair[0].t_s - 100.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn own_ship_off_its_plan_asks_for_another() {
+    let ship = Ship::Nomoto;
+    let mut scenario = meeting(EncounterKind::GiveWay, 2, &How { ship, ..CONSTANT });
+    scenario.own_ship.tracking_margin = 1.0;
+    scenario.simulation.replan_on_events = true;
+    scenario.simulation.replan = scenario.horizon;
+    let sailed = sail(scenario.clone());
+    let mut events = sailed.replans[1..].iter();
+    assert!(events.all(|replan| replan.reason == "beyond the tracking margin"));
+    let first = sailed.replans[1].t_s;
+    let alarm = sailed
+        .alarms
+        .iter()
+        .find(|a| a.alarm == "beyond the tracking margin");
+    assert!((first - alarm.expect("an alarm").t_s).abs() < 1e-6);
+    scenario.own_ship.tracking_margin = 0.0;
+    assert_eq!(sail(scenario).replans.len(), 1);
+}
+
+#[test]
+fn plans_on_events_keep_clear_of_targets_that_leave_their_sets() {
+    for (kind, seed) in EncounterKind::ALL
+        .into_iter()
+        .flat_map(|k| (0..6).map(move |s| (k, s)))
+    {
+        for factor in [1.0, 1.5] {
+            let truth = Truth::Extremes;
+            let mut scenario = meeting(
+                kind,
+                seed,
+                &How {
+                    truth,
+                    factor,
+                    ..CONSTANT
+                },
+            );
+            scenario.simulation.replan_on_events = true;
+            scenario.simulation.replan = 60.0;
+            let sailed = sail(scenario);
+            assert!(
+                !sailed.contact && sailed.arrived,
+                "{kind:?} {seed} {factor}"
+            );
+            let kept = factor == 1.0;
+            assert!(!kept || sailed.safe && sailed.conduct.lost_remainders == 0);
+        }
+    }
+}
+
 #[test]
 fn a_target_that_drives_into_own_ship_is_a_contact() {
     let mut scenario = meeting(EncounterKind::GiveWay, 1, &CONSTANT);

@@ -21,7 +21,7 @@ pub(super) struct Cycle {
 
 impl Simulation {
     /// Plans for `delay` seconds from now on, from where the present plan has own ship then.
-    pub(super) fn plan(&mut self, delay: f64) -> Cycle {
+    pub(super) fn plan(&mut self, delay: f64, reason: String) -> Cycle {
         let start = self.time + delay;
         let off_plan_m = self.off_plan();
         let mut scenario = self.scenario.clone();
@@ -68,6 +68,7 @@ impl Simulation {
         let replan = ReplanDocument {
             t_s: self.time,
             start_t_s: start,
+            reason,
             verdict: run.word(),
             safe: run.safe(),
             followed: plan.is_some() && !late,

@@ -98,6 +98,8 @@ struct Simulated {
     states: Vec<(f64, SteadyShip)>,
     outside_sets: usize,
     is_stale: bool,
+    /// True where it is heard for the first time, or again after it was stale, since the last plan.
+    has_appeared: bool,
 }
 
 /// A plan that own ship follows from some time on.
@@ -142,6 +144,7 @@ impl Simulation {
                 states: Vec::new(),
                 outside_sets: 0,
                 is_stale: false,
+                has_appeared: false,
             };
             let steps = (settings.sensor.settle / settings.step).ceil() as usize;
             for step in (1..=steps).rev().filter(|_| !exact) {
@@ -184,7 +187,7 @@ impl Simulation {
             scenario,
         };
         simulation.see();
-        simulation.cycle(0.0);
+        simulation.cycle(0.0, "start".to_owned());
         simulation.activate();
         simulation.first_cost = simulation.replans.first().and_then(|first| first.cost_m2);
         Ok(simulation)
@@ -243,14 +246,33 @@ impl Simulation {
     fn watch(&mut self) {
         self.see();
         self.activate();
-        if self.time >= self.next_cycle - INSTANT {
+        let is_due = self.time >= self.next_cycle - INSTANT;
+        let period = is_due.then(|| "period".to_owned());
+        if let Some(reason) = period.or_else(|| self.event()) {
             let (delay, replan) = (self.settings().delay, self.settings().replan);
             self.next_cycle = self.time + replan;
             if self.active.end() > self.time + delay + INSTANT {
-                self.cycle(delay);
+                self.cycle(delay, reason);
             }
             self.activate();
         }
+    }
+
+    /// Why a plan is asked for before its time. Not while another one is being made.
+    fn event(&self) -> Option<String> {
+        if !self.settings().replan_on_events || self.pending.is_some() {
+            return None;
+        }
+        let first = |is: fn(&Simulated) -> bool, what: &str| {
+            let target = self.targets.iter().find(|target| is(target))?;
+            Some(format!("{what}: {}", target.name))
+        };
+        let margin = self.scenario.own_ship.tracking_margin;
+        // a ship without a margin would leave it in every step
+        let is_off = margin > 0.0 && self.off_plan() > margin;
+        first(|target| target.track.is_outside(), "another velocity")
+            .or_else(|| first(|target| target.has_appeared, "heard anew"))
+            .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
     }
 
     /// Everything that is seen at the present time.
@@ -259,6 +281,7 @@ impl Simulation {
         let stale = self.settings().sensor.stale;
         for target in &mut self.targets {
             let now = target.truth.now;
+            let was_silent = target.is_stale || !(exact || target.track.is_heard());
             target.look(self.time, &now, exact);
             let silent = self.time - target.track.estimate().time;
             let is_stale = silent > stale;
@@ -269,13 +292,15 @@ impl Simulation {
                     target: Some(target.name.clone()),
                 });
             }
+            let is_heard = exact || target.track.is_heard();
+            target.has_appeared |= was_silent && is_heard && !is_stale;
             target.is_stale = is_stale;
         }
     }
 
     /// Makes a plan that holds from `delay` seconds from now on.
-    fn cycle(&mut self, delay: f64) {
-        let Cycle { run, replan } = self.plan(delay);
+    fn cycle(&mut self, delay: f64, reason: String) {
+        let Cycle { run, replan } = self.plan(delay, reason);
         self.plan_seconds.push(run.plan_time.as_secs_f64());
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
             let next = run.planned.manoeuvres.first();
@@ -286,6 +311,7 @@ impl Simulation {
         }
         self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
         for target in &mut self.targets {
+            target.has_appeared = false;
             let is_outside = |names: &[String]| names.contains(&target.name);
             let left = is_outside(&replan.outside_velocities) || is_outside(&replan.outside_places);
             target.outside_sets += usize::from(left);

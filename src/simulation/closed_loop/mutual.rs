@@ -80,6 +80,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
         simulation: SimulationSettings {
             step: scenario.simulation.step,
             replan: scenario.simulation.replan,
+            replan_on_events: scenario.simulation.replan_on_events,
             delay: scenario.simulation.delay,
             seed: scenario.simulation.seed,
             ..SimulationSettings::default()

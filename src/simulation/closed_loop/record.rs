@@ -99,6 +99,7 @@ impl Simulation {
         SimulationSettingsDocument {
             step_s: settings.step,
             replan_s: settings.replan,
+            replan_on_events: settings.replan_on_events,
             delay_s: settings.delay,
             measured_delay: self.measured_delay,
             duration_s: self.duration,

@@ -263,6 +263,16 @@ impl Track {
         self.anchor = Anchor::at(&self.estimate, &self.file);
     }
 
+    /// True from the first report on.
+    pub fn is_heard(&self) -> bool {
+        self.filter.is_some()
+    }
+
+    /// True where the present estimate is outside the velocities that the last plan assumes.
+    pub fn is_outside(&self) -> bool {
+        !self.anchor.holds(&self.estimate, 1.0)
+    }
+
     /// True where the last set does not keep the velocities of the one before.
     pub fn is_broken(&self) -> bool {
         self.is_broken
@@ -277,7 +287,7 @@ impl Track {
     /// spreads are widened. One that does much more has turned, and its set begins anew. Its disc of positions holds every motion since the last report,
     /// and during the `delay` of a plan also in the first one: each set then holds the next one.
     pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
-        self.is_broken = !self.anchor.holds(&self.estimate, 1.0);
+        self.is_broken = self.is_outside();
         if self.is_broken && self.anchor.holds(&self.estimate, WIDENED) {
             self.anchor.widen(&self.estimate);
         } else if self.is_broken {
