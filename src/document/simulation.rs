@@ -167,6 +167,9 @@ pub struct EstimateDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
     pub speed_mps: f64,
+    /// The hull, or a larger one where heading or size are not reported.
+    pub length_m: f64,
+    pub beam_m: f64,
     pub position_std_m: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,

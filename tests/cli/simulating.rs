@@ -265,6 +265,44 @@ fn a_plan_is_asked_for_when_a_target_is_heard_again() {
     assert!(refused.contains(fault), "{refused}");
 }
 
+#[test]
+fn a_target_without_size_in_its_reports_has_the_default_size() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sail = |target: &str, sensor: &str, code: i32| {
+        let tables = format!("[simulation]\nsensor = {{ {sensor} }}");
+        let file = write(folder.path(), "a.toml", head_on(target, &tables));
+        searoom(&["simulate", &file, "--json"]).code(code)
+    };
+    let both = "not_reported = [\"heading\", \"size\"]";
+    let found = document(&sail(both, "kind = \"ais\", default_beam_m = 75", 0));
+    let assumed = &found["replans"][0]["estimates"][0];
+    assert_eq!(
+        (&assumed["length_m"], &assumed["beam_m"]),
+        (&125.0.into(), &125.0.into())
+    );
+    assert_eq!(found["targets"][0]["length_m"], 60.0);
+    for (target, sensor, fault) in [
+        (
+            both,
+            "kind = \"radar\"",
+            "targets[0].not_reported: found a sensor of kind \"radar\"",
+        ),
+        (
+            both,
+            "kind = \"ais\", default_length_m = 50",
+            "targets[0].not_reported: found a larger ship than the default of 50 × 20 m",
+        ),
+        (
+            "not_reported = [\"name\"]",
+            "kind = \"ais\"",
+            "targets[0].not_reported[0]: found the text \"name\"; allowed: \"heading\", \"size\"",
+        ),
+    ] {
+        let refused = stderr(&sail(target, sensor, 2));
+        assert!(refused.contains(fault), "{fault}: {refused}");
+    }
+}
+
 /// The time of Ctrl-C depends on the machine; a step of 0.01 s makes the simulation long.
 #[cfg(unix)]
 #[test]

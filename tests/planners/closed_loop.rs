@@ -1,8 +1,12 @@
 //! The closed loop: what it sails is what was planned, seen and judged.
 
 use searoom::document::SimulationDocument;
-use searoom::scenario::{Behaviour, Compliance, Fault, Scenario, SimulationSettings, VesselModel};
+use searoom::frame::{Pose, Vector};
+use searoom::scenario::{
+    Behaviour, Compliance, Fault, NotReported, Scenario, SimulationSettings, VesselModel,
+};
 use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+use searoom::vessel::Hull;
 
 use crate::campaigns::replanning;
 use crate::campaigns::simulation::{How, Seen, Ship, Truth, run, sail};
@@ -190,6 +194,53 @@ fn an_event_asks_for_a_plan_before_its_time() {
     // the next plan by time counts from the last one
     for pair in replans.windows(2).filter(|pair| pair[1].reason == "period") {
         assert!((pair[1].t_s - pair[0].t_s - 100.0).abs() < 1e-6);
+    }
+}
+
+/// AIS that leaves out heading, size or both: 45 runs.
+#[test]
+fn a_target_that_does_not_report_its_heading_or_size_is_taken_for_a_larger_one() {
+    let [heading, size] = [true, true];
+    for missing in [(heading, false), (false, size), (heading, size)] {
+        let missing = NotReported {
+            heading: missing.0,
+            size: missing.1,
+        };
+        for (kind, seed) in EncounterKind::ALL
+            .into_iter()
+            .flat_map(|k| (0..3).map(move |s| (k, s)))
+        {
+            let (truth, seen) = (Truth::Random, Seen::Ais);
+            let mut scenario = meeting(
+                kind,
+                seed,
+                &How {
+                    truth,
+                    seen,
+                    ..CONSTANT
+                },
+            );
+            scenario.simulation.not_reported = vec![missing];
+            scenario.simulation.sensor.default_hull = Hull::new(100.0, 25.0);
+            let sailed = sail(scenario);
+            let target = &sailed.targets[0];
+            assert!(!sailed.contact, "{missing:?} {kind:?} {seed}");
+            let hull = Hull::new(target.length_m, target.beam_m);
+            for estimate in sailed.replans.iter().map(|replan| &replan.estimates[0]) {
+                let assumed = Hull::new(estimate.length_m, estimate.beam_m);
+                let outer = assumed.polygon(&Pose::new(Vector::zeros(), 0.0));
+                let headings = if missing.heading { 16 } else { 1 };
+                for k in 0..headings {
+                    let pose = Pose::new(Vector::zeros(), f64::from(k) * 0.4);
+                    let corners = hull.polygon(&pose);
+                    let out = |v: &Vector| outer.signed_distance(*v) > 1e-9;
+                    assert!(
+                        !corners.vertices().iter().any(out),
+                        "{missing:?} {assumed:?}"
+                    );
+                }
+            }
+        }
     }
 }
 

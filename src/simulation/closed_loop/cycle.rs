@@ -37,6 +37,8 @@ impl Simulation {
                 position: position(ship.pose.position),
                 course_deg: course_deg_from_heading(ship.pose.heading),
                 speed_mps: ship.speed,
+                length_m: ship.hull.length,
+                beam_m: ship.hull.beam,
                 position_std_m: ship.position_std,
                 speed_spread_mps: ship.speed_spread,
                 course_spread_deg: deg_from_radians(ship.course_spread),

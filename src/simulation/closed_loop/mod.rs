@@ -23,9 +23,10 @@ use tracker::Track;
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument};
 use crate::planner::Minimises;
-use crate::scenario::{Fault, Scenario, SensorKind, SimulationSettings};
+use crate::scenario::{Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
 use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::Hull;
 
 /// Seconds: times nearer than this are one.
 const INSTANT: f64 = 1e-9;
@@ -130,16 +131,22 @@ impl Simulation {
         let mut bridges = mutual::bridges(&scenario)?.into_iter();
         let behaviours = settings.behaviours.iter().cloned();
         let behaviours = behaviours.chain(std::iter::repeat(crate::scenario::Behaviour::Constant));
-        let ships = scenario.targets.iter().zip(behaviours);
-        let targets = ships.filter_map(|(target, behaviour)| {
+        let not_reported = settings.not_reported.iter().copied();
+        let not_reported = not_reported.chain(std::iter::repeat(NotReported::default()));
+        let ships = scenario.targets.iter().zip(behaviours).zip(not_reported);
+        let targets = ships.filter_map(|((target, behaviour), not_reported)| {
             let ship = target.ship()?;
+            let assumed = ShipTrack {
+                hull: not_reported.outer_hull(ship.hull, settings.sensor.default_hull),
+                ..ship.clone()
+            };
             let seed = settings.seed;
             let mut simulated = Simulated {
                 name: target.name.clone(),
                 truth: TrueTarget::new(&target.name, ship, behaviour, seed),
                 bridge: bridges.next().flatten(),
                 sight: Sight::new(&settings.sensor, &target.name, seed),
-                track: Track::new(ship, &settings.sensor),
+                track: Track::new(&assumed, &settings.sensor),
                 clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
                 states: Vec::new(),
                 outside_sets: 0,
@@ -471,6 +478,35 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
             "explicit sets",
             "a tracked ship: explicit sets have no true motion",
         ));
+    }
+    for (index, (target, missing)) in (scenario.targets.iter())
+        .zip(&settings.not_reported)
+        .enumerate()
+    {
+        if *missing != NotReported::default()
+            && !matches!(settings.sensor.kind, SensorKind::Ais { .. })
+        {
+            return Err(Fault::new(
+                format!("targets[{index}].not_reported"),
+                format_args!("a sensor of kind {:?}", settings.sensor.kind.word()),
+                "\"ais\": other sensors report neither heading nor size",
+            ));
+        }
+        let (hull, default) = (
+            target.ship().map(|ship| ship.hull),
+            settings.sensor.default_hull,
+        );
+        let holds = |hull: Hull| hull.length <= default.length && hull.beam <= default.beam;
+        if missing.size && !hull.is_some_and(holds) {
+            return Err(Fault::new(
+                format!("targets[{index}].not_reported"),
+                format_args!(
+                    "a larger ship than the default of {} × {} m",
+                    default.length, default.beam
+                ),
+                "a ship within simulation.sensor.default_length_m and default_beam_m",
+            ));
+        }
     }
     let shorter = |key: &str, value: f64, most: f64, of: &str| {
         let fault = Fault::new(
