@@ -161,8 +161,8 @@ fn a_plan_that_takes_longer_than_the_delay_is_not_followed() {
     assert!((sailed.conduct.cost_m2 - first).abs() < 1e-6 * first);
 }
 
-/// A plan for a target that turns away from its course, without another event, is asked for as soon
-/// as it leaves its velocities.
+/// A target that turns away is planned for anew when it holds its new course, unless a plan is due
+/// before.
 #[test]
 fn an_event_asks_for_a_plan_before_its_time() {
     let with_events = |behaviour: Behaviour| {
@@ -183,14 +183,17 @@ fn an_event_asks_for_a_plan_before_its_time() {
     });
     let spread = turns.replans[0].estimates[0].course_spread_deg;
     let (track, replans) = (&turns.targets[0].track, &turns.replans);
-    let left = (track.iter()).find(|s| (s.at.course_deg - track[0].at.course_deg).abs() > spread);
-    let left = left.expect("it turns").at.t_s;
     let asked = replans
         .iter()
         .find(|r| r.reason.starts_with("another velocity: "));
     let asked = asked.expect("an event").t_s;
-    assert!((left..left + 1.0).contains(&asked), "{left} {asked}");
-    assert!(!turns.contact && replans.len() < 60, "{}", replans.len());
+    // the track has a state for every change of course
+    let held = track.iter().rfind(|state| state.at.t_s < asked);
+    let held = held.expect("it turned").at;
+    let turned = (held.course_deg - track[0].at.course_deg).abs();
+    assert!(turned.min(360.0 - turned) > spread);
+    assert!((4.0..6.0).contains(&(asked - held.t_s)), "{asked} {held:?}");
+    assert!(!turns.contact && replans.len() < 20, "{}", replans.len());
     // the next plan by time counts from the last one
     for pair in replans.windows(2).filter(|pair| pair[1].reason == "period") {
         assert!((pair[1].t_s - pair[0].t_s - 100.0).abs() < 1e-6);

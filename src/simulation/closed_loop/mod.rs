@@ -277,7 +277,7 @@ impl Simulation {
         let margin = self.scenario.own_ship.tracking_margin;
         // a ship without a margin would leave it in every step
         let is_off = margin > 0.0 && self.off_plan() > margin;
-        first(|target| target.track.is_outside(), "another velocity")
+        first(|target| target.track.has_left(), "another velocity")
             .or_else(|| first(|target| target.has_appeared, "heard anew"))
             .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
     }

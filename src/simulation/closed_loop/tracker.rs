@@ -21,6 +21,13 @@ const LEAST_STD_M: f64 = 1e-3;
 /// A velocity within this factor of the spreads widens them; another one begins the set anew.
 const WIDENED: f64 = 2.0;
 
+/// A target has settled on a course and a speed after this time in seconds. A plan for a target that
+/// still turns would be for velocities that it is about to leave.
+const SETTLED_S: f64 = 5.0;
+
+/// Fraction of the spreads within which a settled target stays.
+const SETTLED: f64 = 0.25;
+
 /// m/s and radians: rounding of velocities.
 const ROUNDING: f64 = 1e-9;
 
@@ -178,6 +185,8 @@ pub(super) struct Track {
     anchor: Anchor,
     /// True where the last set does not keep the velocities of the one before.
     is_broken: bool,
+    /// The estimate from which the later ones do not differ by much.
+    settled: Estimate,
 }
 
 impl Track {
@@ -199,6 +208,7 @@ impl Track {
             filter: None,
             estimate,
             is_broken: false,
+            settled: estimate,
         }
     }
 
@@ -213,6 +223,14 @@ impl Track {
             heading_std: 0.0,
             speed_std: 0.0,
         };
+        self.settle();
+    }
+
+    /// Begins to wait anew where the estimate has changed.
+    fn settle(&mut self) {
+        if !Anchor::at(&self.settled, &self.file).holds(&self.estimate, SETTLED) {
+            self.settled = self.estimate;
+        }
     }
 
     /// Takes in a report. One that is older than the last is left out.
@@ -256,6 +274,7 @@ impl Track {
                 .min(std::f64::consts::PI),
             speed_std: std_along(ahead),
         };
+        self.settle();
     }
 
     /// Begins the velocity set anew about the present estimate.
@@ -269,8 +288,13 @@ impl Track {
     }
 
     /// True where the present estimate is outside the velocities that the last plan assumes.
-    pub fn is_outside(&self) -> bool {
+    fn is_outside(&self) -> bool {
         !self.anchor.holds(&self.estimate, 1.0)
+    }
+
+    /// True where the target has left the velocities that the last plan assumes and holds on.
+    pub fn has_left(&self) -> bool {
+        self.is_outside() && self.estimate.time - self.settled.time >= SETTLED_S
     }
 
     /// True where the last set does not keep the velocities of the one before.
