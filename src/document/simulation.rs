@@ -29,8 +29,8 @@ pub struct SimulationDocument {
     pub conduct: SailedDocument,
     pub alarms: Vec<AlarmDocument>,
     pub replans: Vec<ReplanDocument>,
-    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step, which
-    /// need not begin exactly where the one before ends.
+    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step,
+    /// which need not begin exactly where the one before ends.
     pub sailed: Vec<SegmentDocument>,
     pub timing: CycleTimingDocument,
 }

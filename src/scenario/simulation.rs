@@ -1,5 +1,5 @@
-//! The tables `[simulation]` and `[targets.behaviour]`: how a scenario is sailed in the closed loop.
-//! Plans do not use them.
+//! The tables `[simulation]` and `[targets.behaviour]`: how a scenario is sailed in the closed
+//! loop. Plans do not use them.
 
 use super::limits;
 use super::plane::{POSITION, Plane};

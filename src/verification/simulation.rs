@@ -255,8 +255,8 @@ fn is_steered(document: &SimulationDocument) -> bool {
         || settings.current_std_mps > 0.0
 }
 
-/// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a step,
-/// and what the mean of a step leaves out.
+/// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a
+/// step, and what the mean of a step leaves out.
 fn most_gap(document: &SimulationDocument) -> f64 {
     if is_steered(document) {
         let [east, north] = document.settings.current_mps;

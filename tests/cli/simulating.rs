@@ -244,7 +244,7 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
 }
 
 #[test]
-fn a_plan_is_asked_for_when_a_target_is_heard_again() {
+fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
                   sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
@@ -252,7 +252,7 @@ fn a_plan_is_asked_for_when_a_target_is_heard_again() {
     let found = document(&searoom(&["simulate", &file, "--json"]).success());
     assert_eq!(found["settings"]["replan_on_events"], true);
     let replans = found["replans"].as_array().expect("a list");
-    let again = replans.iter().find(|r| r["reason"] == "heard anew: target");
+    let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
     let file = write(

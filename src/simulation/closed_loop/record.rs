@@ -13,7 +13,7 @@ use crate::planner::cost::whole_space_time_error;
 impl Simulation {
     /// What was sailed so far.
     ///
-    /// Both judges see the true motions. The cost is that of the plans, over the sailed motion.
+    /// Both judges use the true motions. The cost is that of the plans, over the sailed motion.
     /// O(targets × seconds sailed).
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
