@@ -231,6 +231,7 @@ fn a_target_that_does_not_report_its_heading_or_size_is_taken_for_a_larger_one()
             let hull = Hull::new(target.length_m, target.beam_m);
             for estimate in sailed.replans.iter().map(|replan| &replan.estimates[0]) {
                 let assumed = Hull::new(estimate.length_m, estimate.beam_m);
+                assert!(!missing.size || assumed.length >= 100.0 && assumed.beam >= 25.0);
                 let outer = assumed.polygon(&Pose::new(Vector::zeros(), 0.0));
                 let headings = if missing.heading { 16 } else { 1 };
                 for k in 0..headings {
@@ -293,6 +294,7 @@ fn plans_on_events_keep_clear_of_targets_that_leave_their_sets() {
             );
             let kept = factor == 1.0;
             assert!(!kept || sailed.safe && sailed.conduct.lost_remainders == 0);
+            assert!(!kept || sailed.targets[0].outside_sets == 0);
         }
     }
 }
