@@ -308,7 +308,7 @@ fn number_or(table: &mut Table, key: &str, range: Range, default: f64) -> Option
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
 pub(super) fn simulation(
     root: &mut Table,
-    targets: Vec<(Behaviour, NotReported)>,
+    targets: Vec<SimulatedTarget>,
 ) -> Option<SimulationSettings> {
     let (behaviours, not_reported) = targets.into_iter().unzip();
     let standard = SimulationSettings {
@@ -528,8 +528,11 @@ fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
     pairs.into_iter().collect()
 }
 
+/// What the file has of a target for the simulation.
+pub(super) type SimulatedTarget = (Behaviour, NotReported);
+
 /// The keys of a target for the simulation, all of which may be absent.
-pub(super) fn simulated(target: &mut Table, plane: &Plane) -> Option<(Behaviour, NotReported)> {
+pub(super) fn simulated(target: &mut Table, plane: &Plane) -> Option<SimulatedTarget> {
     let behaviour = behaviour(target, plane);
     let not_reported = match target.take("not_reported") {
         Some(field) => not_reported(&field),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::plane::Plane;
-use super::simulation::simulated;
+use super::simulation::{SimulatedTarget, simulated};
 use super::{Behaviour, NotReported, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
@@ -20,7 +20,7 @@ pub(super) fn targets(
     plane: &Plane,
     time: Option<f64>,
     own: Option<&OwnShip>,
-) -> Option<Vec<(Target, TargetMemory, (Behaviour, NotReported))>> {
+) -> Option<Vec<(Target, TargetMemory, SimulatedTarget)>> {
     let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };

@@ -109,17 +109,13 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let track = trajectory.zip(sampled);
     let track = track.map(|(t, sampled)| sampled.into_iter().map(|time| at(t, time)).collect());
     let own = trajectory.map(|t| times.iter().map(|time| at(t, *time)).collect());
+    let obstacles: Vec<&Obstacle> = run.obstacles().collect();
     let traffic = Traffic {
         track: track.unwrap_or_default(),
         own: own.unwrap_or_default(),
         times,
-        areas: run
-            .obstacles()
-            .map(|o| {
-                let area = |time: f64| sampled_boundary(&o.section(time));
-                (o.name(), Box::new(area) as Box<dyn Fn(f64) -> Vec<Vector>>)
-            })
-            .collect(),
+        targets: obstacles.iter().map(|o| o.name()).collect(),
+        area: &|target, time| sampled_boundary(&obstacles[target].section(time)),
         words: ["planned", "sets", "set of "],
         dashed: true,
         others,
@@ -135,8 +131,10 @@ pub(super) struct Traffic<'a> {
     pub times: Vec<f64>,
     /// Own ship's positions at these times; empty without a track.
     pub own: Vec<Vector>,
-    /// Name and boundary at a time of each target's area.
-    pub areas: Vec<(&'a str, Box<dyn Fn(f64) -> Vec<Vector> + 'a>)>,
+    /// Names of the targets.
+    pub targets: Vec<&'a str>,
+    /// Boundary of a target's area, by its index, at a time.
+    pub area: &'a dyn Fn(usize, f64) -> Vec<Vector>,
     /// Legend: the track, all areas, the area of one target.
     pub words: [&'static str; 3],
     /// True where areas after the first time are dashed.
@@ -157,9 +155,9 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
     // distant areas are clipped
     let within = |p: &Vector| reach.contains(*p);
     let mut areas: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
-    for (index, (_, area)) in traffic.areas.iter().enumerate() {
+    for index in 0..traffic.targets.len() {
         for (k, time) in traffic.times.iter().enumerate() {
-            let boundary = area(*time);
+            let boundary = (traffic.area)(index, *time);
             if boundary.iter().any(within) {
                 shown.extend(boundary.iter().copied().filter(within));
                 areas.push((index, k, boundary));
@@ -204,7 +202,7 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
         let stroke = Stroke::solid(LAND, 3.0);
         panel.line_key("land", stroke);
     }
-    for (index, (name, _)) in traffic.areas.iter().enumerate() {
+    for (index, name) in traffic.targets.iter().enumerate() {
         let stroke = Stroke::solid(target_colour(index), 3.0);
         panel.line_key(&format!("{area_of}{name}"), stroke);
     }

@@ -74,19 +74,12 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
         track: sampled.iter().filter_map(own).collect(),
         own: times.iter().filter_map(own).collect(),
         times: times.clone(),
-        areas: (targets.iter())
-            .map(|target| {
-                let hull = Hull::new(target.length_m, target.beam_m);
-                let area = move |time: f64| {
-                    let ship = target.at(time);
-                    ship.map_or(Vec::new(), |s| hull.polygon(&s.pose).vertices().to_vec())
-                };
-                (
-                    target.name.as_str(),
-                    Box::new(area) as Box<dyn Fn(f64) -> Vec<Vector>>,
-                )
-            })
-            .collect(),
+        targets: targets.iter().map(|target| target.name.as_str()).collect(),
+        area: &|index, time| {
+            let (target, ship) = (&targets[index], targets[index].at(time));
+            let hull = Hull::new(target.length_m, target.beam_m);
+            ship.map_or(Vec::new(), |s| hull.polygon(&s.pose).vertices().to_vec())
+        },
         words: ["track of own ship", "hulls", "hull and track of "],
         dashed: false,
         others: others.into_iter().chain(closest_line).collect(),
