@@ -55,6 +55,7 @@ const SHORT_STEP: f64 = 1e-6;
 /// }
 /// let sailed = simulation.record();
 /// assert!(sailed.safe && sailed.arrived && sailed.targets[0].least_clearance_m > Some(20.0));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
