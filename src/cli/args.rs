@@ -21,7 +21,8 @@ use super::output::status::ExitStatus;
 ///
 /// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one
 /// that takes a risk or enters a set, or a plan that is rejected, 2 bad input or usage, or a result
-/// that cannot be written, 3 a fault of the program; the highest of a run wins.
+/// that cannot be written, 3 a fault of the program, 130 a simulation ended by Ctrl-C; the highest
+/// of a run wins.
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100)]
 pub struct Arguments {
@@ -138,6 +139,10 @@ pub struct SuiteArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario: a file ending in .rrd, or a folder")),
+    mut_arg("figure", |arg| arg.help("Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, or a folder")),
+)]
 pub struct SimulateArgs {
     /// Scenario files, files of other formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
@@ -154,12 +159,8 @@ pub struct SimulateArgs {
     /// Write the document of every plan into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
-    /// Write one Rerun recording per scenario: a file ending in .rrd, or a folder
-    #[arg(long, value_name = "PATH")]
-    pub rrd: Option<PathBuf>,
-    /// Print one JSON document instead of text
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub written: Written,
     #[command(flatten)]
     pub assumed: AssumedArgs,
 }

@@ -1,15 +1,19 @@
 //! `searoom simulate`: scenarios sailed in the closed loop.
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::Context;
-use searoom::document::{SimulationDocument, SimulationsDocument};
+use searoom::document::{
+    INTERNAL_FAULT, NOT_APPLICABLE, SimulationDocument, SimulationsDocument, UNREADABLE,
+};
+use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, write_atomically};
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::input::files::{self, Found};
+use super::input::files::{self, Found, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted};
 use super::output::status::ExitStatus;
@@ -18,28 +22,43 @@ use super::runner::guarded;
 
 /// Sails every file, one after another; a broken one does not stop the others.
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let interrupted = catch_interrupt(output);
     let assumed = args.assumed.assumed();
-    if let Some(folder) = &args.plans {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
-    }
     let scenes = scenes::open(files::find(&args.paths, output), &assumed, output);
     let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
-        recordings: args.rrd.as_deref(),
-        ..Wanted::default()
+        plans: args.plans.as_deref(),
+        ..args.written.wanted()
     };
     let products = Products::prepare(&found, wanted)?;
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
+    let mut report = HtmlReport::new();
     for scene in scenes {
         let sailed = match &scene {
-            Ok(scene) => guarded(|| sail(scene, args, &products, output)),
+            Ok(scene) => {
+                guarded(|| sail(scene, args, &interrupted, &products, &mut report, output))
+            }
             Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
         };
+        let (file, refused) = match &scene {
+            Ok(scene) if scene.scenario(&assumed).is_ok() => (&scene.found.file, NOT_APPLICABLE),
+            Ok(scene) => (&scene.found.file, UNREADABLE),
+            Err(unread) => (&unread.file, UNREADABLE),
+        };
+        let failure = match &sailed {
+            Ok(Ok(_)) => None,
+            Ok(Err(error)) => Some((refused, format!("{error:#}"))),
+            Err(fault) => Some((INTERNAL_FAULT, fault.clone())),
+        };
+        if let Some((outcome, error)) = failure {
+            let name = shown(file);
+            let error = error.replace(&file.display().to_string(), &name);
+            report.add_failure(&name, outcome, &error);
+        }
         status = status.max(match sailed {
             Ok(Ok((document, written))) => {
-                let shown = if args.json {
+                let shown = if args.written.json {
                     ExitStatus::Good
                 } else {
                     output.result(&format!("{}\n", simulation_text(&document, output.colour)))
@@ -55,8 +74,16 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
             Err(fault) => output.fault(&fault),
         });
+        if interrupted.load(Ordering::Relaxed) {
+            output.note(&"interrupted; no more scenarios are sailed");
+            status = ExitStatus::Interrupted;
+            break;
+        }
     }
-    if args.json {
+    let lead = "Sailed by Searoom in the closed loop.";
+    let written = products.write_report(&report, "Searoom: simulations", lead);
+    status = status.max(output.written(written));
+    if args.written.json {
         status = status.max(match <[SimulationDocument; 1]>::try_from(documents) {
             Ok([document]) => output.document(&document),
             Err(simulations) => output.document(&SimulationsDocument { simulations }),
@@ -65,10 +92,27 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     Ok(status)
 }
 
+/// A flag that Ctrl-C sets. A second one ends the program at once.
+fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    let handler = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(ExitStatus::Interrupted.code().into());
+        }
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        output.note(&format_args!("Ctrl-C ends the program at once: {error}"));
+    }
+    interrupted
+}
+
 fn sail(
     scene: &Scene,
     args: &SimulateArgs,
+    interrupted: &AtomicBool,
     products: &Products,
+    report: &mut HtmlReport,
     output: &Output,
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
@@ -82,17 +126,24 @@ fn sail(
         faults: vec![fault],
     };
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
-    if args.plans.is_some() || args.rrd.is_some() {
+    if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();
     }
     while !simulation.finished() {
         simulation.step();
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
     }
     if let Some(folder) = &args.plans {
         write_plans(folder, &scene.found.stem, &simulation)?;
     }
     let document = simulation.record();
     let written = products.write_simulation(&scene.found.stem, &scenario, &simulation, &document);
+    if products.wants_report() {
+        let subject = products.subject(&scene.found.stem, shown(file));
+        report.add_simulation(&subject, &scenario, &document);
+    }
     Ok((document, output.written(written)))
 }
 

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::encounter::ConductDocument;
-use super::memory::StateDocument;
+use super::memory::{StateDocument, segment, steady};
 use super::parts::{PositionDocument, SegmentDocument};
+use crate::colregs::SteadyShip;
+use crate::frame::Pose;
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
@@ -20,15 +22,36 @@ pub struct SimulationDocument {
     pub safe: bool,
     pub contact: bool,
     pub arrived: bool,
+    /// True where it was ended before the arrival and before its time.
+    pub interrupted: bool,
     pub duration_s: f64,
     pub targets: Vec<SimulatedTargetDocument>,
     pub conduct: SailedDocument,
     pub alarms: Vec<AlarmDocument>,
     pub replans: Vec<ReplanDocument>,
-    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step, which
-    /// need not begin exactly where the one before ends.
+    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step,
+    /// which need not begin exactly where the one before ends.
     pub sailed: Vec<SegmentDocument>,
     pub timing: CycleTimingDocument,
+}
+
+impl SimulationDocument {
+    /// Own ship at a time in seconds; `None` where nothing was sailed. O(log segments).
+    pub fn own_at(&self, time: f64) -> Option<Pose> {
+        let begun = self.sailed.partition_point(|s| s.start.t_s <= time);
+        let last = segment(self.sailed.get(begun.saturating_sub(1))?);
+        Some(last.pose_at(time.clamp(last.start_time, last.end_time())))
+    }
+}
+
+impl SimulatedTargetDocument {
+    /// The target at a time in seconds; `None` without a track. O(log states).
+    pub fn at(&self, time: f64) -> Option<SteadyShip> {
+        let begun = self.track.partition_point(|state| state.at.t_s <= time);
+        let (from, mut ship) = steady(self.track.get(begun.saturating_sub(1))?, 0.0);
+        ship.pose.position += ship.velocity() * (time - from);
+        Some(ship)
+    }
 }
 
 /// Several simulations.
@@ -41,7 +64,9 @@ pub struct SimulationsDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimulationSettingsDocument {
     pub step_s: f64,
+    /// Longest time between plans, and whether events ask for one before.
     pub replan_s: f64,
+    pub replan_on_events: bool,
     pub delay_s: f64,
     pub measured_delay: bool,
     pub duration_s: f64,
@@ -113,6 +138,8 @@ pub struct ReplanDocument {
     /// Time of the data, and from which the plan holds.
     pub t_s: f64,
     pub start_t_s: f64,
+    /// Why it was made then.
+    pub reason: String,
     pub verdict: String,
     pub safe: bool,
     /// False where the plan came too late or there is none: own ship keeps the plan before.
@@ -140,6 +167,9 @@ pub struct EstimateDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
     pub speed_mps: f64,
+    /// The hull, or a larger one where heading or size are not reported.
+    pub length_m: f64,
+    pub beam_m: f64,
     pub position_std_m: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,

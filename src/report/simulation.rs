@@ -1,23 +1,41 @@
 //! Text of a simulation.
 
-use super::table::{Grid, Tone, or_dash, plain};
-use crate::document::{SimulatedTargetDocument, SimulationDocument, conduct_breaks};
+use super::table::{Grid, Tone, or_dash, plain, verdict};
+use crate::colregs::compliance::MonitorVerdict;
+use crate::document::{
+    ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
+};
 use crate::text::tenths;
+
+/// Name of the line with the planning times.
+pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.
 pub fn simulation_text(simulation: &SimulationDocument, colour: bool) -> String {
     let mut blocks = vec![headline(simulation)];
     if !simulation.targets.is_empty() {
-        blocks.push(targets(&simulation.targets, colour));
+        blocks.push(targets_grid(&simulation.targets).text(colour));
     }
-    blocks.push(conduct(simulation));
+    let lines = conduct_lines(simulation).into_iter();
+    let lines: Vec<String> = lines
+        .map(|(name, text)| format!("{name}: {text}"))
+        .collect();
+    blocks.push(lines.join("\n"));
     if !simulation.alarms.is_empty() {
-        blocks.push(alarms(simulation));
+        let alarms = alarm_lines(simulation).into_iter();
+        let lines: Vec<String> = alarms
+            .map(|line| match line.starts_with("and ") {
+                true => line,
+                false => format!("alarm at {line}"),
+            })
+            .collect();
+        blocks.push(lines.join("\n"));
     }
     blocks.join("\n\n")
 }
 
-fn headline(simulation: &SimulationDocument) -> String {
+/// Formats whether ships met, and whether own ship arrived.
+pub(super) fn headline(simulation: &SimulationDocument) -> String {
     let met: Vec<&str> = (simulation.targets.iter())
         .filter(|target| target.contact_t_s.is_some())
         .map(|target| target.name.as_str())
@@ -37,10 +55,10 @@ fn headline(simulation: &SimulationDocument) -> String {
         true => String::new(),
         false => format!(" ({})", broken.join(", ")),
     };
-    let arrived = if simulation.arrived {
-        "arrived"
-    } else {
-        "not arrived"
+    let arrived = match (simulation.arrived, simulation.interrupted) {
+        (true, _) => "arrived",
+        (false, true) => "INTERRUPTED",
+        (false, false) => "not arrived",
     };
     format!(
         "{}: {outcome}{broken}; {arrived} after {:.0} s",
@@ -48,7 +66,8 @@ fn headline(simulation: &SimulationDocument) -> String {
     )
 }
 
-fn targets(targets: &[SimulatedTargetDocument], colour: bool) -> String {
+/// A row per target: captain's figures, and the rules that own ship breaks toward it.
+pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
     let rows = targets.iter().map(|target| {
         let roles: Vec<&str> = target
             .conduct
@@ -91,10 +110,10 @@ fn targets(targets: &[SimulatedTargetDocument], colour: bool) -> String {
         numbers: 3..7,
         rows: rows.collect(),
     }
-    .text(colour)
 }
 
-fn conduct(simulation: &SimulationDocument) -> String {
+/// Named lines of what was sailed and of the plans.
+pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static str, String)> {
     let (sailed, timing) = (&simulation.conduct, &simulation.timing);
     let first = sailed.first_plan_cost_m2;
     let share = first
@@ -108,54 +127,165 @@ fn conduct(simulation: &SimulationDocument) -> String {
     };
     let plans = simulation.replans.len();
     let kept = simulation.replans.iter().filter(|r| r.keeps_plan).count();
-    [
-        format!(
-            "Sailed: J {:.0} m²{share}; turns {}, changes of speed {}; breaks {breaks}",
-            sailed.cost_m2, sailed.turns, sailed.speed_changes
+    vec![
+        (
+            "Sailed",
+            format!(
+                "J {:.0} m²{share}; turns {}, changes of speed {}; breaks {breaks}",
+                sailed.cost_m2, sailed.turns, sailed.speed_changes
+            ),
         ),
-        format!(
-            "Plans: {plans}, {kept} kept from the one before; manoeuvres replaced {}, to the other side {}; \
-             remainders lost {}, unsafe {}, without a plan {}",
-            sailed.replaced_manoeuvres,
-            sailed.side_switches,
-            sailed.lost_remainders,
-            sailed.unsafe_plans,
-            sailed.without_plan
+        (
+            "Plans",
+            format!(
+                "{plans}, {kept} kept from the one before; manoeuvres replaced {}, to the other \
+                 side {}; remainders lost {}, unsafe {}, without a plan {}",
+                sailed.replaced_manoeuvres,
+                sailed.side_switches,
+                sailed.lost_remainders,
+                sailed.unsafe_plans,
+                sailed.without_plan
+            ),
         ),
-        format!(
-            "Off the plan: at most {:.2} m, at {:.0} s, {} the tracking margin",
-            sailed.largest_off_plan_m,
-            sailed.largest_off_plan_t_s,
-            if sailed.within_tracking_margin { "within" } else { "BEYOND" }
+        (
+            "Off the plan",
+            format!(
+                "at most {:.2} m, at {:.0} s, {} the tracking margin",
+                sailed.largest_off_plan_m,
+                sailed.largest_off_plan_t_s,
+                match sailed.within_tracking_margin {
+                    true => "within",
+                    false => "BEYOND",
+                }
+            ),
         ),
-        format!(
-            "Planning: {:.1} ms in the median, {:.1} ms at 99 %, {:.1} ms at most",
-            timing.quantile_ms(0.5),
-            timing.quantile_ms(0.99),
-            timing.quantile_ms(1.0)
+        (
+            TIMES,
+            format!(
+                "{:.1} ms in the median, {:.1} ms at 99 %, {:.1} ms at most",
+                timing.quantile_ms(0.5),
+                timing.quantile_ms(0.99),
+                timing.quantile_ms(1.0)
+            ),
         ),
     ]
-    .join("\n")
+}
+
+/// A row per target: both judges on what was sailed.
+pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
+    let rows = targets.iter().map(|target| {
+        let conduct = &target.conduct;
+        let lines = |lines: Vec<String>, tone| match lines.is_empty() {
+            true => or_dash(None),
+            false => (lines.join("\n"), tone),
+        };
+        let scores = conduct.scores.iter();
+        let scores = scores.map(|(rule, score)| format!("{} {score:.2}", rule.replace('_', " ")));
+        let violations = conduct.violations.iter();
+        let violations = violations.map(|v| format!("{}: {}, at {:.0} s", v.rule, v.what, v.t_s));
+        let monitors = |verdict: &str| -> Vec<String> {
+            let found = conduct.monitors.iter().filter(|m| m.verdict == verdict);
+            found.map(|monitor| monitor.monitor.clone()).collect()
+        };
+        vec![
+            plain(target.name.clone()),
+            lines(scores.collect(), Tone::Plain),
+            lines(violations.collect(), Tone::Bad),
+            lines(monitors(MonitorVerdict::Satisfied.name()), Tone::Plain),
+            lines(monitors(MonitorVerdict::Violated.name()), Tone::Bad),
+        ]
+    });
+    Grid {
+        header: vec![
+            "target",
+            "scores",
+            "rules broken",
+            "monitors satisfied",
+            "monitors violated",
+        ],
+        numbers: 0..0,
+        rows: rows.collect(),
+    }
+}
+
+/// Degrees: a smaller difference between the turns of two plans is none.
+const OTHER_TURN_DEG: f64 = 5.0;
+
+/// A row per plan that differs from the one before: in its outcome, its manoeuvre, or the targets
+/// that left their sets.
+pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
+    let mut before: Option<&ReplanDocument> = None;
+    let mut rows = Vec::new();
+    for replan in replans {
+        let outside = [&replan.outside_velocities, &replan.outside_places];
+        let is_other = before.replace(replan).is_none_or(|before| {
+            let turn = |r: &ReplanDocument| r.turn_deg.unwrap_or(0.0);
+            let state = |r: &ReplanDocument| (r.verdict.clone(), r.safe, r.relaxations.clone());
+            state(before) != state(replan) || (turn(before) - turn(replan)).abs() > OTHER_TURN_DEG
+        });
+        if !is_other && replan.followed && outside.iter().all(|names| names.is_empty()) {
+            continue;
+        }
+        let mut remarks = Vec::new();
+        if !["start", "period"].contains(&replan.reason.as_str()) {
+            remarks.push(format!("asked for by an event: {}", replan.reason));
+        }
+        if !replan.followed {
+            remarks.push("not followed".to_owned());
+        }
+        if !replan.relaxations.is_empty() {
+            remarks.push(format!("relaxed: {}", replan.relaxations.join(", ")));
+        }
+        for (names, what) in outside
+            .into_iter()
+            .zip(["another velocity", "another place"])
+        {
+            if !names.is_empty() {
+                remarks.push(format!("{what} than assumed: {}", names.join(", ")));
+            }
+        }
+        let word = match replan.safe {
+            true => verdict(&replan.verdict),
+            false => (replan.verdict.clone(), Tone::Bad),
+        };
+        rows.push(vec![
+            plain(format!("{:.0} s", replan.t_s)),
+            or_dash(replan.turn_deg.map(turn_text)),
+            or_dash(replan.cost_m2.map(|cost| format!("{cost:.0}"))),
+            word,
+            or_dash((!remarks.is_empty()).then(|| remarks.join("\n"))),
+        ]);
+    }
+    Grid {
+        header: vec!["planned at", "turn", "J\n[m²]", "outcome", "remarks"],
+        numbers: 1..3,
+        rows,
+    }
+}
+
+fn turn_text(degrees: f64) -> String {
+    if degrees.abs() < 0.5 {
+        return "none, by speed".to_owned();
+    }
+    let side = if degrees > 0.0 { "starboard" } else { "port" };
+    format!("{:.0}° to {side}", degrees.abs())
 }
 
 /// Alarms that are listed; the others are counted.
 const LISTED: usize = 12;
 
-fn alarms(simulation: &SimulationDocument) -> String {
-    let mut lines: Vec<String> = (simulation.alarms.iter().take(LISTED))
+/// Lines of the first alarms, and the number of the others.
+pub(super) fn alarm_lines(simulation: &SimulationDocument) -> Vec<String> {
+    let alarms = &simulation.alarms;
+    let mut lines: Vec<String> = (alarms.iter().take(LISTED))
         .map(|alarm| {
             let target = alarm.target.as_ref();
             let target = target.map_or(String::new(), |target| format!(": {target}"));
-            format!("alarm at {:.0} s: {}{target}", alarm.t_s, alarm.alarm)
+            format!("{:.0} s: {}{target}", alarm.t_s, alarm.alarm)
         })
         .collect();
-    if let Some(more) = simulation
-        .alarms
-        .len()
-        .checked_sub(LISTED)
-        .filter(|more| *more > 0)
-    {
-        lines.push(format!("and {more} more"));
+    if alarms.len() > LISTED {
+        lines.push(format!("and {} more", alarms.len() - LISTED));
     }
-    lines.join("\n")
+    lines
 }

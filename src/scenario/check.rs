@@ -7,7 +7,7 @@ use super::plane::{POSITION, Plane};
 use super::planner::{PlannerTable, planner};
 use super::simulation::simulation;
 use super::targets::targets;
-use super::{Behaviour, Compliance, Land, Memory, Scenario, land, limits};
+use super::{Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Faults, Field, Node, Table, from_toml};
@@ -68,17 +68,17 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .map(|table| planner(table, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane, time, own_ship.as_ref());
-    let (targets, behaviours) = match targets {
+    let (targets, simulated) = match targets {
         Some(targets) => {
             let parts = targets.into_iter();
-            let (targets, behaviours): (Vec<_>, Vec<Behaviour>) = parts
-                .map(|(target, known, behaviour)| ((target, known), behaviour))
+            let (targets, simulated): (Vec<_>, Vec<_>) = parts
+                .map(|(target, known, simulated)| ((target, known), simulated))
                 .unzip();
-            (Some(targets), behaviours)
+            (Some(targets), simulated)
         }
         None => (None, Vec::new()),
     };
-    let simulation = simulation(&mut root, behaviours);
+    let simulation = simulation(&mut root, simulated);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
         let paths = mission

@@ -18,7 +18,7 @@ pub use crate::input::{Fault, InputError as ScenarioError};
 pub use land::Land;
 pub use memory::Memory;
 pub use simulation::{
-    Behaviour, Current, Noise, Sensor, SensorKind, SimulationSettings, VesselModel,
+    Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
 
 use std::path::Path;

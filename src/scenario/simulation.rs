@@ -1,18 +1,21 @@
-//! The tables `[simulation]` and `[targets.behaviour]`: how a scenario is sailed in the closed loop.
-//! Plans do not use them.
+//! The tables `[simulation]` and `[targets.behaviour]`: how a scenario is sailed in the closed
+//! loop. Plans do not use them.
 
 use super::limits;
 use super::plane::{POSITION, Plane};
 use crate::frame::{Vector, heading_from_course_deg, radians_from_deg};
 use crate::input::{Field, Range, Table};
+use crate::vessel::Hull;
 
 /// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationSettings {
     /// Step of the simulation.
     pub step: f64,
-    /// Time from one plan to the next.
+    /// Longest time from one plan to the next.
     pub replan: f64,
+    /// True where an event asks for a plan before that.
+    pub replan_on_events: bool,
     /// Time from the data of a plan to its start.
     pub delay: f64,
     /// Time after which the simulation ends; `None` for the horizon.
@@ -27,6 +30,31 @@ pub struct SimulationSettings {
     pub sensor: Sensor,
     /// True motion of each target, in the scenario's order; constant where there is none.
     pub behaviours: Vec<Behaviour>,
+    /// What the reports of each target leave out, in the scenario's order; nothing where there is
+    /// none.
+    pub not_reported: Vec<NotReported>,
+}
+
+/// What the AIS reports of a target leave out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NotReported {
+    /// The heading: the hull may lie at any angle to the course.
+    pub heading: bool,
+    /// Length and beam.
+    pub size: bool,
+}
+
+impl NotReported {
+    /// The hull to assume of a target with a reported hull, or of `default` size. It holds the
+    /// hull; without a heading it holds the hull at every heading.
+    pub fn outer_hull(self, reported: Hull, default: Hull) -> Hull {
+        let hull = if self.size { default } else { reported };
+        if self.heading {
+            let diagonal = 2.0 * hull.half_diagonal();
+            return Hull::new(diagonal, diagonal);
+        }
+        hull
+    }
 }
 
 /// Own ship's true motion.
@@ -121,6 +149,8 @@ pub struct Sensor {
     pub settle: f64,
     /// A target that has not been heard of for this time is stale.
     pub stale: f64,
+    /// Hull of a target that does not report its size.
+    pub default_hull: Hull,
 }
 
 impl Sensor {
@@ -138,6 +168,7 @@ impl Sensor {
         dropout_lasts: 0.0,
         settle: 0.0,
         stale: f64::INFINITY,
+        default_hull: Hull::new(100.0, 20.0),
     };
 }
 
@@ -233,6 +264,7 @@ impl Default for SimulationSettings {
         Self {
             step: 0.5,
             replan: 20.0,
+            replan_on_events: false,
             delay: 1.0,
             duration: None,
             seed: 1,
@@ -245,6 +277,7 @@ impl Default for SimulationSettings {
             },
             sensor: Sensor::EXACT,
             behaviours: Vec::new(),
+            not_reported: Vec::new(),
         }
     }
 }
@@ -272,13 +305,15 @@ fn number_or(table: &mut Table, key: &str, range: Range, default: f64) -> Option
     }
 }
 
-/// The table `[simulation]`, which may be absent; the behaviours are those of the targets.
+/// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
 pub(super) fn simulation(
     root: &mut Table,
-    behaviours: Vec<Behaviour>,
+    targets: Vec<SimulatedTarget>,
 ) -> Option<SimulationSettings> {
+    let (behaviours, not_reported) = targets.into_iter().unzip();
     let standard = SimulationSettings {
         behaviours,
+        not_reported,
         ..SimulationSettings::default()
     };
     let Some(field) = root.take("simulation") else {
@@ -287,6 +322,10 @@ pub(super) fn simulation(
     let mut table = field.table("a table")?;
     let step = number_or(&mut table, "step_s", STEP, standard.step);
     let replan = number_or(&mut table, "replan_s", limits::DURATION, standard.replan);
+    let replan_on_events = match table.take("replan") {
+        Some(field) => field.choice(&[("period", false), ("events", true)]),
+        None => Some(standard.replan_on_events),
+    };
     let delay = number_or(&mut table, "delay_s", DELAY, standard.delay);
     let duration = match table.take("duration_s") {
         Some(field) => field.number(limits::DURATION).map(Some),
@@ -312,6 +351,7 @@ pub(super) fn simulation(
     Some(SimulationSettings {
         step: step?,
         replan: replan?,
+        replan_on_events: replan_on_events?,
         delay: delay?,
         duration: duration?,
         seed: seed?,
@@ -406,7 +446,14 @@ fn sensor(field: &Field) -> Option<Sensor> {
         return Some(Sensor::EXACT);
     }
     let mut interval = Some(None);
+    let mut default_hull = Some(Sensor::EXACT.default_hull);
     if kind == AIS {
+        let Hull { length, beam } = Sensor::EXACT.default_hull;
+        let length = number_or(&mut table, "default_length_m", limits::SHIP_LENGTH, length);
+        let beam = number_or(&mut table, "default_beam_m", limits::SHIP_LENGTH, beam);
+        default_hull = length
+            .zip(beam)
+            .map(|(length, beam)| Hull::new(length, beam));
         let class = table.choice("class", &[("a", true), ("b", false)]);
         let class_a = class.unwrap_or(true);
         kind = SensorKind::Ais { class_a };
@@ -468,6 +515,7 @@ fn sensor(field: &Field) -> Option<Sensor> {
         dropout_lasts: lasts?,
         settle: settle?,
         stale: stale?,
+        default_hull: default_hull?,
     })
 }
 
@@ -480,8 +528,33 @@ fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
     pairs.into_iter().collect()
 }
 
+/// What the file has of a target for the simulation.
+pub(super) type SimulatedTarget = (Behaviour, NotReported);
+
+/// The keys of a target for the simulation, all of which may be absent.
+pub(super) fn simulated(target: &mut Table, plane: &Plane) -> Option<SimulatedTarget> {
+    let behaviour = behaviour(target, plane);
+    let not_reported = match target.take("not_reported") {
+        Some(field) => not_reported(&field),
+        None => Some(NotReported::default()),
+    };
+    behaviour.zip(not_reported)
+}
+
+fn not_reported(field: &Field) -> Option<NotReported> {
+    let words = field.list(0..=2, "\"heading\" or \"size\"")?;
+    let mut found = NotReported::default();
+    for word in words {
+        match word.choice(&[("heading", true), ("size", false)])? {
+            true => found.heading = true,
+            false => found.size = true,
+        }
+    }
+    Some(found)
+}
+
 /// The table `behaviour` of a target, which may be absent.
-pub(super) fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
+fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
     let Some(field) = target.take("behaviour") else {
         return Some(Behaviour::Constant);
     };

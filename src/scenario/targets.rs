@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::plane::Plane;
-use super::simulation::behaviour;
-use super::{Behaviour, explicit_sets, limits};
+use super::simulation::{SimulatedTarget, simulated};
+use super::{Behaviour, NotReported, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
 use crate::input::{Field, Table};
@@ -20,7 +20,7 @@ pub(super) fn targets(
     plane: &Plane,
     time: Option<f64>,
     own: Option<&OwnShip>,
-) -> Option<Vec<(Target, TargetMemory, Behaviour)>> {
+) -> Option<Vec<(Target, TargetMemory, SimulatedTarget)>> {
     let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };
@@ -49,16 +49,18 @@ pub(super) fn targets(
             _ => None,
         };
         let role = role(&mut table, time, own, ship);
-        let behaviour = match ship {
+        let simulated = match ship {
             None if known.is_some() => {
-                table.forbid("behaviour", "nothing: only a tracked ship has one");
-                Some(Behaviour::Constant)
+                for key in ["behaviour", "not_reported"] {
+                    table.forbid(key, "nothing: only a tracked ship has one");
+                }
+                Some((Behaviour::Constant, NotReported::default()))
             }
-            _ => behaviour(&mut table, plane),
+            _ => simulated(&mut table, plane),
         };
         table.finish();
-        let found = text.zip(known).zip(role).zip(behaviour);
-        targets.push(found.map(|(((name, known), role), behaviour)| {
+        let found = text.zip(known).zip(role).zip(simulated);
+        targets.push(found.map(|(((name, known), role), simulated)| {
             let target = Target {
                 name: name.to_owned(),
                 motion: known.motion,
@@ -68,7 +70,7 @@ pub(super) fn targets(
                 role,
                 ..TargetMemory::default()
             };
-            (target, memory, behaviour)
+            (target, memory, simulated)
         }));
     }
     targets.into_iter().collect()

@@ -181,8 +181,12 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let (settings, end) = (&document.settings, document.duration_s);
     // own ship off its plan does not arrive at its end
     let is_off = !document.conduct.within_tracking_margin;
-    let ends =
-        document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end);
+    let ends = match document.interrupted {
+        true => !document.arrived && end < settings.duration_s,
+        false => {
+            document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end)
+        }
+    };
     require(
         ends,
         "it ends neither at the arrival nor at its duration",
@@ -251,8 +255,8 @@ fn is_steered(document: &SimulationDocument) -> bool {
         || settings.current_std_mps > 0.0
 }
 
-/// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a step,
-/// and what the mean of a step leaves out.
+/// Gaps of a motion: none where own ship follows its plan, else what the current moves it in a
+/// step, and what the mean of a step leaves out.
 fn most_gap(document: &SimulationDocument) -> f64 {
     if is_steered(document) {
         let [east, north] = document.settings.current_mps;

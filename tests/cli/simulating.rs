@@ -109,6 +109,53 @@ fn a_recording_tells_what_simulate_tells() {
 }
 
 #[test]
+fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = text(&folder.path().join("sailed.svg")).to_owned();
+    let sailed =
+        document(&searoom(&["simulate", HEAD_ON_FILE, "--json", "--figure", &file]).success());
+    let drawn = std::fs::read_to_string(&file).expect("written");
+    let least = &sailed["targets"][0];
+    let apart = least["least_clearance_m"].as_f64().expect("a distance");
+    let time = least["least_clearance_t_s"].as_f64().expect("a time");
+    let closest = format!("closest approach: {apart:.1} m to target at {time:.0} s");
+    for label in [
+        &closest,
+        "own ship, and hulls, at 0, 60, 120, 180, 240 s",
+        "hull and track of target",
+        ">180 s<",
+    ] {
+        assert!(drawn.contains(label), "{label}: {drawn}");
+    }
+    searoom(&["simulate", "scenarios/colregs", "--figure", &file])
+        .code(2)
+        .stderr(predicates::str::contains("4 scenarios; name a folder"));
+}
+
+#[test]
+fn a_report_shows_every_simulation_and_why_one_was_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sail = |name: &str| {
+        let report = folder.path().join(name);
+        let refused = "scenarios/paper/figure_9.toml";
+        searoom(&["simulate", HEAD_ON_FILE, refused, "--report", text(&report)]).code(2);
+        assert!(report.join("head-on-1.svg").is_file());
+        std::fs::read_to_string(report.join("index.html")).expect("written")
+    };
+    let page = sail("a");
+    for shown in [
+        "Head-on: no contact, every plan safe; arrived after 300 s",
+        "src=\"./head-on-1.svg\"",
+        "Plans that differ from the one before",
+        "not applicable",
+        "the closed loop goes on from its plans alone",
+    ] {
+        assert!(page.contains(shown), "{shown}: {page}");
+    }
+    assert_eq!(page, sail("b"));
+}
+
+#[test]
 fn a_shorter_time_ends_the_simulation_before_arrival() {
     let found =
         document(&run(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45")).success());
@@ -194,6 +241,118 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
         assert_eq!(sailed["conduct"]["side_switches"], 0, "{title}");
         assert_eq!(sailed["conduct"]["within_tracking_margin"], true, "{title}");
     }
+}
+
+#[test]
+fn a_plan_is_asked_for_when_a_target_is_reported_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
+                  sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
+    let file = write(folder.path(), "a.toml", head_on("", tables));
+    let found = document(&searoom(&["simulate", &file, "--json"]).success());
+    assert_eq!(found["settings"]["replan_on_events"], true);
+    let replans = found["replans"].as_array().expect("a list");
+    let again = replans.iter().find(|r| r["reason"] == "acquired: target");
+    let time = again.expect("an event")["t_s"].as_f64().expect("a time");
+    assert!((60.0..63.0).contains(&time), "{time}");
+    let file = write(
+        folder.path(),
+        "b.toml",
+        head_on("", "[simulation]\nreplan = \"often\""),
+    );
+    let refused = stderr(&searoom(&["simulate", &file]).code(2));
+    let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
+    assert!(refused.contains(fault), "{refused}");
+}
+
+#[test]
+fn a_target_without_size_in_its_reports_has_the_default_size() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sail = |target: &str, sensor: &str, code: i32| {
+        let tables = format!("[simulation]\nsensor = {{ {sensor} }}");
+        let file = write(folder.path(), "a.toml", head_on(target, &tables));
+        searoom(&["simulate", &file, "--json"]).code(code)
+    };
+    let both = "not_reported = [\"heading\", \"size\"]";
+    let found = document(&sail(both, "kind = \"ais\", default_beam_m = 75", 0));
+    let assumed = &found["replans"][0]["estimates"][0];
+    assert_eq!(
+        (&assumed["length_m"], &assumed["beam_m"]),
+        (&125.0.into(), &125.0.into())
+    );
+    assert_eq!(found["targets"][0]["length_m"], 60.0);
+    for (target, sensor, fault) in [
+        (
+            both,
+            "kind = \"radar\"",
+            "targets[0].not_reported: found a sensor of kind \"radar\"",
+        ),
+        (
+            both,
+            "kind = \"ais\", default_length_m = 50",
+            "targets[0].not_reported: found a larger ship than the default of 50 × 20 m",
+        ),
+        (
+            "not_reported = [\"name\"]",
+            "kind = \"ais\"",
+            "targets[0].not_reported[0]: found the text \"name\"; allowed: \"heading\", \"size\"",
+        ),
+    ] {
+        let refused = stderr(&sail(target, sensor, 2));
+        assert!(refused.contains(fault), "{fault}: {refused}");
+    }
+}
+
+/// The time of Ctrl-C depends on the machine; a step of 0.01 s makes the simulation long.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_what_was_sailed_so_far() {
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().expect("a folder");
+    let far = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 900000.0");
+    let far = far.replace("east_m = 1500.0", "east_m = 4000000.0");
+    let far = format!("{far}\n[simulation]\nstep_s = 0.01\nreplan_s = 900000.0\n");
+    let file = write(folder.path(), "far.toml", far);
+    let plans = folder.path().join("plans");
+    let sailing = Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .args([
+            "simulate",
+            &file,
+            HEAD_ON_FILE,
+            "--json",
+            "--plans",
+            text(&plans),
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    // the folder is made after Ctrl-C is caught
+    while !plans.is_dir() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = Command::new("kill")
+        .args(["-INT", &sailing.id().to_string()])
+        .status();
+    assert!(kill.expect("kill").success());
+    let ended = sailing.wait_with_output().expect("ended");
+    assert_eq!(ended.status.code(), Some(130));
+    let note = String::from_utf8(ended.stderr).expect("text");
+    assert!(note.contains("no more scenarios are sailed"), "{note}");
+    let sailed = String::from_utf8(ended.stdout).expect("text");
+    let found: serde_json::Value = serde_json::from_str(&sailed).expect("one document");
+    assert_eq!(
+        (&found["interrupted"], &found["arrived"]),
+        (&true.into(), &false.into())
+    );
+    let time = found["duration_s"].as_f64().expect("a time");
+    assert!(time > 0.0 && time < 800_000.0, "{time}");
+    let file = write(folder.path(), "sailed.json", sailed.clone());
+    let shown = stdout(&searoom(&["verify", &file]).success());
+    assert!(shown.contains("verified: no contact"), "{shown}");
+    let altered = sailed.replace("\"interrupted\": true", "\"interrupted\": false");
+    let file = write(folder.path(), "altered.json", altered);
+    searoom(&["verify", &file]).code(1);
 }
 
 /// Contacts and distances are computed again from the motions alone.

@@ -1,8 +1,12 @@
 //! The closed loop: what it sails is what was planned, seen and judged.
 
 use searoom::document::SimulationDocument;
-use searoom::scenario::{Behaviour, Compliance, Fault, Scenario, SimulationSettings, VesselModel};
+use searoom::frame::{Pose, Vector};
+use searoom::scenario::{
+    Behaviour, Compliance, Fault, NotReported, Scenario, SimulationSettings, VesselModel,
+};
 use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+use searoom::vessel::Hull;
 
 use crate::campaigns::replanning;
 use crate::campaigns::simulation::{How, Seen, Ship, Truth, run, sail};
@@ -155,6 +159,144 @@ fn a_plan_that_takes_longer_than_the_delay_is_not_followed() {
     assert!(!sailed.contact && sailed.arrived && !sailed.safe);
     let first = sailed.conduct.first_plan_cost_m2.expect("a plan");
     assert!((sailed.conduct.cost_m2 - first).abs() < 1e-6 * first);
+}
+
+/// A target that turns away is planned for anew when it holds its new course, unless a plan is due
+/// before.
+#[test]
+fn an_event_asks_for_a_plan_before_its_time() {
+    let with_events = |behaviour: Behaviour| {
+        let mut scenario = meeting(EncounterKind::HeadOn, 1, &CONSTANT);
+        scenario.simulation.replan = 100.0;
+        scenario.simulation.replan_on_events = true;
+        scenario.simulation.behaviours = vec![behaviour];
+        sail(scenario)
+    };
+    let quiet = with_events(Behaviour::Constant);
+    let reasons: Vec<&str> = quiet.replans.iter().map(|r| r.reason.as_str()).collect();
+    assert!(reasons.len() > 1 && reasons[1..].iter().all(|reason| *reason == "period"));
+    let turns = with_events(Behaviour::GivesWay {
+        turn: 0.7,
+        before: 90.0,
+        probability: 1.0,
+        turn_rate: 0.03,
+    });
+    let spread = turns.replans[0].estimates[0].course_spread_deg;
+    let (track, replans) = (&turns.targets[0].track, &turns.replans);
+    let asked = replans
+        .iter()
+        .find(|r| r.reason.starts_with("another velocity: "));
+    let asked = asked.expect("an event").t_s;
+    // the track has a state for every change of course
+    let held = track.iter().rfind(|state| state.at.t_s < asked);
+    let held = held.expect("it turned").at;
+    let turned = (held.course_deg - track[0].at.course_deg).abs();
+    assert!(turned.min(360.0 - turned) > spread);
+    assert!((4.0..6.0).contains(&(asked - held.t_s)), "{asked} {held:?}");
+    assert!(!turns.contact && replans.len() < 20, "{}", replans.len());
+    // the next plan by time counts from the last one
+    for pair in replans.windows(2).filter(|pair| pair[1].reason == "period") {
+        assert!((pair[1].t_s - pair[0].t_s - 100.0).abs() < 1e-6);
+    }
+}
+
+/// AIS that leaves out heading, size or both: 45 runs.
+#[test]
+fn a_target_that_does_not_report_its_heading_or_size_is_taken_for_a_larger_one() {
+    let [heading, size] = [true, true];
+    for missing in [(heading, false), (false, size), (heading, size)] {
+        let missing = NotReported {
+            heading: missing.0,
+            size: missing.1,
+        };
+        for (kind, seed) in EncounterKind::ALL
+            .into_iter()
+            .flat_map(|k| (0..3).map(move |s| (k, s)))
+        {
+            let (truth, seen) = (Truth::Random, Seen::Ais);
+            let mut scenario = meeting(
+                kind,
+                seed,
+                &How {
+                    truth,
+                    seen,
+                    ..CONSTANT
+                },
+            );
+            scenario.simulation.not_reported = vec![missing];
+            scenario.simulation.sensor.default_hull = Hull::new(100.0, 25.0);
+            let sailed = sail(scenario);
+            let target = &sailed.targets[0];
+            assert!(!sailed.contact, "{missing:?} {kind:?} {seed}");
+            let hull = Hull::new(target.length_m, target.beam_m);
+            for estimate in sailed.replans.iter().map(|replan| &replan.estimates[0]) {
+                let assumed = Hull::new(estimate.length_m, estimate.beam_m);
+                assert!(!missing.size || assumed.length >= 100.0 && assumed.beam >= 25.0);
+                let outer = assumed.polygon(&Pose::new(Vector::zeros(), 0.0));
+                let headings = if missing.heading { 16 } else { 1 };
+                for k in 0..headings {
+                    let pose = Pose::new(Vector::zeros(), f64::from(k) * 0.4);
+                    let corners = hull.polygon(&pose);
+                    let out = |v: &Vector| outer.signed_distance(*v) > 1e-9;
+                    assert!(
+                        !corners.vertices().iter().any(out),
+                        "{missing:?} {assumed:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn own_ship_off_its_plan_asks_for_another() {
+    let ship = Ship::Nomoto;
+    let mut scenario = meeting(EncounterKind::GiveWay, 2, &How { ship, ..CONSTANT });
+    scenario.own_ship.tracking_margin = 1.0;
+    scenario.simulation.replan_on_events = true;
+    scenario.simulation.replan = scenario.horizon;
+    let sailed = sail(scenario.clone());
+    let mut events = sailed.replans[1..].iter();
+    assert!(events.all(|replan| replan.reason == "beyond the tracking margin"));
+    let first = sailed.replans[1].t_s;
+    let alarm = sailed
+        .alarms
+        .iter()
+        .find(|a| a.alarm == "beyond the tracking margin");
+    assert!((first - alarm.expect("an alarm").t_s).abs() < 1e-6);
+    scenario.own_ship.tracking_margin = 0.0;
+    assert_eq!(sail(scenario).replans.len(), 1);
+}
+
+#[test]
+fn plans_on_events_keep_clear_of_targets_that_leave_their_sets() {
+    for (kind, seed) in EncounterKind::ALL
+        .into_iter()
+        .flat_map(|k| (0..6).map(move |s| (k, s)))
+    {
+        for factor in [1.0, 1.5] {
+            let truth = Truth::Extremes;
+            let mut scenario = meeting(
+                kind,
+                seed,
+                &How {
+                    truth,
+                    factor,
+                    ..CONSTANT
+                },
+            );
+            scenario.simulation.replan_on_events = true;
+            scenario.simulation.replan = 60.0;
+            let sailed = sail(scenario);
+            assert!(
+                !sailed.contact && sailed.arrived,
+                "{kind:?} {seed} {factor}"
+            );
+            let kept = factor == 1.0;
+            assert!(!kept || sailed.safe && sailed.conduct.lost_remainders == 0);
+            assert!(!kept || sailed.targets[0].outside_sets == 0);
+        }
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use searoom::document::{ComparisonDocument, PlanDocument, SimulationDocument};
 use searoom::pipeline::Run;
-use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
+use searoom::report::figure::{FigureError, FigureFormat, plan_figure, simulation_figure};
 use searoom::report::page::{HtmlReport, Subject, link_from};
 use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
@@ -191,7 +191,7 @@ impl Products {
         attempt(|| record_comparison(side, &place.file(stem, "rrd")))
     }
 
-    /// Writes the recording of a simulation that kept its plans, if requested.
+    /// Writes the figure of a simulation, and the recording of one that kept its plans.
     pub fn write_simulation(
         &self,
         stem: &str,
@@ -199,11 +199,15 @@ impl Products {
         simulation: &Simulation,
         document: &SimulationDocument,
     ) -> Result<(), Failure> {
-        let Some(place) = &self.recordings else {
-            return Ok(());
-        };
-        let file = place.file(stem, "rrd");
-        attempt(|| record_simulation(scenario, simulation, document, &file))
+        attempt(|| {
+            if let Some(place) = &self.recordings {
+                record_simulation(scenario, simulation, document, &place.file(stem, "rrd"))?;
+            }
+            if let Some(place) = &self.figures {
+                simulation_figure(scenario, document).write(&place.file(stem, "svg"))?;
+            }
+            Ok(())
+        })
     }
 }
 

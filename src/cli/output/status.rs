@@ -16,6 +16,8 @@ pub enum ExitStatus {
     BadInput,
     /// Internal fault, including a plan that fails its own verification.
     InternalFault,
+    /// Ended by Ctrl-C; what was found until then is written.
+    Interrupted,
 }
 
 impl ExitStatus {
@@ -40,12 +42,14 @@ impl ExitStatus {
 
 impl ExitStatus {
     /// Exit code of the process.
-    fn code(self) -> u8 {
+    pub fn code(self) -> u8 {
         match self {
             Self::Good => 0,
             Self::NoPlan => 1,
             Self::BadInput => 2,
             Self::InternalFault => 3,
+            // of a process that ends by SIGINT, for shells
+            Self::Interrupted => 130,
         }
     }
 }

@@ -13,6 +13,7 @@ mod path_time;
 mod plan;
 mod render;
 mod sections;
+mod simulation;
 mod window;
 
 pub use assessment::assessment_figure;
@@ -25,6 +26,8 @@ pub(super) use plan::plan_panels;
 pub use plan::{chart_panel, explored_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
+pub use simulation::simulation_figure;
+pub(super) use simulation::simulation_panel;
 pub use window::PlotWindow;
 
 pub use crate::study::compare::Stroke;

@@ -99,6 +99,15 @@ impl Panel {
         self.notes.push(note);
     }
 
+    /// Adds a text on one side of a position, in the direction of a unit vector.
+    pub(super) fn note_beside(&mut self, text: &str, at: Vector, side: Vector) {
+        let size = f64::from(NOTE_SIZE);
+        let half_width = 0.3 * size * text.chars().count() as f64;
+        // a note is above its position
+        let off = Vector::new(side.x * (half_width + size), side.y * 1.4 * size - size);
+        self.note(text, at + off * (self.window.size().x / AREA[0]));
+    }
+
     /// Height in pixels below the area for a legend with this many lines.
     pub(super) fn below(lines: usize) -> f64 {
         AXIS + if lines == 0 {

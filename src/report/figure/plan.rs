@@ -15,7 +15,7 @@ use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
-use crate::scenario::Land;
+use crate::scenario::{Land, Scenario};
 use crate::trajectory::Trajectory;
 
 /// Stroke of the desired trajectory.
@@ -97,49 +97,85 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
 
 /// Draws the chart with `others` above the sets and below the plan.
 fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
-    let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
-    let end = trajectory.map_or(scenario.desired.duration(), |t| t.end_time());
-    let end = end.min(scenario.horizon);
-    let waypoints = scenario.desired.waypoints();
-    let way: Vec<Vector> = match trajectory {
-        Some(trajectory) => trajectory
-            .sample_times(STEP, MOST_POINTS)
-            .into_iter()
-            .map(|time| trajectory.pose_at(time).position)
-            .collect(),
-        None => Vec::new(),
-    };
-    let moments: Vec<f64> = (0..MOMENTS)
+    let desired = run.scenario.desired.duration();
+    let end = trajectory.map_or(desired, |t| t.end_time());
+    let end = end.min(run.scenario.horizon);
+    let times: Vec<f64> = (0..MOMENTS)
         .map(|i| end * i as f64 / (MOMENTS - 1) as f64)
         .collect();
+    let at = |t: &Trajectory, time: f64| t.pose_at(time).position;
+    let sampled = trajectory.map(|t| t.sample_times(STEP, MOST_POINTS));
+    let track = trajectory.zip(sampled);
+    let track = track.map(|(t, sampled)| sampled.into_iter().map(|time| at(t, time)).collect());
+    let own = trajectory.map(|t| times.iter().map(|time| at(t, *time)).collect());
+    let obstacles: Vec<&Obstacle> = run.obstacles().collect();
+    let traffic = Traffic {
+        track: track.unwrap_or_default(),
+        own: own.unwrap_or_default(),
+        times,
+        targets: obstacles.iter().map(|o| o.name()).collect(),
+        area: &|target, time| sampled_boundary(&obstacles[target].section(time)),
+        words: ["planned", "sets", "set of "],
+        dashed: true,
+        others,
+    };
+    traffic_chart(title, &run.scenario, traffic)
+}
+
+/// Own ship's track and the area of each target at the same times.
+pub(super) struct Traffic<'a> {
+    /// Own ship's track; empty without one.
+    pub track: Vec<Vector>,
+    /// Times in seconds.
+    pub times: Vec<f64>,
+    /// Own ship's positions at these times; empty without a track.
+    pub own: Vec<Vector>,
+    /// Names of the targets.
+    pub targets: Vec<&'a str>,
+    /// Boundary of a target's area, by its index, at a time.
+    pub area: &'a dyn Fn(usize, f64) -> Vec<Vector>,
+    /// Legend: the track, all areas, the area of one target.
+    pub words: [&'static str; 3],
+    /// True where areas after the first time are dashed.
+    pub dashed: bool,
+    /// Drawn above the areas and below own ship.
+    pub others: Vec<Plot>,
+}
+
+/// Draws the mission, land, the targets and own ship.
+pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) -> Panel {
+    let [sailed, all, area_of] = traffic.words;
+    let waypoints = scenario.desired.waypoints();
     let paths = scenario.alternatives.iter().flatten();
-    let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
+    let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
+        .copied()
+        .collect();
     let reach = PlotWindow::around(shown.iter().copied(), 0.3);
-    // distant sets are clipped
+    // distant areas are clipped
     let within = |p: &Vector| reach.contains(*p);
-    let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
-    for (index, obstacle) in run.obstacles().enumerate() {
-        for (k, time) in moments.iter().enumerate() {
-            let boundary = sampled_boundary(&obstacle.section(*time));
+    let mut areas: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
+    for index in 0..traffic.targets.len() {
+        for (k, time) in traffic.times.iter().enumerate() {
+            let boundary = (traffic.area)(index, *time);
             if boundary.iter().any(within) {
                 shown.extend(boundary.iter().copied().filter(within));
-                sets.push((index, k, boundary));
+                areas.push((index, k, boundary));
             }
         }
     }
     let mut panel = Panel::plan(title.to_owned(), PLAN, PlotWindow::around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
-    for (index, k, boundary) in &sets {
+    for (index, k, boundary) in &areas {
         let colour = target_colour(*index);
-        let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / MOMENTS as f64);
+        let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / traffic.times.len() as f64);
         let polygon = ConvexPolygon::hull(boundary).ok();
         panel
             .plots
             .extend(polygon.and_then(|p| area(&p, colour, opacity)));
         let outline = Stroke {
-            dashed: *k > 0,
+            dashed: traffic.dashed && *k > 0,
             ..Stroke::solid(colour, 1.0)
         };
         panel.plots.push(curve(boundary, true, outline));
@@ -147,18 +183,17 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     for path in &scenario.alternatives {
         panel.plots.push(curve(path, false, ALTERNATIVE));
     }
-    panel.plots.extend(others);
+    panel.plots.extend(traffic.others);
     panel.plots.push(curve(&waypoints, false, DESIRED));
-    if let Some(trajectory) = trajectory {
-        panel.plots.push(curve(&way, false, PLANNED));
-        for time in &moments {
-            let at = trajectory.pose_at(*time).position;
-            panel.plots.push(mark(at, PLANNED.colour));
+    if !traffic.track.is_empty() {
+        panel.plots.push(curve(&traffic.track, false, PLANNED));
+        for at in &traffic.own {
+            panel.plots.push(mark(*at, PLANNED.colour));
         }
-        let list: Vec<String> = moments.iter().map(|t| seconds(*t)).collect();
-        panel.line_key("planned", PLANNED);
+        let list: Vec<String> = traffic.times.iter().map(|t| seconds(*t)).collect();
+        panel.line_key(sailed, PLANNED);
         panel.point_key(
-            &format!("own ship, and sets, at {} s", list.join(", ")),
+            &format!("own ship, and {all}, at {} s", list.join(", ")),
             PLANNED.colour,
         );
     }
@@ -167,9 +202,9 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
         let stroke = Stroke::solid(LAND, 3.0);
         panel.line_key("land", stroke);
     }
-    for (index, obstacle) in run.obstacles().enumerate() {
+    for (index, name) in traffic.targets.iter().enumerate() {
         let stroke = Stroke::solid(target_colour(index), 3.0);
-        panel.line_key(&format!("set of {}", obstacle.name()), stroke);
+        panel.line_key(&format!("{area_of}{name}"), stroke);
     }
     panel
 }

@@ -10,12 +10,19 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::comparison::{comparison_grid, remarks};
-use super::figure::{Figure, Panel, comparison_panels, diagram_panels, plan_panels};
+use super::figure::{
+    Figure, Panel, comparison_panels, diagram_panels, plan_panels, simulation_panel,
+};
 use super::plan::{TIME_COLUMN, suite_grid};
+use super::simulation::{
+    TIMES, alarm_lines, conduct_lines, headline as simulation_headline, judges_grid, replans_grid,
+    targets_grid,
+};
 use super::table::{Grid, Styled, Tone, verdict};
 use super::write::{WriteError, write_atomically};
 use crate::document::{
-    PlanDocument, ScenarioComparisonDocument, SuiteRunDocument, TIME_LINE, headline, plan_lines,
+    PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteRunDocument, TIME_LINE,
+    headline, plan_lines,
 };
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
@@ -43,8 +50,9 @@ pub struct Subject {
 /// Report as HTML pages, built scenario by scenario.
 #[derive(Debug, Default)]
 pub struct HtmlReport {
-    /// Rows of the table over all plans; row i belongs to section i.
+    /// Rows of the table over all plans, and the number of the section of each.
     runs: Vec<SuiteRunDocument>,
+    run_sections: Vec<usize>,
     sections: Vec<Markup>,
     figures: Vec<(String, String)>,
 }
@@ -58,7 +66,7 @@ impl HtmlReport {
     /// Adds a plan: a table row, its verdict and costs, its chart and diagram.
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
-        self.runs.push(SuiteRunDocument::of(file, plan, Vec::new()));
+        self.row(SuiteRunDocument::of(file, plan, Vec::new()));
         let lines = plan_lines(plan).into_iter();
         let lines = lines.filter(|(name, _)| *name != TIME_LINE);
         let figures = self.draw(subject, plan_panels(run));
@@ -76,7 +84,7 @@ impl HtmlReport {
     pub fn add_failure(&mut self, file: &str, outcome: &str, error: &str) {
         let failed = SuiteRunDocument::failed(file.to_owned(), outcome, error.to_owned());
         let (word, tone) = verdict(&failed.verdict);
-        self.runs.push(failed);
+        self.row(failed);
         self.section(html! {
             h2 { (file) ": " (word) }
             p class=(if tone == Tone::Bad { "bad" } else { "quiet" }) { (error) }
@@ -99,12 +107,52 @@ impl HtmlReport {
         self.section(html! {
             h2 { (scenario.title) }
             (origin(subject))
-            (table(comparison_grid(&compared.entries), false))
+            (table(comparison_grid(&compared.entries), &[]))
             @if !remarks.is_empty() {
                 ul.quiet { @for line in remarks { li { (line) } } }
             }
             (figures)
         });
+    }
+
+    /// Adds a simulation: its outcome, chart, targets and rules, the plans that differ from the one
+    /// before, and the alarms.
+    pub fn add_simulation(
+        &mut self,
+        subject: &Subject,
+        scenario: &Scenario,
+        simulation: &SimulationDocument,
+    ) {
+        let lines = conduct_lines(simulation).into_iter();
+        let lines = lines.filter(|(name, _)| *name != TIMES);
+        let figures = self.draw(subject, vec![simulation_panel(scenario, simulation)]);
+        let targets = &simulation.targets;
+        self.section(html! {
+            h2 { (simulation_headline(simulation)) }
+            (origin(subject))
+            dl {
+                @for (name, value) in lines { dt { (name) } dd { (value) } }
+            }
+            (figures)
+            @if !targets.is_empty() {
+                h3 { "Targets" }
+                (table(targets_grid(targets), &[]))
+                h3 { "Rules, by both judges" }
+                (table(judges_grid(targets), &[]))
+            }
+            h3 { "Plans that differ from the one before" }
+            (table(replans_grid(&simulation.replans), &[]))
+            @if !simulation.alarms.is_empty() {
+                h3 { "Alarms" }
+                ul { @for line in alarm_lines(simulation) { li { (line) } } }
+            }
+        });
+    }
+
+    /// Adds the row of the section that follows.
+    fn row(&mut self, run: SuiteRunDocument) {
+        self.run_sections.push(self.sections.len() + 1);
+        self.runs.push(run);
     }
 
     fn section(&mut self, contents: Markup) {
@@ -142,7 +190,7 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    @if !self.runs.is_empty() { (table(suite_grid(&self.runs), true)) }
+                    @if !self.runs.is_empty() { (table(suite_grid(&self.runs), &self.run_sections)) }
                     @for section in &self.sections { (section) }
                     p.quiet { "Lengths in metres, times in seconds from the start, courses clockwise from true north." }
                 }
@@ -178,9 +226,9 @@ fn origin(subject: &Subject) -> Markup {
     }
 }
 
-/// Renders a table that may be wider than the page. The first cell names the row; if `linked`, it
-/// links to its section. Narrow pages repeat the column names in every row.
-fn table(grid: Grid, linked: bool) -> Markup {
+/// Renders a table that may be wider than the page. The first cell names the row, and links to
+/// its section if `sections` has one. Narrow pages repeat the column names in every row.
+fn table(grid: Grid, sections: &[usize]) -> Markup {
     // the page contains no timestamps
     let Grid {
         header,
@@ -199,15 +247,15 @@ fn table(grid: Grid, linked: bool) -> Markup {
                     }
                 }
                 tbody {
-                    @for (section, row) in rows.iter().enumerate() {
+                    @for (index, row) in rows.iter().enumerate() {
                         tr {
                             @for (i, (cell, name)) in row.iter().zip(&header).enumerate() {
                                 @if i > 0 {
                                     td data-name=(name.replace('\n', " ")) class=[class(cell, number(i))] {
                                         span { (cell.0) }
                                     }
-                                } @else if linked {
-                                    th scope="row" { a href=(format!("#s{}", section + 1)) { (cell.0) } }
+                                } @else if let Some(section) = sections.get(index) {
+                                    th scope="row" { a href=(format!("#s{section}")) { (cell.0) } }
                                 } @else {
                                     th scope="row" { (cell.0) }
                                 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::pipeline;
+use crate::simulation::Simulation;
 
 const NASTY: &str = r#"<script>alert("x")</script> & 'y'"#;
 
@@ -102,6 +103,35 @@ fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
     // polytopes and ellipsoids, at two risks
     assert_eq!(report.figures.iter().filter(diagrams).count(), 4);
     assert!(report.figures[2].1.contains("Accepted risk"));
+}
+
+#[test]
+fn a_report_of_a_simulation_has_its_chart_and_tables_and_rows_link_to_their_sections() {
+    let build = || {
+        let scenario = scenario("space-time");
+        let mut simulation = Simulation::new(scenario.clone(), false).expect("a closed loop");
+        while !simulation.finished() {
+            simulation.step();
+        }
+        let mut report = HtmlReport::new();
+        report.add_simulation(&subject("a"), &scenario, &simulation.record());
+        report.add_failure(NASTY, "unreadable", NASTY);
+        report
+    };
+    let report = build();
+    let page = report.html("Sailed", "");
+    assert_sound(&report, &page);
+    for text in [
+        "no contact",
+        "Rules, by both judges",
+        "planned at",
+        "href=\"#s2\"",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+    assert!(report.figures[0].1.contains("closest approach"));
+    // no planning times
+    assert_eq!(page, build().html("Sailed", ""));
 }
 
 #[test]

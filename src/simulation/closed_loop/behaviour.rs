@@ -30,14 +30,14 @@ pub(super) struct TrueTarget {
     rng: ChaCha8Rng,
     next_change: f64,
     /// True for a ship that will give way.
-    willing: bool,
+    will_give_way: bool,
     gives_way: bool,
 }
 
 impl TrueTarget {
     pub fn new(name: &str, ship: &ShipTrack, behaviour: Behaviour, seed: u64) -> Self {
         let mut rng = stream(seed, Purpose::Behaviour, name);
-        let willing = match &behaviour {
+        let will_give_way = match &behaviour {
             Behaviour::GivesWay { probability, .. } => rng.random::<f64>() < *probability,
             _ => false,
         };
@@ -48,7 +48,7 @@ impl TrueTarget {
             behaviour,
             rng,
             next_change: 0.0,
-            willing,
+            will_give_way,
             gives_way: false,
         }
     }
@@ -99,7 +99,7 @@ impl TrueTarget {
                 };
                 let ahead = seconds_to_cpa(&at_first, own);
                 self.gives_way =
-                    self.willing && ahead > 0.0 && (self.gives_way || ahead <= *before);
+                    self.will_give_way && ahead > 0.0 && (self.gives_way || ahead <= *before);
                 let wanted = if self.gives_way {
                     heading - turn
                 } else {

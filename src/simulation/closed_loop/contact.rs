@@ -1,4 +1,4 @@
-//! The contact oracle: hull against hull in continuous time, by the checker's distances.
+//! The contact test: hull against hull in continuous time, by the checker's distances.
 
 use crate::colregs::SteadyShip;
 use crate::evaluation::{Body, MovingSlabs};
@@ -73,9 +73,9 @@ impl Clearance {
         }
     }
 
-    /// Sees a step that begins at `time` and lasts `step` seconds. Own ship begins at `start` and
+    /// Adds a step that begins at `time` and lasts `step` seconds. Own ship begins at `start` and
     /// moves with `own`; the target begins at `target` and keeps its course and speed.
-    pub fn see(
+    pub fn add(
         &mut self,
         (time, step): (f64, f64),
         (start, own): (Vector, &OwnMotion),
@@ -87,7 +87,7 @@ impl Clearance {
         let bound = apart - reach - closing * step;
         // centres are farther apart than hulls
         self.nearer_than = self.nearer_than.min(apart);
-        let seen = Step {
+        let added = Step {
             time,
             own: own.clone(),
             target: *target,
@@ -95,9 +95,9 @@ impl Clearance {
         };
         // negated on purpose: a NaN is searched
         if !(bound > 0.0) {
-            self.least.see(&seen, (&self.own, &self.target));
+            self.least.update(&added, (&self.own, &self.target));
         } else if bound <= self.nearer_than {
-            self.open.push(seen);
+            self.open.push(added);
             let nearer_than = self.nearer_than;
             if self.open.len().is_power_of_two() {
                 self.open.retain(|step| step.bound <= nearer_than);
@@ -118,14 +118,14 @@ impl Clearance {
             if step.bound > least.metres {
                 break;
             }
-            least.see(step, (&self.own, &self.target));
+            least.update(step, (&self.own, &self.target));
         }
         least
     }
 }
 
 impl Least {
-    fn see(&mut self, step: &Step, (own, target): (&Hull, &Hull)) {
+    fn update(&mut self, step: &Step, (own, target): (&Hull, &Hull)) {
         let sets = Uncertainty::constant(
             target.polygon(&step.target.pose),
             ConvexPolygon::point(step.target.velocity()),
@@ -179,7 +179,7 @@ mod tests {
                 let own = OwnMotion::Segments(vec![part]);
                 let mut now = target;
                 now.pose.position += target.velocity() * time;
-                clearance.see((time, step), (part.start.position, &own), &now);
+                clearance.add((time, step), (part.start.position, &own), &now);
             }
             let at = |time: f64| {
                 let mut pose = target.pose;
@@ -219,7 +219,7 @@ mod tests {
         };
         let hull = Hull::new(30.0, 8.0);
         let mut clearance = Clearance::new(hull, hull);
-        clearance.see((3.0, 1.0), (Vector::new(f64::NAN, 0.0), &own), &target);
+        clearance.add((3.0, 1.0), (Vector::new(f64::NAN, 0.0), &own), &target);
         assert!(clearance.is_contact() && clearance.settled().metres.is_nan());
     }
 }

@@ -1,4 +1,4 @@
-//! One cycle of planning: the scenario as it is known, with what the last plan leaves to it.
+//! One cycle of planning: the scenario as it is estimated, with what the last plan leaves to it.
 
 use super::Simulation;
 use crate::colregs::SteadyShip;
@@ -21,22 +21,26 @@ pub(super) struct Cycle {
 
 impl Simulation {
     /// Plans for `delay` seconds from now on, from where the present plan has own ship then.
-    pub(super) fn plan(&mut self, delay: f64) -> Cycle {
+    pub(super) fn plan(&mut self, delay: f64, reason: String) -> Cycle {
         let start = self.time + delay;
         let off_plan_m = self.off_plan();
         let mut scenario = self.scenario.clone();
         let mut estimates = Vec::with_capacity(self.targets.len());
-        for (target, known) in scenario.targets.iter_mut().zip(&mut self.targets) {
-            let ship = known.track.set_at(start, self.scenario.simulation.delay);
-            let age_s = self.time - known.track.estimate().time;
+        for (target, simulated) in scenario.targets.iter_mut().zip(&mut self.targets) {
+            let ship = simulated
+                .track
+                .set_at(start, self.scenario.simulation.delay);
+            let age_s = self.time - simulated.track.estimate().time;
             estimates.push(EstimateDocument {
-                target: known.name.clone(),
+                target: simulated.name.clone(),
                 age_s,
-                stale: known.is_stale,
-                true_position: position(known.truth.now.pose.position),
+                stale: simulated.is_stale,
+                true_position: position(simulated.truth.now.pose.position),
                 position: position(ship.pose.position),
                 course_deg: course_deg_from_heading(ship.pose.heading),
                 speed_mps: ship.speed,
+                length_m: ship.hull.length,
+                beam_m: ship.hull.beam,
                 position_std_m: ship.position_std,
                 speed_spread_mps: ship.speed_spread,
                 course_spread_deg: deg_from_radians(ship.course_spread),
@@ -52,8 +56,10 @@ impl Simulation {
             if remember(previous, &mut scenario).is_err() {
                 self.alarm("far off the plan", None);
             }
-            for (target, known) in scenario.targets.iter_mut().zip(&self.targets) {
-                if let (Motion::Ship(ship), true) = (&mut target.motion, known.track.is_broken()) {
+            for (target, simulated) in scenario.targets.iter_mut().zip(&self.targets) {
+                if let (Motion::Ship(ship), true) =
+                    (&mut target.motion, simulated.track.is_broken())
+                {
                     // nothing of the last set is known to hold
                     (ship.kept_positions, ship.kept_velocities) = (None, None);
                     if !scenario.memory.is_outside(&target.name) {
@@ -68,6 +74,7 @@ impl Simulation {
         let replan = ReplanDocument {
             t_s: self.time,
             start_t_s: start,
+            reason,
             verdict: run.word(),
             safe: run.safe(),
             followed: plan.is_some() && !late,

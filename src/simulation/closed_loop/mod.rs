@@ -15,17 +15,18 @@ mod vessel;
 use behaviour::TrueTarget;
 use contact::Clearance;
 use cycle::Cycle;
-use mutual::OtherBridge;
+use mutual::MutualTarget;
 use own::Own;
-use sensor::Sight;
+use sensor::TargetSensor;
 use tracker::Track;
 
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument};
 use crate::planner::Minimises;
-use crate::scenario::{Fault, Scenario, SensorKind, SimulationSettings};
+use crate::scenario::{Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
 use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::Hull;
 
 /// Seconds: times nearer than this are one.
 const INSTANT: f64 = 1e-9;
@@ -36,10 +37,10 @@ const SHORT_STEP: f64 = 1e-6;
 /// A scenario that is sailed: own ship plans again and again and follows its plans, among targets
 /// that do what they like.
 ///
-/// Within a step the order is: the current changes, the targets are seen, the tracker takes in what
-/// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made from the
-/// data of its time, and own ship follows it from `delay` seconds later on. It begins where the
-/// last plan has own ship then. The contact oracle looks at every step in continuous time.
+/// Within a step the order is: the current changes, the sensors report, the tracker takes in what
+/// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made
+/// from the data of its time, and own ship follows it from `delay` seconds later on. It begins
+/// where the last plan has own ship then. Contacts are tested in continuous time.
 ///
 /// The same scenario gives the same motion, unless the delay is measured.
 ///
@@ -85,19 +86,22 @@ pub struct Simulation {
     plans: Vec<PlanDocument>,
 }
 
-/// One target: its truth, what is seen of it, and what is known.
+/// One target: its true motion, its reports and its track.
 #[derive(Debug)]
 struct Simulated {
     name: String,
     truth: TrueTarget,
-    sight: Sight,
+    sensor: TargetSensor,
     track: Track,
     /// Who steers a target that plans as own ship does.
-    bridge: Option<OtherBridge>,
+    mutual: Option<MutualTarget>,
     clearance: Clearance,
     states: Vec<(f64, SteadyShip)>,
     outside_sets: usize,
     is_stale: bool,
+    /// True where it was reported for the first time, or again after it was stale, since the last
+    /// plan.
+    is_acquired: bool,
 }
 
 /// A plan that own ship follows from some time on.
@@ -118,37 +122,44 @@ impl Active {
 }
 
 impl Simulation {
-    /// Settles the tracker on what is seen before t = 0 and makes the first plan, which is valid at
+    /// Settles the tracker on the reports before t = 0 and makes the first plan, which is valid at
     /// once. With `measured_delay` a plan that takes longer than the delay comes too late.
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Fault> {
         let settings = &scenario.simulation;
         let duration = settings.duration.unwrap_or(scenario.horizon);
         check(&scenario, duration)?;
         let exact = settings.sensor.kind == SensorKind::Exact;
-        let mut bridges = mutual::bridges(&scenario)?.into_iter();
+        let mut mutual_targets = mutual::mutual_targets(&scenario)?.into_iter();
         let behaviours = settings.behaviours.iter().cloned();
         let behaviours = behaviours.chain(std::iter::repeat(crate::scenario::Behaviour::Constant));
-        let ships = scenario.targets.iter().zip(behaviours);
-        let targets = ships.filter_map(|(target, behaviour)| {
+        let not_reported = settings.not_reported.iter().copied();
+        let not_reported = not_reported.chain(std::iter::repeat(NotReported::default()));
+        let ships = scenario.targets.iter().zip(behaviours).zip(not_reported);
+        let targets = ships.filter_map(|((target, behaviour), not_reported)| {
             let ship = target.ship()?;
+            let assumed = ShipTrack {
+                hull: not_reported.outer_hull(ship.hull, settings.sensor.default_hull),
+                ..ship.clone()
+            };
             let seed = settings.seed;
             let mut simulated = Simulated {
                 name: target.name.clone(),
                 truth: TrueTarget::new(&target.name, ship, behaviour, seed),
-                bridge: bridges.next().flatten(),
-                sight: Sight::new(&settings.sensor, &target.name, seed),
-                track: Track::new(ship, &settings.sensor),
+                mutual: mutual_targets.next().flatten(),
+                sensor: TargetSensor::new(&settings.sensor, &target.name, seed),
+                track: Track::new(&assumed, &settings.sensor),
                 clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
                 states: Vec::new(),
                 outside_sets: 0,
                 is_stale: false,
+                is_acquired: false,
             };
             let steps = (settings.sensor.settle / settings.step).ceil() as usize;
             for step in (1..=steps).rev().filter(|_| !exact) {
                 let time = -(step as f64) * settings.step;
-                simulated.look(time, &SteadyShip::on_track(ship, time), false);
+                simulated.observe(time, &SteadyShip::on_track(ship, time), false);
             }
-            simulated.track.anchor();
+            simulated.track.assume_anew();
             Some(simulated)
         });
         let mut simulation = Self {
@@ -183,8 +194,8 @@ impl Simulation {
             plans: Vec::new(),
             scenario,
         };
-        simulation.see();
-        simulation.cycle(0.0);
+        simulation.observe();
+        simulation.cycle(0.0, "start".to_owned());
         simulation.activate();
         simulation.first_cost = simulation.replans.first().and_then(|first| first.cost_m2);
         Ok(simulation)
@@ -222,7 +233,7 @@ impl Simulation {
         if self.finished() {
             return;
         }
-        self.watch();
+        self.observe_and_plan();
         let events = [
             self.pending
                 .as_ref()
@@ -239,27 +250,47 @@ impl Simulation {
         self.advance(step);
     }
 
-    /// Sees the targets, and plans where a plan is due.
-    fn watch(&mut self) {
-        self.see();
+    /// Takes in the reports, and plans where a plan is due or an event asks for one.
+    fn observe_and_plan(&mut self) {
+        self.observe();
         self.activate();
-        if self.time >= self.next_cycle - INSTANT {
+        let is_due = self.time >= self.next_cycle - INSTANT;
+        let period = is_due.then(|| "period".to_owned());
+        if let Some(reason) = period.or_else(|| self.event()) {
             let (delay, replan) = (self.settings().delay, self.settings().replan);
             self.next_cycle = self.time + replan;
             if self.active.end() > self.time + delay + INSTANT {
-                self.cycle(delay);
+                self.cycle(delay, reason);
             }
             self.activate();
         }
     }
 
-    /// Everything that is seen at the present time.
-    fn see(&mut self) {
+    /// Why a plan is asked for before its time. Not while another one is being made.
+    fn event(&self) -> Option<String> {
+        if !self.settings().replan_on_events || self.pending.is_some() {
+            return None;
+        }
+        let first = |is: fn(&Simulated) -> bool, what: &str| {
+            let target = self.targets.iter().find(|target| is(target))?;
+            Some(format!("{what}: {}", target.name))
+        };
+        let margin = self.scenario.own_ship.tracking_margin;
+        // a ship without a margin would leave it in every step
+        let is_off = margin > 0.0 && self.off_plan() > margin;
+        first(|target| target.track.has_left(), "another velocity")
+            .or_else(|| first(|target| target.is_acquired, "acquired"))
+            .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
+    }
+
+    /// Takes in the reports of the present time.
+    fn observe(&mut self) {
         let exact = self.settings().sensor.kind == SensorKind::Exact;
         let stale = self.settings().sensor.stale;
         for target in &mut self.targets {
             let now = target.truth.now;
-            target.look(self.time, &now, exact);
+            let was_silent = target.is_stale || !(exact || target.track.has_report());
+            target.observe(self.time, &now, exact);
             let silent = self.time - target.track.estimate().time;
             let is_stale = silent > stale;
             if is_stale && !target.is_stale {
@@ -269,13 +300,15 @@ impl Simulation {
                     target: Some(target.name.clone()),
                 });
             }
+            let is_reported = exact || target.track.has_report();
+            target.is_acquired |= was_silent && is_reported && !is_stale;
             target.is_stale = is_stale;
         }
     }
 
     /// Makes a plan that holds from `delay` seconds from now on.
-    fn cycle(&mut self, delay: f64) {
-        let Cycle { run, replan } = self.plan(delay);
+    fn cycle(&mut self, delay: f64, reason: String) {
+        let Cycle { run, replan } = self.plan(delay, reason);
         self.plan_seconds.push(run.plan_time.as_secs_f64());
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
             let next = run.planned.manoeuvres.first();
@@ -286,6 +319,7 @@ impl Simulation {
         }
         self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
         for target in &mut self.targets {
+            target.is_acquired = false;
             let is_outside = |names: &[String]| names.contains(&target.name);
             let left = is_outside(&replan.outside_velocities) || is_outside(&replan.outside_places);
             target.outside_sets += usize::from(left);
@@ -360,8 +394,8 @@ impl Simulation {
         let now = self.own.steady(&self.active.trajectory, in_plan);
         for target in &mut self.targets {
             target.truth.steer(time, step, &now);
-            if let Some(bridge) = &mut target.bridge {
-                bridge.steer(&mut target.truth.now, &now, step);
+            if let Some(mutual) = &mut target.mutual {
+                mutual.steer(&mut target.truth.now, &now, step);
             }
             let ship = target.truth.now;
             let course_and_speed = |ship: &SteadyShip| (ship.pose.heading, ship.speed);
@@ -374,7 +408,7 @@ impl Simulation {
         let motion = self.own.advance(&self.active.trajectory, in_plan, step);
         for target in &mut self.targets {
             let now = &target.truth.now;
-            target.clearance.see((time, step), (start, &motion), now);
+            target.clearance.add((time, step), (start, &motion), now);
             target.truth.advance(step);
         }
         own::join(&mut self.sailed, &motion, time);
@@ -406,13 +440,13 @@ impl Simulation {
 
 impl Simulated {
     /// Takes in what arrives at `time`.
-    fn look(&mut self, time: f64, ship: &SteadyShip, exact: bool) {
+    fn observe(&mut self, time: f64, ship: &SteadyShip, exact: bool) {
         if exact {
-            self.track.know(time, ship);
+            self.track.set_exact(time, ship);
             return;
         }
-        for report in self.sight.see(time, ship) {
-            self.track.hear(&report);
+        for report in self.sensor.reports(time, ship) {
+            self.track.update(&report);
         }
     }
 }
@@ -445,6 +479,35 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
             "explicit sets",
             "a tracked ship: explicit sets have no true motion",
         ));
+    }
+    for (index, (target, missing)) in (scenario.targets.iter())
+        .zip(&settings.not_reported)
+        .enumerate()
+    {
+        if *missing != NotReported::default()
+            && !matches!(settings.sensor.kind, SensorKind::Ais { .. })
+        {
+            return Err(Fault::new(
+                format!("targets[{index}].not_reported"),
+                format_args!("a sensor of kind {:?}", settings.sensor.kind.word()),
+                "\"ais\": other sensors report neither heading nor size",
+            ));
+        }
+        let (hull, default) = (
+            target.ship().map(|ship| ship.hull),
+            settings.sensor.default_hull,
+        );
+        let holds = |hull: Hull| hull.length <= default.length && hull.beam <= default.beam;
+        if missing.size && !hull.is_some_and(holds) {
+            return Err(Fault::new(
+                format!("targets[{index}].not_reported"),
+                format_args!(
+                    "a larger ship than the default of {} × {} m",
+                    default.length, default.beam
+                ),
+                "a ship within simulation.sensor.default_length_m and default_beam_m",
+            ));
+        }
     }
     let shorter = |key: &str, value: f64, most: f64, of: &str| {
         let fault = Fault::new(

@@ -16,33 +16,34 @@ const NO_WAY: f64 = 0.1;
 
 /// The closed loop of a target, whose only target is own ship.
 #[derive(Debug)]
-pub(super) struct OtherBridge(Box<Simulation>);
+pub(super) struct MutualTarget(Box<Simulation>);
 
 /// The loops of the targets that have one, in the scenario's order.
-pub(super) fn bridges(scenario: &Scenario) -> Result<Vec<Option<OtherBridge>>, Fault> {
+pub(super) fn mutual_targets(scenario: &Scenario) -> Result<Vec<Option<MutualTarget>>, Fault> {
     let behaviours = &scenario.simulation.behaviours;
     let targets = scenario.targets.iter().enumerate();
-    let bridges = targets.map(
-        |(index, target)| match (behaviours.get(index), target.ship()) {
-            (Some(Behaviour::Mutual), Some(ship)) => {
-                let exchanged = exchanged(scenario, target, ship).ok_or_else(|| {
-                    Fault::new(
-                        format!("targets[{index}].behaviour"),
-                        format_args!("a ship of {} m/s that plans", ship.speed),
-                        format_args!("a speed of at least {NO_WAY} m/s"),
-                    )
-                })?;
-                let simulation = Simulation::new(exchanged, false)?;
-                Ok(Some(OtherBridge(Box::new(simulation))))
-            }
-            _ => Ok(None),
-        },
-    );
-    bridges.collect()
+    let mutual_targets =
+        targets.map(
+            |(index, target)| match (behaviours.get(index), target.ship()) {
+                (Some(Behaviour::Mutual), Some(ship)) => {
+                    let exchanged = exchanged(scenario, target, ship).ok_or_else(|| {
+                        Fault::new(
+                            format!("targets[{index}].behaviour"),
+                            format_args!("a ship of {} m/s that plans", ship.speed),
+                            format_args!("a speed of at least {NO_WAY} m/s"),
+                        )
+                    })?;
+                    let simulation = Simulation::new(exchanged, false)?;
+                    Ok(Some(MutualTarget(Box::new(simulation))))
+                }
+                _ => Ok(None),
+            },
+        );
+    mutual_targets.collect()
 }
 
-/// The scenario from the target's bridge: it is to keep its course and speed, and knows of own ship
-/// what own ship knows of it.
+/// The scenario as the target plans in it: its mission is to keep course and speed, and its
+/// estimate of own ship is as good as own ship's of it.
 fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<Scenario> {
     if !(ship.speed >= NO_WAY) {
         return None;
@@ -51,7 +52,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
     let way = ship.pose.ahead() * (ship.speed * scenario.horizon);
     let waypoints = [ship.pose.position, ship.pose.position + way];
     let larger = (ship.hull.length / own.hull.length).max(1.0);
-    let seen = ShipTrack {
+    let own_track = ShipTrack {
         pose: own.pose,
         speed: own.speed,
         hull: own.hull,
@@ -72,7 +73,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
         time_weight: ship.speed * ship.speed,
         targets: vec![Target {
             name: "own ship".to_owned(),
-            motion: Motion::Ship(seen),
+            motion: Motion::Ship(own_track),
             representation: target.representation,
         }],
         memory: Memory::default(),
@@ -80,6 +81,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
         simulation: SimulationSettings {
             step: scenario.simulation.step,
             replan: scenario.simulation.replan,
+            replan_on_events: scenario.simulation.replan_on_events,
             delay: scenario.simulation.delay,
             seed: scenario.simulation.seed,
             ..SimulationSettings::default()
@@ -88,7 +90,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
     })
 }
 
-impl OtherBridge {
+impl MutualTarget {
     /// Sees own ship, plans where a plan is due, and sets course and speed of the target for a step
     /// so that it is on its plan at the end. At the end of its plan it keeps both.
     pub fn steer(&mut self, ship: &mut SteadyShip, own: &SteadyShip, step: f64) {
@@ -96,10 +98,10 @@ impl OtherBridge {
         if simulation.finished() {
             return;
         }
-        for seen in &mut simulation.targets {
-            seen.truth.now = *own;
+        for target in &mut simulation.targets {
+            target.truth.now = *own;
         }
-        simulation.watch();
+        simulation.observe_and_plan();
         simulation.advance(step);
         let plan = &simulation.active;
         let pose = simulation

@@ -25,7 +25,7 @@ pub(super) struct Own {
     max_speed: f64,
     current: Current,
     /// The random part of the current, m/s.
-    gust: Vector,
+    current_noise: Vector,
     rng: ChaCha8Rng,
 }
 
@@ -35,7 +35,7 @@ impl Own {
         let still = settings.current.mean == Vector::zeros() && settings.current.std == 0.0;
         let perfect = settings.vessel == VesselModel::Kinematic && still;
         let mut rng = stream(settings.seed, Purpose::Current, "current");
-        let gust = Vector::new(normal(&mut rng), normal(&mut rng)) * settings.current.std;
+        let current_noise = Vector::new(normal(&mut rng), normal(&mut rng)) * settings.current.std;
         Self {
             vessel: Vessel::new(settings.vessel, own),
             state: (!perfect).then_some(VesselState {
@@ -46,7 +46,7 @@ impl Own {
             }),
             max_speed: own.max_speed(),
             current: settings.current,
-            gust,
+            current_noise,
             rng,
         }
     }
@@ -65,7 +65,7 @@ impl Own {
                 speed: plan.speed_at(time),
             };
         };
-        let velocity = state.pose.ahead() * state.speed + self.current.mean + self.gust;
+        let velocity = state.pose.ahead() * state.speed + self.current.mean + self.current_noise;
         let mut pose = state.pose;
         if velocity.norm() > NO_WAY {
             pose.heading = heading_of(velocity);
@@ -90,7 +90,7 @@ impl Own {
             });
             return OwnMotion::Segments(parts.collect());
         };
-        let current = self.current.mean + self.gust;
+        let current = self.current.mean + self.current_noise;
         let known = if self.current.known {
             current
         } else {
@@ -101,7 +101,8 @@ impl Own {
         // exact for a Gauss-Markov process
         let kept = (-step / self.current.time).exp();
         let new = Vector::new(normal(&mut self.rng), normal(&mut self.rng));
-        self.gust = self.gust * kept + new * (self.current.std * (1.0 - kept * kept).sqrt());
+        self.current_noise =
+            self.current_noise * kept + new * (self.current.std * (1.0 - kept * kept).sqrt());
         OwnMotion::Cubic(cubic)
     }
 }

@@ -13,7 +13,7 @@ use crate::planner::cost::whole_space_time_error;
 impl Simulation {
     /// What was sailed so far.
     ///
-    /// Both judges see the true motions. The cost is that of the plans, over the sailed motion.
+    /// Both judges use the true motions. The cost is that of the plans, over the sailed motion.
     /// O(targets × seconds sailed).
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
@@ -59,6 +59,7 @@ impl Simulation {
             arrived: self.time >= self.active.end() - super::INSTANT
                 && self.active.document.is_some()
                 && self.off_plan() <= self.tracking_margin(),
+            interrupted: !self.finished(),
             duration_s: self.time,
             targets: (self.targets.iter().enumerate())
                 .filter_map(|(index, target)| {
@@ -98,6 +99,7 @@ impl Simulation {
         SimulationSettingsDocument {
             step_s: settings.step,
             replan_s: settings.replan,
+            replan_on_events: settings.replan_on_events,
             delay_s: settings.delay,
             measured_delay: self.measured_delay,
             duration_s: self.duration,

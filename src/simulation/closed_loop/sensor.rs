@@ -22,9 +22,9 @@ pub(super) struct Report {
     pub velocity: Option<Vector>,
 }
 
-/// What one sensor sees of one target.
+/// The reports of one sensor about one target.
 #[derive(Debug, Clone)]
-pub(super) struct Sight {
+pub(super) struct TargetSensor {
     sensor: Sensor,
     rng: ChaCha8Rng,
     next: f64,
@@ -35,7 +35,7 @@ pub(super) struct Sight {
     coming: Vec<Report>,
 }
 
-impl Sight {
+impl TargetSensor {
     pub fn new(sensor: &Sensor, name: &str, seed: u64) -> Self {
         let mut rng = stream(seed, Purpose::Sensor, name);
         let dropout = dropout_after(sensor, 0.0, &mut rng);
@@ -51,7 +51,7 @@ impl Sight {
     }
 
     /// Measures the target where a report is due at `time`, seconds; returns those that arrive.
-    pub fn see(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
+    pub fn reports(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
         if time >= self.next - 1e-9 {
             self.next = time + self.interval(time, target);
             if let Some(report) = self.measure(time, target) {
@@ -92,12 +92,12 @@ impl Sight {
         let mut drawn = || normal(&mut self.rng);
         let off = Vector::new(drawn(), drawn());
         let (course, speed) = (drawn(), drawn());
-        let seen = self.rng.random::<f64>() < self.sensor.detection;
+        let detected = self.rng.random::<f64>() < self.sensor.detection;
         while time >= self.dropout[1] {
             self.dropout = dropout_after(&self.sensor, self.dropout[1], &mut self.rng);
         }
         let silent = self.sensor.silent.iter().chain([&self.dropout]);
-        let heard = silent
+        let received = silent
             .into_iter()
             .all(|[from, until]| !(*from..*until).contains(&time));
         let Noise {
@@ -107,7 +107,7 @@ impl Sight {
         } = self.sensor.noise;
         let velocity = direction(target.pose.heading + course * course_std)
             * (target.speed + speed * speed_std).max(0.0);
-        (seen && heard).then(|| Report {
+        (detected && received).then(|| Report {
             time,
             arrives: time + self.sensor.latency,
             position: target.pose.position + off * position,
@@ -158,8 +158,8 @@ mod tests {
     }
 
     fn times(sensor: Sensor, knots: f64) -> Vec<f64> {
-        let mut sight = Sight::new(&sensor, "a", 1);
-        let reports = (0..1200).flat_map(|k| sight.see(f64::from(k) * 0.5, &target(knots)));
+        let mut sensor = TargetSensor::new(&sensor, "a", 1);
+        let reports = (0..1200).flat_map(|k| sensor.reports(f64::from(k) * 0.5, &target(knots)));
         reports.map(|r| r.time).collect()
     }
 
@@ -173,14 +173,14 @@ mod tests {
                 "{knots}"
             );
         }
-        let mut sight = Sight::new(&ais(), "a", 1);
+        let mut sensor = TargetSensor::new(&ais(), "a", 1);
         let mut turning = target(10.0);
         let mut found = Vec::new();
         for k in 0..200 {
             turning.pose.heading += 0.01;
             found.extend(
-                sight
-                    .see(f64::from(k) / 3.0, &turning)
+                sensor
+                    .reports(f64::from(k) / 3.0, &turning)
                     .into_iter()
                     .map(|r| r.time),
             );
@@ -229,10 +229,10 @@ mod tests {
             },
             ..ais()
         };
-        let mut sight = Sight::new(&sensor, "a", 1);
+        let mut sensor = TargetSensor::new(&sensor, "a", 1);
         let ship = target(10.0);
         let all: Vec<Report> = (0..8000)
-            .flat_map(|k| sight.see(f64::from(k) * 0.5, &ship))
+            .flat_map(|k| sensor.reports(f64::from(k) * 0.5, &ship))
             .collect();
         let std = |of: &dyn Fn(&Report) -> f64| {
             (all.iter().map(|r| of(r).powi(2)).sum::<f64>() / all.len() as f64).sqrt()

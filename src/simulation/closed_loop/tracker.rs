@@ -12,14 +12,22 @@ use crate::tolerance::POSITION_SIGMAS;
 /// Standard deviations of an estimate that widen a set.
 const SIGMAS: f64 = POSITION_SIGMAS;
 
-/// Standard deviation of a velocity of which nothing is known, m/s.
+/// Standard deviation of a velocity before any measurement, m/s: three of them hold every ship.
 const ANY_VELOCITY: f64 = 15.0;
 
-/// Least standard deviation of a measured position, metres.
+/// Least standard deviation of a measured position, metres: keeps the filter's matrices regular.
 const LEAST_STD_M: f64 = 1e-3;
 
-/// A velocity within this factor of the spreads widens them; another one begins the set anew.
+/// A velocity within this factor of the spreads widens them; another one begins the set anew. A
+/// target that swings to 1.5 times its spreads then has its set widened once, and keeps to it.
 const WIDENED: f64 = 2.0;
+
+/// A target has settled on a course and a speed after this time in seconds. A plan for a target
+/// that still turns would be for velocities that it is about to leave.
+const SETTLED_S: f64 = 5.0;
+
+/// Fraction of the spreads within which a settled target stays.
+const SETTLED: f64 = 0.25;
 
 /// m/s and radians: rounding of velocities.
 const ROUNDING: f64 = 1e-9;
@@ -113,7 +121,7 @@ impl Filter {
     }
 }
 
-/// What is known of a target at the time of its last report.
+/// Estimate of a target at the time of its last report.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Estimate {
     pub time: f64,
@@ -129,14 +137,14 @@ pub(super) struct Estimate {
 
 /// The middle and the half-widths of the velocities that plans are made for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Anchor {
+struct AssumedVelocities {
     heading: f64,
     speed: f64,
     heading_spread: f64,
     speed_spread: f64,
 }
 
-impl Anchor {
+impl AssumedVelocities {
     /// The spreads of the behaviour and of the estimate about the estimate.
     fn at(estimate: &Estimate, file: &ShipTrack) -> Self {
         Self {
@@ -175,9 +183,11 @@ pub(super) struct Track {
     sensor: Sensor,
     filter: Option<Filter>,
     estimate: Estimate,
-    anchor: Anchor,
+    velocities: AssumedVelocities,
     /// True where the last set does not keep the velocities of the one before.
     is_broken: bool,
+    /// The estimate from which the later ones do not differ by much.
+    settled: Estimate,
 }
 
 impl Track {
@@ -193,17 +203,18 @@ impl Track {
             speed_std: 0.0,
         };
         Self {
-            anchor: Anchor::at(&estimate, file),
+            velocities: AssumedVelocities::at(&estimate, file),
             file: file.clone(),
             sensor: sensor.clone(),
             filter: None,
             estimate,
             is_broken: false,
+            settled: estimate,
         }
     }
 
     /// Takes in the true state: the sensor is exact.
-    pub fn know(&mut self, time: f64, ship: &SteadyShip) {
+    pub fn set_exact(&mut self, time: f64, ship: &SteadyShip) {
         self.estimate = Estimate {
             time,
             position: ship.pose.position,
@@ -213,10 +224,18 @@ impl Track {
             heading_std: 0.0,
             speed_std: 0.0,
         };
+        self.settle();
+    }
+
+    /// Begins to wait anew where the estimate has changed.
+    fn settle(&mut self) {
+        if !AssumedVelocities::at(&self.settled, &self.file).holds(&self.estimate, SETTLED) {
+            self.settled = self.estimate;
+        }
     }
 
     /// Takes in a report. One that is older than the last is left out.
-    pub fn hear(&mut self, report: &Report) {
+    pub fn update(&mut self, report: &Report) {
         let assumed = &self.sensor.assumed;
         let std = assumed.position.max(LEAST_STD_M);
         let position = (report.position, Matrix2::identity() * (std * std));
@@ -256,11 +275,27 @@ impl Track {
                 .min(std::f64::consts::PI),
             speed_std: std_along(ahead),
         };
+        self.settle();
     }
 
     /// Begins the velocity set anew about the present estimate.
-    pub fn anchor(&mut self) {
-        self.anchor = Anchor::at(&self.estimate, &self.file);
+    pub fn assume_anew(&mut self) {
+        self.velocities = AssumedVelocities::at(&self.estimate, &self.file);
+    }
+
+    /// True from the first report on.
+    pub fn has_report(&self) -> bool {
+        self.filter.is_some()
+    }
+
+    /// True where the present estimate is outside the velocities that the last plan assumes.
+    fn is_outside(&self) -> bool {
+        !self.velocities.holds(&self.estimate, 1.0)
+    }
+
+    /// True where the target has left the velocities that the last plan assumes and holds on.
+    pub fn has_left(&self) -> bool {
+        self.is_outside() && self.estimate.time - self.settled.time >= SETTLED_S
     }
 
     /// True where the last set does not keep the velocities of the one before.
@@ -274,40 +309,41 @@ impl Track {
 
     /// The set for a plan that starts at `time`. Its velocities stay as they are as long as they
     /// hold the present estimate. A target that does little more than assumed may do so again: its
-    /// spreads are widened. One that does much more has turned, and its set begins anew. Its disc of positions holds every motion since the last report,
-    /// and during the `delay` of a plan also in the first one: each set then holds the next one.
+    /// spreads are widened. One that does much more has turned, and its set begins anew. Its disc
+    /// of positions holds every motion since the last report, and during the `delay` of a plan also
+    /// in the first one: each set then holds the next one.
     pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
-        self.is_broken = !self.anchor.holds(&self.estimate, 1.0);
-        if self.is_broken && self.anchor.holds(&self.estimate, WIDENED) {
-            self.anchor.widen(&self.estimate);
+        self.is_broken = self.is_outside();
+        if self.is_broken && self.velocities.holds(&self.estimate, WIDENED) {
+            self.velocities.widen(&self.estimate);
         } else if self.is_broken {
-            self.anchor();
+            self.assume_anew();
         }
         let age = (time - self.estimate.time).max(0.0);
-        let unseen = age.max(delay);
-        let turned = self.file.turn_rate * unseen;
-        let pose = Pose::new(self.estimate.position, self.anchor.heading);
+        let elapsed = age.max(delay);
+        let turned = self.file.turn_rate * elapsed;
+        let pose = Pose::new(self.estimate.position, self.velocities.heading);
         let mut ship = ShipTrack {
             pose,
-            speed: self.anchor.speed,
+            speed: self.velocities.speed,
             position_std: self.estimate.position_std,
-            speed_spread: self.anchor.speed_spread,
+            speed_spread: self.velocities.speed_spread,
             // it may have turned since
-            course_spread: (self.anchor.heading_spread + turned).min(std::f64::consts::PI),
+            course_spread: (self.velocities.heading_spread + turned).min(std::f64::consts::PI),
             kept_velocities: None,
             ..self.file.clone()
         };
         let middle = ship.velocity();
         let reach = |v: &Vector| (v - middle).norm();
         // the widest set within the age
-        let sets = ship.outer_velocity_sets(ship.turn_rate, unseen.max(ROUNDING));
-        let velocities = sets.iter().find(|set| set.until >= unseen);
+        let sets = ship.outer_velocity_sets(ship.turn_rate, elapsed.max(ROUNDING));
+        let velocities = sets.iter().find(|set| set.until >= elapsed);
         let widest = velocities.and_then(|set| set.velocities.as_polygon());
         let farthest = widest.map_or(f64::INFINITY, |set| {
             set.vertices().iter().map(reach).fold(0.0, f64::max)
         });
-        if unseen > 0.0 {
-            ship.position_std += farthest * unseen / SIGMAS;
+        if elapsed > 0.0 {
+            ship.position_std += farthest * elapsed / SIGMAS;
         }
         ship.pose.position += middle * age;
         ship
@@ -353,10 +389,11 @@ mod tests {
             (false, _) => 1.0 / prior,
         });
         for axis in 0..2 {
-            let seen = DVector::from_fn(rows, |i, _| points.get(i).map_or(0.0, |p| p[axis] / std));
+            let measured =
+                DVector::from_fn(rows, |i, _| points.get(i).map_or(0.0, |p| p[axis] / std));
             let normal_matrix = line.transpose() * &line;
             let inverse = normal_matrix.try_inverse().expect("regular");
-            let best = &inverse * line.transpose() * seen;
+            let best = &inverse * line.transpose() * measured;
             assert!((filter.state[axis] - best[0]).abs() < 1e-8);
             assert!((filter.state[axis + 2] - best[1]).abs() < 1e-8);
             assert!((filter.covariance[(axis, axis)] - inverse[(0, 0)]).abs() < 1e-8);
@@ -392,7 +429,7 @@ mod tests {
     #[test]
     fn the_set_holds_every_motion_since_the_last_report() {
         let mut track = Track::new(&file(), &Sensor::EXACT);
-        track.know(0.0, &SteadyShip::on_track(&file(), 0.0));
+        track.set_exact(0.0, &SteadyShip::on_track(&file(), 0.0));
         let set = track.set_at(15.0, 1.0);
         assert_eq!((set.speed, set.speed_spread), (5.0, 0.4));
         let reach = SIGMAS * set.position_std;
@@ -412,11 +449,11 @@ mod tests {
         let mut track = Track::new(&file(), &Sensor::EXACT);
         let mut ship = SteadyShip::on_track(&file(), 0.0);
         ship.pose.heading += radians_from_deg(4.9);
-        track.know(20.0, &ship);
+        track.set_exact(20.0, &ship);
         assert_eq!(track.set_at(20.0, 0.0).pose.heading, 0.5);
         assert!(!track.is_broken());
         ship.pose.heading += radians_from_deg(1.0);
-        track.know(40.0, &ship);
+        track.set_exact(40.0, &ship);
         let wider = track.set_at(40.0, 0.0);
         assert_eq!(wider.pose.heading, 0.5);
         assert!((wider.course_spread - radians_from_deg(5.9)).abs() < 1e-9);
@@ -428,7 +465,7 @@ mod tests {
                 }
         );
         ship.pose.heading += radians_from_deg(10.0);
-        track.know(80.0, &ship);
+        track.set_exact(80.0, &ship);
         let anew = track.set_at(80.0, 0.0);
         assert_eq!(anew.pose.heading, ship.pose.heading);
         assert!((anew.course_spread - radians_from_deg(5.0)).abs() < 1e-9 && track.is_broken());
@@ -449,7 +486,7 @@ mod tests {
                     truth.pose.position + Vector::new(off(noise.position), off(noise.position));
                 let heading = truth.pose.heading + off(noise.course);
                 let velocity = crate::frame::direction(heading) * (truth.speed + off(noise.speed));
-                track.hear(&Report {
+                track.update(&Report {
                     time,
                     arrives: time,
                     position,

@@ -5,10 +5,12 @@ use crate::scenario::VesselModel;
 use crate::trajectory::Cubic;
 use crate::vessel::OwnShip;
 
-/// Longest step of the integration, seconds.
+/// Longest step of the integration, seconds: a sixtieth of the default time constant of the turn
+/// rate.
 const INTEGRATION_STEP: f64 = 0.05;
 
-/// m/s. The manoeuvring of a slower ship is that at this speed.
+/// m/s. The manoeuvring of a slower ship is that at this speed: the time constant of Nomoto's model
+/// is infinite at rest.
 const STEERAGE_WAY: f64 = 0.5;
 
 /// Own ship's true state.
