@@ -9,6 +9,9 @@ use crate::frame::{Vector, to_port};
 use crate::geometry::ConvexPolygon;
 use crate::tolerance;
 
+/// Number of vertices up to which the working set is all of them.
+const FEW: usize = 32;
+
 /// Bound on the steps; some hundred are usual.
 const MAX_STEPS: usize = 20_000;
 
@@ -80,7 +83,7 @@ fn loewner(vertices: &[Vector]) -> Ellipse {
 /// `sum w_i q_i q_i'` for the weights that maximise its determinant. Few points have a weight: the
 /// ascent runs on a working set, which takes in the point farthest outside until none is.
 fn weighted_moment(points: &[Vector3<f64>]) -> Matrix3<f64> {
-    let mut working = extreme_points(points);
+    let mut working = first_working_set(points);
     let mut weights = vec![1.0 / working.len() as f64; working.len()];
     let moment = |working: &[usize], weights: &[f64]| {
         let mut sum = Matrix3::zeros();
@@ -135,8 +138,12 @@ fn weighted_moment(points: &[Vector3<f64>]) -> Matrix3<f64> {
     moment(&working, &weights)
 }
 
-/// Indices of the farthest points in eight directions.
-fn extreme_points(points: &[Vector3<f64>]) -> Vec<usize> {
+/// Indices of the first working set: all points if they are few, else the farthest ones in eight
+/// directions.
+fn first_working_set(points: &[Vector3<f64>]) -> Vec<usize> {
+    if points.len() <= FEW {
+        return (0..points.len()).collect();
+    }
     let mut found: Vec<usize> = (0..8)
         .filter_map(|k| {
             let (sine, cosine) = (f64::from(k) * FRAC_PI_4).sin_cos();
@@ -230,6 +237,14 @@ mod tests {
         let found = outer_enclosing_ellipse(&hull(&rectangle)).semi_axes();
         assert!(relative(found[0].norm(), 30.0 * 2.0_f64.sqrt()) < 1e-8);
         assert!(relative(found[1].norm(), 6.0 * 2.0_f64.sqrt()) < 1e-8);
+        let on_ellipse = |k: u32| {
+            let (sine, cosine) = (f64::from(k) * PI / 150.0).sin_cos();
+            Vector::new(30.0 * cosine, 6.0 * sine)
+        };
+        let many: Vec<Vector> = (0..300).map(on_ellipse).collect();
+        let found = outer_enclosing_ellipse(&hull(&many)).semi_axes();
+        assert!(relative(found[0].norm(), 30.0) < 1e-7);
+        assert!(relative(found[1].norm(), 6.0) < 1e-7);
         let disc = outer_enclosing_ellipse(&outer_disc(10.0, 0.4));
         assert!(relative(disc.area(), PI * (10.0 / (PI / 16.0).cos()).powi(2)) < 1e-8);
     }
