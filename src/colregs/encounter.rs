@@ -309,16 +309,8 @@ mod tests {
 
     fn track(s: &SteadyShip, length: f64) -> ShipTrack {
         ShipTrack {
-            pose: s.pose,
-            speed: s.speed,
-            hull: Hull { length, beam: 10.0 },
-            position_std: 0.0,
-            speed_spread: 0.0,
-            course_spread: 0.0,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
             domain: DomainKind::Colregs,
+            ..ShipTrack::exact(s.pose, s.speed, Hull::new(length, 10.0))
         }
     }
 
@@ -326,10 +318,7 @@ mod tests {
         OwnShip {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed: 6.0,
-            hull: Hull {
-                length: 50.0,
-                beam: 10.0,
-            },
+            hull: Hull::new(50.0, 10.0),
             turning_radius: 100.0,
             speeds: vec![3.0, 6.0],
             safety_margin: 20.0,

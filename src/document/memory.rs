@@ -494,10 +494,7 @@ pub(crate) fn track(ship: &ShipDocument) -> ShipTrack {
             heading_from_course_deg(ship.course_deg),
         ),
         speed: ship.speed_mps,
-        hull: Hull {
-            length: ship.length_m,
-            beam: ship.beam_m,
-        },
+        hull: Hull::new(ship.length_m, ship.beam_m),
         position_std: ship.position_std_m,
         speed_spread: ship.speed_spread_mps,
         course_spread: radians_from_deg(ship.course_spread_deg),

@@ -5,9 +5,7 @@ use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
 use crate::geometry::fixtures::random_vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{
-    DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
-};
+use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
 use crate::vessel::OwnShip;
@@ -83,16 +81,14 @@ fn ship(y: f64, speed: f64) -> Target {
     Target {
         name: "other".to_owned(),
         motion: Motion::Ship(ShipTrack {
-            pose: Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
-            speed,
-            hull: Hull::new(60.0, 12.0),
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.02,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
-            domain: DomainKind::Hull,
+            ..ShipTrack::exact(
+                Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
+                speed,
+                Hull::new(60.0, 12.0),
+            )
         }),
         representation: Representation::Polytope,
     }

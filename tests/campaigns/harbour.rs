@@ -11,7 +11,7 @@ use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Land, Scenario};
 use searoom::simulation::{Placement, random_traffic};
-use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
@@ -106,16 +106,13 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
             Target {
                 name: format!("target {k}"),
                 motion: Motion::Ship(ShipTrack {
-                    pose: Pose::new(place, course),
-                    speed: pace,
-                    hull: Hull::new(1.2 * hull.length, 1.2 * hull.beam),
-                    position_std: 0.0,
                     speed_spread: 0.2,
                     course_spread: 0.03,
-                    turn_rate: 0.0,
-                    kept_positions: None,
-                    kept_velocities: None,
-                    domain: DomainKind::Hull,
+                    ..ShipTrack::exact(
+                        Pose::new(place, course),
+                        pace,
+                        Hull::new(1.2 * hull.length, 1.2 * hull.beam),
+                    )
                 }),
                 representation: Representation::Polytope,
             }

@@ -540,9 +540,8 @@ mod tests {
         let (mut met, mut meeting) = (0, 0);
         for case in 0..4000 {
             let range = [30.0, 100.0, 1000.0][case % 3];
-            let hull = |rng: &mut ChaCha8Rng| Hull {
-                length: rng.random_range(10.0..90.0),
-                beam: rng.random_range(3.0..20.0),
+            let hull = |rng: &mut ChaCha8Rng| {
+                Hull::new(rng.random_range(10.0..90.0), rng.random_range(3.0..20.0))
             };
             let (own, other) = (hull(&mut rng), hull(&mut rng));
             let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
@@ -569,10 +568,7 @@ mod tests {
     fn a_far_target_is_judged_by_its_nearest_sight() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let own = planned(&[(0.0, 240.0), (0.7, 120.0), (-0.9, 300.0)], 6.0);
-        let hull = Hull {
-            length: 50.0,
-            beam: 10.0,
-        };
+        let hull = Hull::new(50.0, 10.0);
         let track = OwnSamples::along(&[], &own, hull, 6.0);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {

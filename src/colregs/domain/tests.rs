@@ -26,10 +26,7 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
     OwnShip {
         pose: Pose::new(position, 0.0),
         speed: 6.0,
-        hull: Hull {
-            length: 50.0,
-            beam: 10.0,
-        },
+        hull: Hull::new(50.0, 10.0),
         turning_radius: 100.0,
         speeds: vec![3.0, 6.0],
         safety_margin,
@@ -39,19 +36,11 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
 
 fn track(position: Vector, heading: f64, speed: f64) -> ShipTrack {
     ShipTrack {
-        pose: Pose::new(position, heading),
-        speed,
-        hull: Hull {
-            length: 50.0,
-            beam: 10.0,
-        },
         position_std: 2.0,
         speed_spread: 0.5,
         course_spread: 0.1,
-        turn_rate: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
         domain: DomainKind::Colregs,
+        ..ShipTrack::exact(Pose::new(position, heading), speed, Hull::new(50.0, 10.0))
     }
 }
 

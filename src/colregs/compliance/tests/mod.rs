@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
 use crate::frame::{Pose, Vector};
-use crate::target::{DomainKind, ShipTrack};
+use crate::target::ShipTrack;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -41,28 +41,14 @@ pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
     Trajectory::new(segments).expect("a trajectory")
 }
 
-const HULL: Hull = Hull {
-    length: LENGTH,
-    beam: 10.0,
-};
+const HULL: Hull = Hull::new(LENGTH, 10.0);
 
 pub fn standard() -> &'static Thresholds {
     Thresholds::standard()
 }
 
 fn track(pose: Pose, speed: f64) -> ShipTrack {
-    ShipTrack {
-        pose,
-        speed,
-        hull: HULL,
-        speed_spread: 0.0,
-        course_spread: 0.0,
-        turn_rate: 0.0,
-        position_std: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
-        domain: DomainKind::Hull,
-    }
+    ShipTrack::exact(pose, speed, HULL)
 }
 
 /// Own ship and a target that holds course and speed.
