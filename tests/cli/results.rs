@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{document, run, searoom, stdout, text, untimed, write};
+use super::program::{Folder, document, json, run, searoom, stdout, text, untimed};
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 #[test]
 fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let plans = text(folder.path()).to_owned();
     searoom(&["suite", "scenarios/colregs", "--plans", &plans]).success();
     let file = |name: &str| format!("{plans}/{name}.json");
@@ -65,9 +65,9 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
 
 #[test]
 fn every_planner_is_compared_on_the_same_scenarios() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let csv = text(&folder.path().join("rows.csv")).to_owned();
-    let figure = text(&folder.path().join("compared.svg")).to_owned();
+    let folder = Folder::new();
+    let csv = folder.at("rows.csv");
+    let figure = folder.at("compared.svg");
     let table = run(&format!(
         "compare scenarios/colregs --csv {csv} --figure {figure}"
     ))
@@ -120,8 +120,8 @@ fn every_planner_is_compared_on_the_same_scenarios() {
 
 #[test]
 fn a_comparison_answers_every_file_and_says_what_is_wrong() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let bad = text(&folder.path().join("bad.toml")).to_owned();
+    let folder = Folder::new();
+    let bad = folder.at("bad.toml");
     fs::write(&bad, "title = 3").expect("written");
     let head_on = "scenarios/colregs/head-on.toml";
     run(&format!(
@@ -138,27 +138,21 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     searoom(&["compare", head_on, "--planner", "path-time"])
         .code(1)
         .stdout(contains("COLLIDES").and(contains("relaxed").not()));
-    for (args, expected) in [
-        (
-            ["--max-risk", "0,1"],
-            "allowed: a number from 0 to 0.999999",
-        ),
-        (["--figure", "x.pdf"], "ends neither in .svg nor in .png"),
-        (["--csv", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
-    ] {
-        let args: Vec<&str> = ["compare", head_on].into_iter().chain(args).collect();
-        searoom(&args).code(2).stderr(contains(expected));
-    }
+    Folder::new().refuses(
+        "
+        compare scenarios/colregs/head-on.toml --max-risk 0,1 | allowed: a number from 0 to 0.999999
+        compare scenarios/colregs/head-on.toml --figure x.pdf | ends neither in .svg nor in .png
+        ",
+    );
+    let unwritten = run(&format!("compare {head_on} --csv /no/such/folder/x.csv")).code(2);
+    unwritten.stderr(contains("/no/such/folder/x.csv"));
 }
 
 /// Who enters a whole set within the accepted risk is relaxed, whether a planner chose it or not.
 #[test]
 fn a_baseline_that_takes_an_accepted_risk_is_relaxed() {
-    let compared = document(
-        &run(
-            "compare scenarios/colregs/give-way.toml --planner space-time --max-risk 0,0.4 --json",
-        )
-        .success(),
+    let compared = json(
+        "compare scenarios/colregs/give-way.toml --planner space-time --max-risk 0,0.4 --json",
     );
     let entries = compared["comparisons"][0]["entries"].as_array();
     let outcomes: Vec<(&str, f64)> = (entries.expect("a list").iter())
@@ -188,21 +182,15 @@ fn a_plan_on_a_path_says_why_it_has_no_time_of_no_return() {
 /// What is no plan document is said to be none, and what it is.
 #[test]
 fn other_documents_are_no_plans() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let compared = run("compare scenarios/colregs/head-on.toml --planner path-time --json");
-    let comparison = write(folder.path(), "comparison.json", stdout(&compared.code(1)));
-    for (file, found) in [
-        (
-            "README.md",
-            "found no JSON (expected value at line 1 column 1); allowed: a plan document",
-        ),
-        (
-            &comparison,
-            "format: found none in a document with the keys comparisons; allowed: searoom-plan/1",
-        ),
-    ] {
-        searoom(&["verify", file]).code(2).stderr(contains(found));
-    }
+    folder.write("comparison.json", stdout(&compared.code(1)));
+    folder.refuses(
+        "
+        verify README.md | found no JSON (expected value at line 1 column 1); allowed: a plan document
+        verify DIR/comparison.json | format: found none in a document with the keys comparisons; allowed: searoom-plan/1
+        ",
+    );
 }
 
 /// A heading holds for what follows it.
@@ -241,8 +229,8 @@ fn shells_know_every_command() {
 
 #[test]
 fn a_report_is_one_page_with_its_figures() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| text(&folder.path().join(name)).to_owned();
+    let folder = Folder::new();
+    let at = |name: &str| folder.at(name);
     let (suite, plans) = (at("suite"), at("plans"));
     let broken = at("broken.toml");
     fs::write(&broken, "title = \"<b>\"\n").expect("written");
@@ -282,7 +270,7 @@ mod recordings {
 
     #[test]
     fn a_recording_gives_back_what_it_was_made_from() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, plan) = recorded(folder.path(), "head-on.rrd", HEAD_ON);
         searoom(&["verify", &file])
             .success()
@@ -313,7 +301,7 @@ mod recordings {
     /// on holds.
     #[test]
     fn inspect_tells_what_the_rules_say() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
         let scenario = scenarios.join("colregs/stand-on.toml");
         let file = folder.path().join("rules.rrd");
@@ -347,8 +335,8 @@ mod recordings {
     /// What `--no-return` adds to the document is in the recording, too.
     #[test]
     fn the_time_of_no_return_is_recorded() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = text(&folder.path().join("a.rrd")).to_owned();
+        let folder = Folder::new();
+        let file = folder.at("a.rrd");
         let scenario = "scenarios/colregs/give-way.toml";
         let plan = stdout(
             &searoom(&["plan", scenario, "--no-return", "--json", "--rrd", &file]).success(),
@@ -374,7 +362,7 @@ mod recordings {
 
     #[test]
     fn recordings_of_the_scenarios_are_small() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
         let mut seen = 0;
         for sort in fs::read_dir(scenarios).expect("a folder") {
@@ -400,7 +388,7 @@ mod recordings {
 
     #[test]
     fn curves_and_lines_come_out_as_columns() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, plan) = recorded(folder.path(), "a.rrd", HEAD_ON);
         let curve = stdout(&searoom(&["inspect", "--csv", "curves/clearance_m", &file]).success());
         let mut lines = curve.lines();
@@ -435,7 +423,7 @@ mod recordings {
 
     #[test]
     fn a_comparison_is_recorded_scenario_by_scenario_and_read_again() {
-        let folder = tempfile::tempdir().expect("folder");
+        let folder = Folder::new();
         let recordings = folder.path().join("new");
         let compared = run(&format!(
             "compare scenarios/colregs --search a-star --json --rrd {}",
@@ -483,10 +471,10 @@ mod recordings {
 
     #[test]
     fn what_is_no_whole_recording_is_said_to_be_so() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, _) = recorded(folder.path(), "a.rrd", HEAD_ON);
         let bytes = fs::read(&file).expect("a recording");
-        let broken = text(&folder.path().join("b.rrd")).to_owned();
+        let broken = folder.at("b.rrd");
         let refused = |contents: &[u8], expected: &str| {
             fs::write(&broken, contents).expect("written");
             for command in ["inspect", "verify"] {
@@ -520,7 +508,7 @@ mod recordings {
 
 #[test]
 fn the_rules_are_judged_by_what_is_asked_for() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let stand_on = "scenarios/colregs/stand-on.toml";
     let plan = |args: &[&str]| {
         let all = [&["plan", stand_on, "--json"], args].concat();
@@ -533,7 +521,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
     let text_of =
         |lines: &str| format!("name = 'mine'\nsource = 'a test'\nlike = 'searoom'\n{lines}");
     let near = "near_miss_lengths = 5\nleast_lengths = 10\npreferred_lengths = 20";
-    let file = write(folder.path(), "mine.toml", text_of(near));
+    let file = folder.write("mine.toml", text_of(near));
     let mine = plan(&["--thresholds", &file]);
     assert_eq!(mine["thresholds"], "mine");
     assert_eq!(mine["trajectory"], usual["trajectory"]);
@@ -552,7 +540,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
 
 #[test]
 fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let compared = |args: &[&str]| {
         let all = [
             &[
@@ -578,7 +566,7 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     assert_eq!(of("hold course", &usual), json!(["17(b)", "R1", "S"]));
     // to whom no turn is one, none is to port
     let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nsteady_deg = 180";
-    let file = write(folder.path(), "mine.toml", text);
+    let file = folder.write("mine.toml", text);
     let mine = compared(&["--thresholds", &file]);
     assert_eq!(of("space-time, A*", &mine), json!([]));
     for (usual, mine) in usual
@@ -589,31 +577,26 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     {
         assert_eq!(usual["track"], mine["track"]);
     }
-    searoom(&["compare", "scenarios/colregs", "--thresholds", "nobody"])
-        .code(2)
-        .stderr(contains("allowed: searoom, dnv-trafficgen, sfi-autoship"));
 }
 
 #[test]
 fn thresholds_that_are_wrong_are_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let stand_on = "scenarios/colregs/stand-on.toml";
-    let refused = |word: &str| searoom(&["plan", stand_on, "--thresholds", word]).code(2);
-    refused("nobody").stderr(contains(
-        "allowed: searoom, dnv-trafficgen, sfi-autoship, or a file that is there",
-    ));
+    let folder = Folder::new();
     let faulty = "name = 'mine'\nsource = 'a'\nlike = 'searoom'\nhead_on_deg = 200\nhold = 1";
-    let file = write(folder.path(), "mine.toml", faulty);
-    refused(&file)
-        .stderr(contains(
-            "line 4: head_on_deg: found 200; allowed: a number from 0 to 180",
-        ))
-        .stderr(contains("mine.toml: 2 faults"))
-        .stderr(contains(
-            "line 5: hold: found an unknown key, perhaps for 'hold_deg'",
-        ));
-    refused(text(folder.path())).stderr(contains("cannot be read"));
-    let long = write(folder.path(), "long.toml", "#".repeat(1_100_000));
-    refused(&long).stderr(contains("found more than 1 MiB"));
-    searoom(&["suite", "--lint", stand_on, "--thresholds", "searoom"]).code(2);
+    folder.write("mine.toml", faulty);
+    folder.write("long.toml", "#".repeat(1_100_000));
+    let all = "allowed: searoom, dnv-trafficgen, sfi-autoship, or a file that is there";
+    let number = "line 4: head_on_deg: found 200; allowed: a number from 0 to 180";
+    let unknown = "line 5: hold: found an unknown key, perhaps for 'hold_deg'";
+    let plan = "plan scenarios/colregs/stand-on.toml --thresholds";
+    folder.refuses(&format!(
+        "
+        {plan} nobody | {all}
+        {plan} DIR/mine.toml | {number} | mine.toml: 2 faults | {unknown}
+        {plan} DIR | cannot be read
+        {plan} DIR/long.toml | found more than 1 MiB
+        suite --lint scenarios/colregs/stand-on.toml --thresholds searoom |
+        compare scenarios/colregs --thresholds nobody | allowed: searoom, dnv-trafficgen, sfi-autoship
+        "
+    ));
 }

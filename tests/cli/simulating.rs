@@ -1,6 +1,8 @@
 //! `searoom simulate` as a user runs it.
 
-use super::program::{HEAD_ON, document, run, searoom, stderr, stdout, text, untimed, write};
+use super::program::{
+    Folder, HEAD_ON, document, json, run, searoom, stderr, stdout, text, untimed,
+};
 
 const HEAD_ON_FILE: &str = "scenarios/colregs/head-on.toml";
 
@@ -32,11 +34,11 @@ fn a_simulation_says_first_whether_ships_met_and_ends_with_status_0() {
 
 #[test]
 fn a_contact_ends_with_status_1_and_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let ram = "behaviour = { kind = \"track\", points = [\
                { t_s = 12, position = { east_m = 62, north_m = 0 } }, \
                { t_s = 19, position = { east_m = 62, north_m = 0 } }] }";
-    let file = write(folder.path(), "ram.toml", head_on(ram, ""));
+    let file = folder.write("ram.toml", head_on(ram, ""));
     let shown = stdout(&searoom(&["simulate", &file]).code(1));
     assert!(
         shown.starts_with("Head-on: CONTACT with target ('target' left its set); "),
@@ -50,11 +52,10 @@ fn a_contact_ends_with_status_1_and_is_named() {
 
 #[test]
 fn the_same_run_gives_the_same_document_and_another_seed_another() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nsensor = { kind = \"ais\" }\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.4, toward_deg = 40, std_mps = 0.1 }";
-    let file = write(
-        folder.path(),
+    let file = folder.write(
         "a.toml",
         head_on("behaviour = { kind = \"random\" }", tables),
     );
@@ -72,7 +73,7 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
 
 #[test]
 fn every_plan_that_was_followed_verifies() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let plans = folder.path().join("plans");
     searoom(&["simulate", HEAD_ON_FILE, "--plans", text(&plans)]).success();
     let files = std::fs::read_dir(&plans).expect("made");
@@ -88,8 +89,8 @@ fn every_plan_that_was_followed_verifies() {
 #[cfg(feature = "recording")]
 #[test]
 fn a_recording_tells_what_simulate_tells() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = text(&folder.path().join("sailed.rrd")).to_owned();
+    let folder = Folder::new();
+    let file = folder.at("sailed.rrd");
     let sailed = stdout(&searoom(&["simulate", HEAD_ON_FILE, "--rrd", &file]).success());
     let inspected = stdout(&searoom(&["inspect", &file]).success());
     assert!(inspected.contains(sailed.trim_end()), "{inspected}");
@@ -157,8 +158,7 @@ fn a_report_shows_every_simulation_and_why_one_was_refused() {
 
 #[test]
 fn a_shorter_time_ends_the_simulation_before_arrival() {
-    let found =
-        document(&run(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45")).success());
+    let found = json(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45"));
     assert_eq!(found["duration_s"], 45.0);
     assert_eq!(found["arrived"], false);
     assert_eq!(found["replans"].as_array().map(Vec::len), Some(3));
@@ -166,13 +166,13 @@ fn a_shorter_time_ends_the_simulation_before_arrival() {
 
 #[test]
 fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let target = "behaviour = { kind = \"swims\" }";
     let tables = "[simulation]\nstep_s = 0\nseed = 1.5\nwater = 1\n\
                   vessel = { kind = \"nomoto\", rudder_deg = 200 }\n\
                   sensor = { kind = \"radar\", detection = 0 }\n\
                   current = { speed_mps = -1 }";
-    let file = write(folder.path(), "bad.toml", head_on(target, tables));
+    let file = folder.write("bad.toml", head_on(target, tables));
     for command in ["check", "simulate", "plan"] {
         let said = stderr(&searoom(&[command, &file]).code(2));
         for fault in [
@@ -191,12 +191,8 @@ fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
 
 #[test]
 fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let long = write(
-        folder.path(),
-        "long.toml",
-        head_on("", "[simulation]\nreplan_s = 5000"),
-    );
+    let folder = Folder::new();
+    let long = folder.write("long.toml", head_on("", "[simulation]\nreplan_s = 5000"));
     let sailed = searoom(&[
         "simulate",
         "scenarios/paper/figure_9.toml",
@@ -218,10 +214,9 @@ fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
 
 #[test]
 fn plans_do_not_depend_on_the_tables_of_the_simulation() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nseed = 3\nsensor = { kind = \"ais\" }";
-    let file = write(
-        folder.path(),
+    let file = folder.write(
         "a.toml",
         head_on("behaviour = { kind = \"pursuit\" }", tables),
     );
@@ -231,7 +226,7 @@ fn plans_do_not_depend_on_the_tables_of_the_simulation() {
 
 #[test]
 fn the_shipped_closed_loops_are_sailed_without_contact() {
-    let found = document(&run("simulate scenarios/closed-loop --json").success());
+    let found = json("simulate scenarios/closed-loop --json");
     let all = found["simulations"].as_array().expect("a list");
     assert_eq!(all.len(), 6);
     for sailed in all {
@@ -358,7 +353,7 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
 /// Contacts and distances are computed again from the motions alone.
 #[test]
 fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.3, toward_deg = 10 }";
     let steered = HEAD_ON.replace(
@@ -366,13 +361,13 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
         "tracking_margin_m = 20.0\nsafety_margin_m",
     );
     let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
-    let steered = write(folder.path(), "steered.toml", steered);
+    let steered = folder.write("steered.toml", steered);
     for file in [HEAD_ON_FILE, &steered] {
         let sailed = document(&searoom(&["simulate", file, "--json"]).success());
         let check = |change: &dyn Fn(&mut serde_json::Value)| {
             let mut changed = sailed.clone();
             change(&mut changed);
-            let name = write(folder.path(), "sailed.json", changed.to_string());
+            let name = folder.write("sailed.json", changed.to_string());
             searoom(&["verify", &name])
         };
         let shown = stdout(&check(&|_| {}).success());
