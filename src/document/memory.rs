@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument};
+use super::parts::{
+    InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument, segment,
+};
 use super::plan::{PlanDocument, segment_document, start};
 use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
@@ -616,17 +618,10 @@ pub(crate) fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
     }
 }
 
-fn pose(at: &StartDocument) -> Pose {
-    Pose::new(
-        Vector::new(at.east_m, at.north_m),
-        heading_from_course_deg(at.course_deg),
-    )
-}
-
 /// The state of a ship, at a time that counts from `elapsed` seconds later.
 pub(crate) fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
     let ship = SteadyShip {
-        pose: pose(&state.at),
+        pose: state.at.pose(),
         speed: state.speed_mps,
     };
     (state.at.t_s - elapsed, ship)
@@ -643,15 +638,4 @@ fn risk(known: &KnownRoleDocument, elapsed: f64) -> Option<Risk> {
         own,
         target: steady(&known.target, elapsed).1,
     })
-}
-
-/// The segment of a document.
-pub(crate) fn segment(document: &SegmentDocument) -> Segment {
-    Segment {
-        start: pose(&document.start),
-        start_time: document.start.t_s,
-        duration: document.duration_s,
-        speed: document.speed_mps,
-        turn_rate: -radians_from_deg(document.turn_rate_deg_per_s),
-    }
 }

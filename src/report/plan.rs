@@ -1,6 +1,6 @@
 //! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
-use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
     EncounterDocument, PlanDocument, SuiteRunDocument, breaks, headline, met, passing, plan_lines,
     turn,
@@ -22,22 +22,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     Grid {
-        header: vec![
-            "scenario",
-            "outcome",
-            "encounter",
-            "turn",
-            "passing",
-            "J\n[m²]",
-            "delay\n[s]",
-            "clearance\n[m]",
-            "risk",
-            "breaks",
-            "nodes\nexpanded",
-            TIME_COLUMN,
-            "verified",
-            "safe",
-        ],
+        header: columns(
+            "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], clearance\n[m], \
+             risk, breaks, nodes\nexpanded, time\n[ms], verified, safe",
+        ),
         numbers: 5..12,
         rows: runs.iter().map(suite_row).collect(),
     }

@@ -2,7 +2,7 @@
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
 use super::file::{ControlFile, PlanFile, SampleFile};
-use crate::document::{SegmentDocument, StartDocument};
+pub(super) use crate::document::segment;
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{ForceNode, Segment, Steered};
@@ -119,23 +119,6 @@ fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
         state: StateVector::from(control.state_weights),
         force: ForceVector::from(control.control_weights),
     })
-}
-
-fn pose(start: &StartDocument) -> Pose {
-    Pose::new(
-        Vector::new(start.east_m, start.north_m),
-        heading_from_course_deg(start.course_deg),
-    )
-}
-
-pub(super) fn segment(segment: &SegmentDocument) -> Segment {
-    Segment::new(
-        pose(&segment.start),
-        segment.start.t_s,
-        segment.duration_s,
-        segment.speed_mps,
-        radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
-    )
 }
 
 /// Converts the samples that are nodes. A course has no full circles, so the heading is continued
