@@ -238,13 +238,13 @@ pub(super) fn offset_from_wake(risk: &Risk) -> f64 {
 }
 
 fn steady_on(leg: &DesiredLeg, time: f64) -> SteadyShip {
-    SteadyShip {
-        pose: Pose::new(
+    SteadyShip::new(
+        Pose::new(
             leg.start + leg.direction * (leg.speed * (time - leg.start_time)),
             heading_of(leg.direction),
         ),
-        speed: leg.speed,
-    }
+        leg.speed,
+    )
 }
 
 struct Closest {

@@ -106,12 +106,14 @@ pub struct SteadyShip {
 }
 
 impl SteadyShip {
+    /// A ship at a pose with a speed, m/s.
+    pub const fn new(pose: Pose, speed: f64) -> Self {
+        Self { pose, speed }
+    }
+
     /// A target on its nominal track at a time, seconds.
     pub fn on_track(track: &ShipTrack, time: f64) -> Self {
-        Self {
-            pose: track.pose_at(time),
-            speed: track.speed,
-        }
+        Self::new(track.pose_at(time), track.speed)
     }
 
     /// m/s.
@@ -214,10 +216,7 @@ pub(super) mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     pub fn ship(x: f64, y: f64, heading: f64, speed: f64) -> SteadyShip {
-        SteadyShip {
-            pose: Pose::new(Vector::new(x, y), heading),
-            speed,
-        }
+        SteadyShip::new(Pose::new(Vector::new(x, y), heading), speed)
     }
 
     fn mirrored(s: &SteadyShip) -> SteadyShip {

@@ -341,10 +341,7 @@ fn memory_after(
             None => sailed.push(s),
         }
     }
-    let now = SteadyShip {
-        pose: own.pose,
-        speed: remainder.first().map_or(own.speed, |s| s.speed),
-    };
+    let now = SteadyShip::new(own.pose, remainder.first().map_or(own.speed, |s| s.speed));
     let manoeuvres = previous.manoeuvres.iter();
     let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
         .map(|m| PlannedManoeuvre::from(m).after(elapsed))
@@ -620,10 +617,7 @@ pub(crate) fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
 
 /// The state of a ship, at a time that counts from `elapsed` seconds later.
 pub(crate) fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
-    let ship = SteadyShip {
-        pose: state.at.pose(),
-        speed: state.speed_mps,
-    };
+    let ship = SteadyShip::new(state.at.pose(), state.speed_mps);
     (state.at.t_s - elapsed, ship)
 }
 

@@ -106,9 +106,11 @@ fn role(
     };
     let (own, since) = (own?, since? - time?);
     let heading = course.unwrap_or(own.pose.heading);
-    let at = |pose: Pose, speed: f64| SteadyShip {
-        pose: Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
-        speed,
+    let at = |pose: Pose, speed: f64| {
+        SteadyShip::new(
+            Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
+            speed,
+        )
     };
     Some(Some(Risk {
         role,

@@ -181,10 +181,7 @@ pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         ComplianceReport::judge(&meeting, Thresholds::standard())
     };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut now = SteadyShip {
-        pose: ship.pose,
-        speed: ship.speed,
-    };
+    let mut now = SteadyShip::new(ship.pose, ship.speed);
     let alone = [(0.0, now)];
     let mut track: Vec<(f64, SteadyShip)> = Vec::new();
     let mut sailed = Sailed {

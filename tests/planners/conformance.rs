@@ -17,10 +17,7 @@ const SPEED: f64 = 6.0;
 const RADIUS: f64 = 125.0;
 
 fn ship(position: Vector, heading: f64, speed: f64) -> SteadyShip {
-    SteadyShip {
-        pose: Pose::new(position, heading),
-        speed,
-    }
+    SteadyShip::new(Pose::new(position, heading), speed)
 }
 
 fn word(role: Option<Role>) -> &'static str {

@@ -54,10 +54,10 @@ impl EncounterSample {
     /// True if own ship, on its first course and at its first speed again, would have the target
     /// behind: the closest approach is over.
     pub fn is_past(&self, first: &SteadyShip) -> bool {
-        let own = SteadyShip {
-            pose: Pose::new(self.own.pose.position, first.pose.heading),
-            speed: first.speed,
-        };
+        let own = SteadyShip::new(
+            Pose::new(self.own.pose.position, first.pose.heading),
+            first.speed,
+        );
         Self { own, ..*self }.ahead().time <= 0.0
     }
 
@@ -209,10 +209,7 @@ impl OwnSamples {
         hull: Hull,
         ordered_speed: f64,
     ) -> Self {
-        let at = |time: f64| SteadyShip {
-            pose: trajectory.pose_at(time),
-            speed: trajectory.speed_at(time),
-        };
+        let at = |time: f64| SteadyShip::new(trajectory.pose_at(time), trajectory.speed_at(time));
         let mut ships = sampled(sailed);
         let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
         ships.extend(times.map(|time| (time, at(time))));
@@ -359,10 +356,7 @@ fn sampled(sailed: &[Segment]) -> Vec<(f64, SteadyShip)> {
             .min(f64::from(MOST_SAMPLES));
         (0..steps as usize).map(move |k| {
             let time = s.start_time + STEP_S * k as f64;
-            let ship = SteadyShip {
-                pose: s.pose_at(time),
-                speed: s.speed,
-            };
+            let ship = SteadyShip::new(s.pose_at(time), s.speed);
             (time, ship)
         })
     });
@@ -527,10 +521,10 @@ mod tests {
 
     fn ship(rng: &mut ChaCha8Rng, range: f64) -> SteadyShip {
         let mut within = |r: f64| rng.random_range(-r..r);
-        SteadyShip {
-            pose: Pose::new(Vector::new(within(range), within(range)), within(3.1)),
-            speed: 5.0 + within(4.0),
-        }
+        SteadyShip::new(
+            Pose::new(Vector::new(within(range), within(range)), within(3.1)),
+            5.0 + within(4.0),
+        )
     }
 
     /// Against sums of polygons, overlapping, close and far.
