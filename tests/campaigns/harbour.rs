@@ -146,10 +146,8 @@ pub fn across_the_island(map: &Arc<Map>, seed: u64) -> Option<Scenario> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut scenario = scene(map, &FJORD, seed);
     let aside = Vector::new(rng.random_range(-70.0..70.0), rng.random_range(-70.0..70.0));
-    let (middle, heading) = (
-        Vector::new(-331.0, 801.0) + aside,
-        rng.random_range(-3.1..3.1),
-    );
+    let middle = Vector::new(-331.0, 801.0) + aside;
+    let heading = rng.random_range(-3.1..3.1);
     let path = [-500.0, 500.0].map(|along| middle + direction(heading) * along);
     if path.iter().any(|p| map.signed_distance(*p) < 60.0) {
         return None;

@@ -208,10 +208,8 @@ fn a_suite_goes_on_after_a_broken_file() {
 #[test]
 fn two_results_never_share_a_file() {
     let folder = Folder::new();
-    let (a, b) = (
-        folder.write("a/same.toml", HEAD_ON),
-        folder.write("b/same.toml", HEAD_ON),
-    );
+    let a = folder.write("a/same.toml", HEAD_ON);
+    let b = folder.write("b/same.toml", HEAD_ON);
     let plans = folder.path().join("plans");
     searoom(&["suite", &a, &b, "--plans", text(&plans)])
         .code(2)

@@ -70,10 +70,8 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
             d.pointer(&format!("{encounter}/max_risk"))
                 .and_then(Value::as_f64)
         };
-        let (said, target) = (
-            risk(&original).expect("a risk"),
-            original.pointer(&format!("{encounter}/target")).cloned(),
-        );
+        let said = risk(&original).expect("a risk");
+        let target = original.pointer(&format!("{encounter}/target")).cloned();
         let tell = |risk: f64| {
             let mut document = original.clone();
             *at(&mut document, &format!("{encounter}/max_risk")) = json!(risk);

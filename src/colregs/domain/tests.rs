@@ -46,10 +46,8 @@ fn track(position: Vector, heading: f64, speed: f64) -> ShipTrack {
 
 fn risk_with(own: &OwnShip, target: &ShipTrack) -> Risk {
     let steady = |pose, speed| SteadyShip { pose, speed };
-    let (own, target) = (
-        steady(own.pose, own.speed),
-        steady(target.pose, target.speed),
-    );
+    let own = steady(own.pose, own.speed);
+    let target = steady(target.pose, target.speed);
     Risk {
         role: raw_role(&own, &target).expect("finite"),
         time: 0.0,
@@ -170,10 +168,8 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         let whole = shapes(&away, &target, Some(&risk), HORIZON);
         assert!(inside(&found.with_domain, &whole.with_domain) && whole.reduced == 0.0);
         let start = own.pose.position;
-        let (from_hard, from_whole) = (
-            found.hard.signed_distance(start),
-            whole.with_domain.signed_distance(start),
-        );
+        let from_hard = found.hard.signed_distance(start);
+        let from_whole = whole.with_domain.signed_distance(start);
         if from_hard <= 0.0 || from_whole > 0.0 {
             assert_eq!(found.with_domain, whole.with_domain);
             assert_eq!(found.reduced, 0.0);

@@ -53,10 +53,8 @@ fn inner_faces(mesh: &Mesh) -> Vec<bool> {
     let mut beyond: Vec<Vec<(usize, bool)>> = vec![Vec::new(); mesh.num_all_faces()];
     for edge in mesh.undirected_edges() {
         let directed = edge.as_directed();
-        let (a, b) = (
-            directed.face().fix().index(),
-            directed.rev().face().fix().index(),
-        );
+        let a = directed.face().fix().index();
+        let b = directed.rev().face().fix().index();
         let of_the_polygon = mesh.is_constraint_edge(edge.fix());
         beyond[a].push((b, of_the_polygon));
         beyond[b].push((a, of_the_polygon));
@@ -95,10 +93,8 @@ fn merged(mesh: &Mesh, inside: &[bool]) -> Vec<ConvexPolygon> {
     let mut inner: Vec<[usize; 4]> = Vec::new();
     for edge in mesh.undirected_edges() {
         let directed = edge.as_directed();
-        let (a, b) = (
-            directed.face().fix().index(),
-            directed.rev().face().fix().index(),
-        );
+        let a = directed.face().fix().index();
+        let b = directed.rev().face().fix().index();
         if inside[a] && inside[b] && !mesh.is_constraint_edge(edge.fix()) {
             let (u, v) = (directed.from().fix().index(), directed.to().fix().index());
             inner.push([u, v, a, b]);
