@@ -314,6 +314,12 @@ mod tests {
         }
     }
 
+    /// A ship within 1500 m, at 1 to 9 m/s.
+    fn anywhere(within: &mut impl FnMut(f64) -> f64) -> SteadyShip {
+        let (x, y) = (within(1500.0), within(1500.0));
+        ship(x, y, within(PI), 5.0 + within(4.0))
+    }
+
     fn own_ship() -> OwnShip {
         OwnShip {
             pose: Pose::new(Vector::zeros(), 0.0),
@@ -366,15 +372,7 @@ mod tests {
             let mut within = |r: f64| rng.random_range(-r..r);
             let points = [(0.0, 0.0), (700.0, within(300.0)), (1200.0, within(600.0))];
             let desired = line(&points, 6.0);
-            let other = track(
-                &ship(
-                    within(1500.0),
-                    within(1500.0),
-                    within(PI),
-                    5.0 + within(4.0),
-                ),
-                50.0,
-            );
+            let other = track(&anywhere(&mut within), 50.0);
             let horizon = 200.0;
             let risk = first_risk(&own, &desired, &other, horizon, &Thresholds::STANDARD);
             let scan = (0..20_000)
@@ -410,15 +408,7 @@ mod tests {
         let desired = line(&[(0.0, 0.0), (600.0, 100.0), (1200.0, -100.0)], 6.0);
         for _ in 0..60 {
             let mut within = |r: f64| rng.random_range(-r..r);
-            let other = track(
-                &ship(
-                    within(1500.0),
-                    within(1500.0),
-                    within(PI),
-                    5.0 + within(4.0),
-                ),
-                80.0,
-            );
+            let other = track(&anywhere(&mut within), 80.0);
             let found = encounter(
                 &own,
                 &desired,

@@ -1,6 +1,6 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::{TIME_COLUMN, rules_broken};
+use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
 use super::table::{Grid, Styled, columns, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
@@ -73,11 +73,7 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
         figure(|c| c.max_risk, risk_figure),
         or_dash(cost.map(|_| largest_turn(entry))),
         or_dash(entry.search_stats.map(|stats| stats.expanded.to_string())),
-        or_dash(
-            entry
-                .timing
-                .map(|timing| format!("{:.2}", 1e3 * timing.plan_s)),
-        ),
+        or_dash(entry.timing.map(milliseconds)),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
         yes_or_no(safe),
         rules_broken(
