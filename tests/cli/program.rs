@@ -84,6 +84,13 @@ impl Folder {
     }
 }
 
+/// Checks that all of these, with ` | ` between them, are in a text.
+pub fn says(text: &str, expected: &str) {
+    for expected in expected.split(" | ") {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+}
+
 pub fn stdout(assert: &Assert) -> String {
     String::from_utf8(assert.get_output().stdout.clone()).expect("text")
 }

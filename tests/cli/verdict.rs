@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{Folder, HEAD_ON, document, json, run, searoom, stderr, stdout, text};
+use super::program::{Folder, HEAD_ON, document, json, run, says, searoom, stderr, stdout, text};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
@@ -91,10 +91,7 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
             row.contains(word) && row.trim_end().ends_with("NO"),
             "{suite}"
         );
-        assert!(
-            suite.contains("0 solved, 1 not safe; 1 verified, 0 safe"),
-            "{suite}"
-        );
+        says(&suite, "0 solved, 1 not safe; 1 verified, 0 safe");
         let suite = document(&searoom(&["suite", &file, "--json"]).code(1));
         assert_eq!(facts(&suite["runs"][0]), expected);
         assert_eq!(suite["summary"]["safe"], 0);
@@ -215,7 +212,7 @@ fn control_characters_of_others_are_shown_as_codes() {
         first.contains(r"verified\u000aspace-time") && first.contains(r"\u001b[8m"),
         "{first}"
     );
-    assert!(first.contains("REJECTED"), "{first}");
+    says(&first, "REJECTED");
     // as JSON the text is what it was
     let checked =
         document(&searoom(&["verify", "--json", "tests/faults/verify-spoof.json"]).code(1));
@@ -347,7 +344,7 @@ fn every_view_tells_the_clearance_of_the_right_target() {
     };
 
     let said = stdout(&run(&format!("plan {file}")).success());
-    assert!(said.contains("clearance    290.0 m;"), "{said}");
+    says(&said, "clearance    290.0 m;");
     let plan = run(&format!("plan {file} --json")).success();
     let plan_file = folder.write("plan.json", stdout(&plan));
     let plan = document(&plan);
