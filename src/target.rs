@@ -253,6 +253,11 @@ pub enum Representation {
     Ellipsoid,
 }
 
+words!(Representation {
+    Polytope => "polytope",
+    Ellipsoid => "ellipsoid",
+});
+
 /// A tracked target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {

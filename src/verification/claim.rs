@@ -288,13 +288,11 @@ pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<ConvexSet, ClaimErr
 }
 
 fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
-    let representation = match target.representation.as_str() {
-        "polytope" => Representation::Polytope,
-        "ellipsoid" => Representation::Ellipsoid,
-        other => {
-            let field = format!("{path}.representation");
-            return Err(fault(&field, format!("'{other}'"), "polytope, ellipsoid"));
-        }
+    let found = target.representation.as_str();
+    let mut known = Representation::WORDS.iter();
+    let Some((_, representation)) = known.find(|(word, _)| *word == found) else {
+        let field = format!("{path}.representation");
+        return Err(fault(&field, format!("'{found}'"), "polytope, ellipsoid"));
     };
     let motion = match (&target.ship, &target.initial_set) {
         (Some(ship), None) if target.velocity_sets.is_empty() => {
@@ -331,7 +329,7 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
     Ok(Target {
         name: target.name.clone(),
         motion,
-        representation,
+        representation: *representation,
     })
 }
 

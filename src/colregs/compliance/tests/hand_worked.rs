@@ -99,7 +99,7 @@ fn monitors_are_those_worked_out_by_hand() {
                 assert_eq!(found.verdict, MonitorVerdict::Idle, "{legs}: {found:?}");
                 continue;
             };
-            assert_eq!(found.verdict.name(), *verdict, "{legs}: {found:?}");
+            assert_eq!(found.verdict.word(), *verdict, "{legs}: {found:?}");
             let value = found.robustness.expect("a number");
             let is_angle = found.measure == Measure::Angle;
             let value = if is_angle {
