@@ -5,7 +5,7 @@ use std::fs;
 use super::program::{Folder, HEAD_ON, document, json, run, says, searoom, stderr, stdout, text};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Own ship and a target whose hulls overlap at the start.
 fn overlapping() -> String {
@@ -46,47 +46,27 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         assert!(said.starts_with(&format!("Head-on: {both}\n")), "{said}");
         assert!(!said.contains("relaxed"), "{said}");
         let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
-        assert!(
-            page.contains(&format!("<h2>Head-on: {both}</h2>")),
-            "{page}"
-        );
-        assert!(page.contains(&format!("<span>{word}</span>")), "{page}");
-        assert!(
-            fs::read_to_string(&figure)
-                .expect("a figure")
-                .contains(&both)
-        );
+        says(&page, &format!("<h2>Head-on: {both}</h2>"));
+        says(&page, &format!("<span>{word}</span>"));
+        says(&fs::read_to_string(&figure).expect("a figure"), &both);
 
         let plan = searoom(&["plan", &file, "--json"]).code(1);
         let plan_file = folder.write("plan.json", stdout(&plan));
         let plan = document(&plan);
         let facts = |d: &Value| ["outcome", "verdict", "verified", "safe"].map(|k| d[k].clone());
-        let expected = [
-            Value::from("relaxed"),
-            Value::from(word),
-            Value::from(true),
-            Value::from(false),
-        ];
+        let expected = [json!("relaxed"), json!(word), json!(true), json!(false)];
         assert_eq!(facts(&plan), expected);
         let checked = searoom(&["verify", &plan_file]).success();
         let first = format!("Head-on: verified, not safe: {word}\n");
         assert!(stdout(&checked).starts_with(&first), "{}", stdout(&checked));
         let checked = document(&searoom(&["verify", "--json", &plan_file]).success());
-        assert_eq!(
-            (&checked["verified"], &checked["safe"]),
-            (&Value::from(1), &Value::from(0))
-        );
-        let checked = &checked["plans"][0];
-        assert_eq!(
-            (&checked["verified"], &checked["safe"]),
-            (&expected[2], &expected[3])
-        );
+        let found = |d: &Value| ["verified", "safe"].map(|k| d[k].clone());
+        assert_eq!(found(&checked), [json!(1), json!(0)]);
+        assert_eq!(found(&checked["plans"][0]), expected[2..]);
 
         let suite = stdout(&searoom(&["suite", &file]).code(1));
-        let row = suite
-            .lines()
-            .find(|line| line.contains(" Head-on "))
-            .expect("a row");
+        let row = suite.lines().find(|line| line.contains(" Head-on "));
+        let row = row.expect("a row");
         assert!(
             row.contains(word) && row.trim_end().ends_with("NO"),
             "{suite}"
@@ -100,10 +80,8 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         let asked = ["--planner", "space-time", "--search", "a-star"];
         let args = [&["compare", file.as_str()], asked.as_slice()].concat();
         let table = stdout(&searoom(&args).code(1));
-        let row = table
-            .lines()
-            .find(|line| line.contains("space-time, A* "))
-            .expect("a row");
+        let row = table.lines().find(|line| line.contains("space-time, A* "));
+        let row = row.expect("a row");
         assert!(row.contains(word) && row.contains(" NO "), "{table}");
         let compared = document(&searoom(&[args.as_slice(), &["--json"]].concat()).code(1));
         assert_eq!(facts(&compared["comparisons"][0]["entries"][0]), expected);
@@ -117,11 +95,8 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     let file = folder.write("a.toml", overlapping());
     let table = stdout(&searoom(&["compare", &file]).code(1));
     for method in ["space-time, A* ", "path-time ", "hold course "] {
-        let row = table
-            .lines()
-            .find(|line| line.contains(method))
-            .expect("a row");
-        assert!(row.contains("COLLIDES"), "{table}");
+        let row = table.lines().find(|line| line.contains(method));
+        assert!(row.expect("a row").contains("COLLIDES"), "{table}");
     }
     // the shape about a target that lies still is entered, nothing else
     let wide = HEAD_ON
@@ -136,16 +111,13 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
         + "domain = { fore_m = 200.0, aft_m = 200.0, port_m = 200.0, starboard_m = 200.0 }\n";
     let file = folder.write("wide.toml", wide);
     let compared = document(&searoom(&["compare", &file, "--json"]).success());
-    let entries = compared["comparisons"][0]["entries"]
-        .as_array()
-        .expect("a list");
-    let held = entries
-        .iter()
-        .find(|e| e["method"] == "hold course")
-        .expect("it is there");
+    let entries = compared["comparisons"][0]["entries"].as_array();
+    let mut entries = entries.expect("a list").iter();
+    let held = entries.find(|e| e["method"] == "hold course");
+    let held = held.expect("it is there");
     assert_eq!(
-        (&held["verdict"], &held["safe"]),
-        (&Value::from("relaxed"), &Value::from(true))
+        [&held["verdict"], &held["safe"]],
+        [&json!("relaxed"), &json!(true)]
     );
     assert_eq!(held["outcome"], "collides", "the key keeps its values");
 }
@@ -212,7 +184,7 @@ fn control_characters_of_others_are_shown_as_codes() {
         first.contains(r"verified\u000aspace-time") && first.contains(r"\u001b[8m"),
         "{first}"
     );
-    says(&first, "REJECTED");
+    says(first, "REJECTED");
     // as JSON the text is what it was
     let checked =
         document(&searoom(&["verify", "--json", "tests/faults/verify-spoof.json"]).code(1));
@@ -265,14 +237,11 @@ fn a_suite_skips_what_does_not_apply() {
     assert!(page.contains("not applicable") && page.contains("planner.compliance"));
     let suite = document(&searoom(&[asked.as_slice(), &["--json"]].concat()).success());
     let run = &suite["runs"][0];
-    assert_eq!(
-        (&run["outcome"], &run["error"]),
-        (&Value::from("not-applicable"), &Value::Null)
-    );
-    assert!(
-        run["reason"]
-            .as_str()
-            .is_some_and(|r| r.contains("planner.compliance"))
+    let found = [&run["outcome"], &run["error"]];
+    assert_eq!(found, [&json!("not-applicable"), &Value::Null]);
+    says(
+        run["reason"].as_str().expect("a text"),
+        "planner.compliance",
     );
     assert_eq!(suite["summary"]["not_applicable"], 1);
     assert_eq!(suite["summary"]["unreadable"], 0);
@@ -416,9 +385,6 @@ fn a_figure_of_a_comparison_says_who_rams() {
     searoom(&["plan", "scenarios/colregs/head-on.toml", "--figure", &plan])
         .success()
         .stdout(contains("(verified, safe)").and(contains("not safe").not()));
-    assert!(
-        !fs::read_to_string(&plan)
-            .expect("a figure")
-            .contains("verified")
-    );
+    let svg = fs::read_to_string(&plan).expect("a figure");
+    assert!(!svg.contains("verified"));
 }
