@@ -49,10 +49,8 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
     let folder = Folder::new();
     let tables = "[simulation]\nsensor = { kind = \"ais\" }\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.4, toward_deg = 40, std_mps = 0.1 }";
-    let file = folder.write(
-        "a.toml",
-        head_on("behaviour = { kind = \"random\" }", tables),
-    );
+    let scene = head_on("behaviour = { kind = \"random\" }", tables);
+    let file = folder.write("a.toml", scene);
     let sail = |seed: &str| {
         untimed(document(
             // the current carries own ship out of its tracking margin of 0 m
@@ -207,10 +205,8 @@ fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
 fn plans_do_not_depend_on_the_tables_of_the_simulation() {
     let folder = Folder::new();
     let tables = "[simulation]\nseed = 3\nsensor = { kind = \"ais\" }";
-    let file = folder.write(
-        "a.toml",
-        head_on("behaviour = { kind = \"pursuit\" }", tables),
-    );
+    let scene = head_on("behaviour = { kind = \"pursuit\" }", tables);
+    let file = folder.write("a.toml", scene);
     let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
     assert_eq!(plan(&file), plan(HEAD_ON_FILE));
 }
