@@ -100,7 +100,7 @@ fn a_recording_tells_what_simulate_tells() {
 
 #[test]
 fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let file = text(&folder.path().join("sailed.svg")).to_owned();
     let sailed =
         document(&searoom(&["simulate", HEAD_ON_FILE, "--json", "--figure", &file]).success());
@@ -124,7 +124,7 @@ fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
 
 #[test]
 fn a_report_shows_every_simulation_and_why_one_was_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let sail = |name: &str| {
         let report = folder.path().join(name);
         let refused = "scenarios/paper/figure_9.toml";
@@ -227,21 +227,17 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
 
 #[test]
 fn a_plan_is_asked_for_when_a_target_is_reported_again() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
                   sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
-    let file = write(folder.path(), "a.toml", head_on("", tables));
+    let file = folder.write("a.toml", head_on("", tables));
     let found = document(&searoom(&["simulate", &file, "--json"]).success());
     assert_eq!(found["settings"]["replan_on_events"], true);
     let replans = found["replans"].as_array().expect("a list");
     let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
-    let file = write(
-        folder.path(),
-        "b.toml",
-        head_on("", "[simulation]\nreplan = \"often\""),
-    );
+    let file = folder.write("b.toml", head_on("", "[simulation]\nreplan = \"often\""));
     let refused = stderr(&searoom(&["simulate", &file]).code(2));
     let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
     assert!(refused.contains(fault), "{refused}");
@@ -249,10 +245,10 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
 
 #[test]
 fn a_target_without_size_in_its_reports_has_the_default_size() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let sail = |target: &str, sensor: &str, code: i32| {
         let tables = format!("[simulation]\nsensor = {{ {sensor} }}");
-        let file = write(folder.path(), "a.toml", head_on(target, &tables));
+        let file = folder.write("a.toml", head_on(target, &tables));
         searoom(&["simulate", &file, "--json"]).code(code)
     };
     let both = "not_reported = [\"heading\", \"size\"]";
@@ -290,11 +286,11 @@ fn a_target_without_size_in_its_reports_has_the_default_size() {
 #[test]
 fn ctrl_c_writes_what_was_sailed_so_far() {
     use std::process::{Command, Stdio};
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let far = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 900000.0");
     let far = far.replace("east_m = 1500.0", "east_m = 4000000.0");
     let far = format!("{far}\n[simulation]\nstep_s = 0.01\nreplan_s = 900000.0\n");
-    let file = write(folder.path(), "far.toml", far);
+    let file = folder.write("far.toml", far);
     let plans = folder.path().join("plans");
     let sailing = Command::new(env!("CARGO_BIN_EXE_searoom"))
         .args([
@@ -329,11 +325,11 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     );
     let time = found["duration_s"].as_f64().expect("a time");
     assert!(time > 0.0 && time < 800_000.0, "{time}");
-    let file = write(folder.path(), "sailed.json", sailed.clone());
+    let file = folder.write("sailed.json", sailed.clone());
     let shown = stdout(&searoom(&["verify", &file]).success());
     assert!(shown.contains("verified: no contact"), "{shown}");
     let altered = sailed.replace("\"interrupted\": true", "\"interrupted\": false");
-    let file = write(folder.path(), "altered.json", altered);
+    let file = folder.write("altered.json", altered);
     searoom(&["verify", &file]).code(1);
 }
 
