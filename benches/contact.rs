@@ -8,23 +8,20 @@ use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, outer_disc};
 use searoom::obstacle::PolytopeObstacle;
 use searoom::obstacle::contact::{arc_contacts, first_contact, line_contact};
-use searoom::target::{DomainKind, ShipTrack};
+use searoom::target::ShipTrack;
 use searoom::trajectory::Segment;
 use searoom::vessel::Hull;
 
 /// A ship from ahead: at 4 m/s west from 1000 m east, a disc of 80 m about her 60 m hull.
 fn body() -> PolytopeObstacle {
     let ship = ShipTrack {
-        pose: Pose::new(Vector::new(1000.0, 0.0), std::f64::consts::PI),
-        speed: 4.0,
-        hull: Hull::new(60.0, 12.0),
-        position_std: 0.0,
         speed_spread: 0.4,
         course_spread: 0.08,
-        turn_rate: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
-        domain: DomainKind::Hull,
+        ..ShipTrack::exact(
+            Pose::new(Vector::new(1000.0, 0.0), std::f64::consts::PI),
+            4.0,
+            Hull::new(60.0, 12.0),
+        )
     };
     let initial = ship
         .hull

@@ -298,10 +298,8 @@ impl Georeference {
 
     /// Metres east and north of the origin. NaN for a NaN.
     pub fn to_plane(&self, place: Geographic) -> Vector {
-        let (lat, lon) = (
-            place.lat_deg.to_radians(),
-            wrap((place.lon_deg - self.origin.lon_deg).to_radians()),
-        );
+        let lat = place.lat_deg.to_radians();
+        let lon = wrap((place.lon_deg - self.origin.lon_deg).to_radians());
         let tau = conformal(lat.tan());
         let xi = tau.atan2(lon.cos());
         let eta = (lon.sin() / tau.hypot(lon.cos())).asinh();
@@ -324,10 +322,8 @@ impl Georeference {
     /// The inverse of [`Georeference::to_plane`].
     pub fn to_geographic(&self, point: Vector) -> Geographic {
         let series = Kruger::of_wgs84();
-        let (eta, xi) = (
-            point.x / series.radius,
-            (point.y + self.northing) / series.radius,
-        );
+        let eta = point.x / series.radius;
+        let xi = (point.y + self.northing) / series.radius;
         let (mut x, mut y) = (eta, xi);
         for (k, beta) in (1..).zip(series.beta) {
             let order = 2.0 * f64::from(k);

@@ -130,10 +130,8 @@ impl ShipTrack {
         if spread == 0.0 {
             return self.hull.polygon(&self.pose);
         }
-        let (reach, corner) = (
-            self.hull.half_diagonal(),
-            self.hull.beam.atan2(self.hull.length),
-        );
+        let reach = self.hull.half_diagonal();
+        let corner = self.hull.beam.atan2(self.hull.length);
         // a quarter of the sides, from ahead to abeam; the others are reflections
         let quarter = DISC_SIDES / 4;
         let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
@@ -206,10 +204,8 @@ impl ShipTrack {
     }
 
     fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
-        let (slow, fast) = (
-            (self.speed - self.speed_spread).max(0.0),
-            self.speed + self.speed_spread,
-        );
+        let slow = (self.speed - self.speed_spread).max(0.0);
+        let fast = self.speed + self.speed_spread;
         let spread = course_spread.min(std::f64::consts::PI);
         let mut points = Vec::new();
         for edge in [-spread, spread] {
@@ -256,6 +252,11 @@ pub enum Representation {
     /// The smallest ellipses around them.
     Ellipsoid,
 }
+
+words!(Representation {
+    Polytope => "polytope",
+    Ellipsoid => "ellipsoid",
+});
 
 /// A tracked target.
 #[derive(Debug, Clone, PartialEq)]

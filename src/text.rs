@@ -98,6 +98,17 @@ pub(crate) fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
+/// Rows of a test's table with `|` between the cells, without empty rows and comments.
+#[cfg(test)]
+pub(crate) fn rows<const N: usize>(table: &'static str) -> impl Iterator<Item = [&'static str; N]> {
+    let rows = table.lines().map(str::trim);
+    let rows = rows.filter(|row| !row.is_empty() && !row.starts_with("//"));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        cells.try_into().expect(row)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

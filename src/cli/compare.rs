@@ -227,7 +227,7 @@ fn write(
 ) -> anyhow::Result<()> {
     if let Some(file) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COMPARISON_COLUMNS)?;
+        writer.write_record(COMPARISON_COLUMNS.split(','))?;
         for document in documents {
             for entry in &document.entries {
                 writer.write_record(comparison_csv(document, entry))?;

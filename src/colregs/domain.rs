@@ -150,10 +150,8 @@ impl Shapes {
     /// The ship domain reduced toward the hard set: `scale` 1 gives `with_domain`, 0 gives `hard`.
     /// Convex and nested. O(n + m).
     pub fn scaled(&self, scale: f64) -> ConvexPolygon {
-        let (hard, with_domain) = (
-            self.hard.scaled(1.0 - scale),
-            self.with_domain.scaled(scale),
-        );
+        let hard = self.hard.scaled(1.0 - scale);
+        let with_domain = self.with_domain.scaled(scale);
         hard.minkowski_sum(&with_domain)
     }
 

@@ -238,13 +238,13 @@ pub(super) fn offset_from_wake(risk: &Risk) -> f64 {
 }
 
 fn steady_on(leg: &DesiredLeg, time: f64) -> SteadyShip {
-    SteadyShip {
-        pose: Pose::new(
+    SteadyShip::new(
+        Pose::new(
             leg.start + leg.direction * (leg.speed * (time - leg.start_time)),
             heading_of(leg.direction),
         ),
-        speed: leg.speed,
-    }
+        leg.speed,
+    )
 }
 
 struct Closest {
@@ -309,27 +309,22 @@ mod tests {
 
     fn track(s: &SteadyShip, length: f64) -> ShipTrack {
         ShipTrack {
-            pose: s.pose,
-            speed: s.speed,
-            hull: Hull { length, beam: 10.0 },
-            position_std: 0.0,
-            speed_spread: 0.0,
-            course_spread: 0.0,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
             domain: DomainKind::Colregs,
+            ..ShipTrack::exact(s.pose, s.speed, Hull::new(length, 10.0))
         }
+    }
+
+    /// A ship within 1500 m, at 1 to 9 m/s.
+    fn anywhere(within: &mut impl FnMut(f64) -> f64) -> SteadyShip {
+        let (x, y) = (within(1500.0), within(1500.0));
+        ship(x, y, within(PI), 5.0 + within(4.0))
     }
 
     fn own_ship() -> OwnShip {
         OwnShip {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed: 6.0,
-            hull: Hull {
-                length: 50.0,
-                beam: 10.0,
-            },
+            hull: Hull::new(50.0, 10.0),
             turning_radius: 100.0,
             speeds: vec![3.0, 6.0],
             safety_margin: 20.0,
@@ -377,15 +372,7 @@ mod tests {
             let mut within = |r: f64| rng.random_range(-r..r);
             let points = [(0.0, 0.0), (700.0, within(300.0)), (1200.0, within(600.0))];
             let desired = line(&points, 6.0);
-            let other = track(
-                &ship(
-                    within(1500.0),
-                    within(1500.0),
-                    within(PI),
-                    5.0 + within(4.0),
-                ),
-                50.0,
-            );
+            let other = track(&anywhere(&mut within), 50.0);
             let horizon = 200.0;
             let risk = first_risk(&own, &desired, &other, horizon, &Thresholds::STANDARD);
             let scan = (0..20_000)
@@ -421,15 +408,7 @@ mod tests {
         let desired = line(&[(0.0, 0.0), (600.0, 100.0), (1200.0, -100.0)], 6.0);
         for _ in 0..60 {
             let mut within = |r: f64| rng.random_range(-r..r);
-            let other = track(
-                &ship(
-                    within(1500.0),
-                    within(1500.0),
-                    within(PI),
-                    5.0 + within(4.0),
-                ),
-                80.0,
-            );
+            let other = track(&anywhere(&mut within), 80.0);
             let found = encounter(
                 &own,
                 &desired,

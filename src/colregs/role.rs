@@ -106,12 +106,14 @@ pub struct SteadyShip {
 }
 
 impl SteadyShip {
+    /// A ship at a pose with a speed, m/s.
+    pub const fn new(pose: Pose, speed: f64) -> Self {
+        Self { pose, speed }
+    }
+
     /// A target on its nominal track at a time, seconds.
     pub fn on_track(track: &ShipTrack, time: f64) -> Self {
-        Self {
-            pose: track.pose_at(time),
-            speed: track.speed,
-        }
+        Self::new(track.pose_at(time), track.speed)
     }
 
     /// m/s.
@@ -206,6 +208,7 @@ pub fn role_within(own: &SteadyShip, target: &SteadyShip, sectors: &Sectors) -> 
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::Role::{GiveWay, HeadOn, Overtaken, Overtaking, StandOn};
     use super::*;
     use crate::frame::{direction, heading_of};
     use rand::{Rng, SeedableRng};
@@ -214,45 +217,22 @@ pub(super) mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     pub fn ship(x: f64, y: f64, heading: f64, speed: f64) -> SteadyShip {
-        SteadyShip {
-            pose: Pose::new(Vector::new(x, y), heading),
-            speed,
-        }
+        SteadyShip::new(Pose::new(Vector::new(x, y), heading), speed)
     }
 
     fn mirrored(s: &SteadyShip) -> SteadyShip {
-        ship(
-            s.pose.position.x,
-            -s.pose.position.y,
-            -s.pose.heading,
-            s.speed,
-        )
+        let at = s.pose.position;
+        ship(at.x, -at.y, -s.pose.heading, s.speed)
     }
 
     /// docs/colregs.md 0.1.
     pub fn fixtures() -> [(SteadyShip, Role, Role); 5] {
         [
-            (ship(1440.0, 0.0, PI, 6.0), Role::HeadOn, Role::HeadOn),
-            (
-                ship(720.0, -720.0, FRAC_PI_2, 6.0),
-                Role::GiveWay,
-                Role::StandOn,
-            ),
-            (
-                ship(720.0, 720.0, -FRAC_PI_2, 6.0),
-                Role::StandOn,
-                Role::GiveWay,
-            ),
-            (
-                ship(432.0, 0.0, 0.0, 2.4),
-                Role::Overtaking,
-                Role::Overtaking,
-            ),
-            (
-                ship(-432.0, 0.0, 0.0, 9.6),
-                Role::Overtaken,
-                Role::Overtaken,
-            ),
+            (ship(1440.0, 0.0, PI, 6.0), HeadOn, HeadOn),
+            (ship(720.0, -720.0, FRAC_PI_2, 6.0), GiveWay, StandOn),
+            (ship(720.0, 720.0, -FRAC_PI_2, 6.0), StandOn, GiveWay),
+            (ship(432.0, 0.0, 0.0, 2.4), Overtaking, Overtaking),
+            (ship(-432.0, 0.0, 0.0, 9.6), Overtaken, Overtaken),
         ]
     }
 
@@ -283,20 +263,6 @@ pub(super) mod tests {
                 assert_eq!(raw_role(&moved(&own), &moved(&mirror)), Some(in_the_mirror));
             }
         }
-    }
-
-    fn every_role() -> [Role; 9] {
-        [
-            Role::HeadOn,
-            Role::GiveWay,
-            Role::StandOn,
-            Role::Overtaking,
-            Role::Overtaken,
-            Role::BothGiveWay,
-            Role::PortToPort,
-            Role::Static,
-            Role::None,
-        ]
     }
 
     /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from
@@ -416,7 +382,8 @@ pub(super) mod tests {
                 Role::PortToPort => Role::BothGiveWay,
                 same => same,
             };
-            let described = every_role().into_iter().filter(|r| is(*r, &own, &other));
+            let roles = Role::DUTIES.into_iter().chain([Role::Static, Role::None]);
+            let described = roles.filter(|r| is(*r, &own, &other));
             assert_eq!(described.collect::<Vec<_>>(), [here], "{own:?} {other:?}");
             assert_eq!(mirror, expected, "{own:?} {other:?}");
             in_line += usize::from(here == Role::None && !at_rest);
@@ -438,28 +405,17 @@ pub(super) mod tests {
         }
         for (beyond, role) in [(-1e-9, Role::HeadOn), (1e-9, Role::StandOn)] {
             let p = direction(Sectors::STANDARD.head_on + beyond) * 500.0;
-            assert_eq!(
-                raw_role(&own, &ship(p.x, p.y, heading_of(-p), 6.0)),
-                Some(role)
-            );
+            let other = ship(p.x, p.y, heading_of(-p), 6.0);
+            assert_eq!(raw_role(&own, &other), Some(role));
         }
         // dead ahead, crossing: the other's view decides
-        assert_eq!(
-            raw_role(&own, &ship(500.0, 0.0, FRAC_PI_2, 3.0)),
-            Some(Role::GiveWay)
-        );
-        assert_eq!(
-            raw_role(&own, &ship(500.0, 0.0, -FRAC_PI_2, 3.0)),
-            Some(Role::StandOn)
-        );
-        assert_eq!(
-            raw_role(&own, &ship(500.0, 0.0, PI, 0.19)),
-            Some(Role::Static)
-        );
-        assert_eq!(
-            raw_role(&ship(0.0, 0.0, 0.0, 0.19), &ship(500.0, 0.0, PI, 5.0)),
-            Some(Role::None)
-        );
+        let seen = |heading: f64, speed: f64| raw_role(&own, &ship(500.0, 0.0, heading, speed));
+        assert_eq!(seen(FRAC_PI_2, 3.0), Some(GiveWay));
+        assert_eq!(seen(-FRAC_PI_2, 3.0), Some(StandOn));
+        assert_eq!(seen(PI, 0.19), Some(Role::Static));
+        let at_rest = ship(0.0, 0.0, 0.0, 0.19);
+        let role = raw_role(&at_rest, &ship(500.0, 0.0, PI, 5.0));
+        assert_eq!(role, Some(Role::None));
     }
 
     #[test]

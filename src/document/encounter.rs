@@ -96,7 +96,7 @@ pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
 /// The rules and monitors that own ship breaks toward one target, sorted, each once.
 pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
     let violated = conduct.monitors.iter();
-    let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.name());
+    let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.word());
     let rules = conduct
         .violations
         .iter()
@@ -196,7 +196,7 @@ impl ConductDocument {
             };
             MonitorDocument {
                 monitor: finding.monitor.to_owned(),
-                verdict: finding.verdict.name().to_owned(),
+                verdict: finding.verdict.word().to_owned(),
                 robustness: finding.robustness.map(scale).filter(|r| r.is_finite()),
                 unit: unit.to_owned(),
                 t_s: finding.time,

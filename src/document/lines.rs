@@ -156,16 +156,12 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
         };
         let (role, target) = (&encounter.role, &encounter.target);
         let time = encounter.undisturbed_tcpa_s.unwrap_or(f64::NAN);
-        add(
-            "encounter",
-            format!("{role} with '{target}': undisturbed {undisturbed} at {time:.0} s"),
-        );
+        let text = format!("{role} with '{target}': undisturbed {undisturbed} at {time:.0} s");
+        add("encounter", text);
         if let (Some(dcpa), Some(tcpa)) = (encounter.dcpa_m, encounter.tcpa_s) {
             let passing = passing(encounter);
-            add(
-                "",
-                format!("planned {dcpa:.1} m at {tcpa:.0} s, passing {passing}"),
-            );
+            let text = format!("planned {dcpa:.1} m at {tcpa:.0} s, passing {passing}");
+            add("", text);
         }
     }
     for encounter in &plan.encounters {
@@ -197,10 +193,8 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
             };
             let time = monitor.t_s.unwrap_or(f64::NAN);
             let name = &monitor.monitor;
-            add(
-                "",
-                format!("monitor {name} is violated at {time:.0} s by {short}"),
-            );
+            let text = format!("monitor {name} is violated at {time:.0} s by {short}");
+            add("", text);
         }
     }
 }
@@ -210,11 +204,10 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
     let count = |count: usize, what: &str| match count {
         0 => format!("no {what}"),
         1 => format!("1 {what}"),
-        _ => format!(
-            "{count} {}",
-            what.replacen("change", "changes", 1)
-                .replace("turn", "turns")
-        ),
+        _ => {
+            let what = what.replacen("change", "changes", 1);
+            format!("{count} {}", what.replace("turn", "turns"))
+        }
     };
     let first = match manoeuvre.lead_s {
         None => "no alteration".to_owned(),
@@ -240,10 +233,10 @@ fn cost_lines(
     add("J", format!("{error} m² ({by_length} m² by arc length)"));
     let way = format!("{:.1} s and {:.0} m", cost.duration_s, cost.length_m);
     match cost.delay_s {
-        Some(delay) => add(
-            "delay",
-            format!("{} s (arrives after {way})", signed(delay)),
-        ),
+        Some(delay) => {
+            let delay = signed(delay);
+            add("delay", format!("{delay} s (arrives after {way})"));
+        }
         None if plan.optimal_control.is_some() => {
             add("horizon", format!("{way}; no arrival is asked for"));
             let until = cost.space_time_error_until_s;
@@ -259,10 +252,8 @@ fn cost_lines(
         };
         let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
         let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
-        add(
-            "clearance",
-            format!("{clearance} m; after {end} {after} m within {hold} s"),
-        );
+        let text = format!("{clearance} m; after {end} {after} m within {hold} s");
+        add("clearance", text);
     }
     if let Some(distance) = cost.min_land_distance_m {
         add("land", format!("{distance:.1} m off"));
@@ -295,10 +286,8 @@ fn control_lines(
 ) {
     if !control.enclosed_targets.is_empty() {
         let names = control.enclosed_targets.join("', '");
-        add(
-            "sets",
-            format!("'{names}' enclosed in the smallest ellipses"),
-        );
+        let text = format!("'{names}' enclosed in the smallest ellipses");
+        add("sets", text);
     }
     let [first, last] = [control.start_intervals, control.intervals];
     if let Some(cost) = &plan.cost {
@@ -308,12 +297,10 @@ fn control_lines(
             _ => format!(", {first} were too coarse"),
         };
         let defect = control.defect.unwrap_or(f64::NAN);
-        add(
-            "grid",
-            format!(
-                "{last} intervals{coarse}; at their ends the ship is within {defect:.1e} of its units"
-            ),
+        let text = format!(
+            "{last} intervals{coarse}; at their ends the ship is within {defect:.1e} of its units"
         );
+        add("grid", text);
     }
     if control.starts.is_empty() {
         return;
@@ -321,12 +308,10 @@ fn control_lines(
     let feasible = control.starts.iter().filter(|s| s.feasible).count();
     let steps: usize = control.starts.iter().map(|s| s.iterations).sum();
     let all = control.starts.len();
-    add(
-        "starts",
-        format!(
-            "on {first} intervals: {feasible} of {all} led to a plan, in {steps} solver iterations"
-        ),
+    let text = format!(
+        "on {first} intervals: {feasible} of {all} led to a plan, in {steps} solver iterations"
     );
+    add("starts", text);
     let mut names: Vec<&str> = plan.obstacles.iter().map(|o| o.name.as_str()).collect();
     names.dedup();
     let ways = control.homotopy_classes.len();

@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument};
+use super::parts::{
+    InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument, segment,
+};
 use super::plan::{PlanDocument, segment_document, start};
 use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
@@ -339,10 +341,7 @@ fn memory_after(
             None => sailed.push(s),
         }
     }
-    let now = SteadyShip {
-        pose: own.pose,
-        speed: remainder.first().map_or(own.speed, |s| s.speed),
-    };
+    let now = SteadyShip::new(own.pose, remainder.first().map_or(own.speed, |s| s.speed));
     let manoeuvres = previous.manoeuvres.iter();
     let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
         .map(|m| PlannedManoeuvre::from(m).after(elapsed))
@@ -494,10 +493,7 @@ pub(crate) fn track(ship: &ShipDocument) -> ShipTrack {
             heading_from_course_deg(ship.course_deg),
         ),
         speed: ship.speed_mps,
-        hull: Hull {
-            length: ship.length_m,
-            beam: ship.beam_m,
-        },
+        hull: Hull::new(ship.length_m, ship.beam_m),
         position_std: ship.position_std_m,
         speed_spread: ship.speed_spread_mps,
         course_spread: radians_from_deg(ship.course_spread_deg),
@@ -619,19 +615,9 @@ pub(crate) fn state_document(time: f64, ship: &SteadyShip) -> StateDocument {
     }
 }
 
-fn pose(at: &StartDocument) -> Pose {
-    Pose::new(
-        Vector::new(at.east_m, at.north_m),
-        heading_from_course_deg(at.course_deg),
-    )
-}
-
 /// The state of a ship, at a time that counts from `elapsed` seconds later.
 pub(crate) fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
-    let ship = SteadyShip {
-        pose: pose(&state.at),
-        speed: state.speed_mps,
-    };
+    let ship = SteadyShip::new(state.at.pose(), state.speed_mps);
     (state.at.t_s - elapsed, ship)
 }
 
@@ -646,15 +632,4 @@ fn risk(known: &KnownRoleDocument, elapsed: f64) -> Option<Risk> {
         own,
         target: steady(&known.target, elapsed).1,
     })
-}
-
-/// The segment of a document.
-pub(crate) fn segment(document: &SegmentDocument) -> Segment {
-    Segment {
-        start: pose(&document.start),
-        start_time: document.start.t_s,
-        duration: document.duration_s,
-        speed: document.speed_mps,
-        turn_rate: -radians_from_deg(document.turn_rate_deg_per_s),
-    }
 }

@@ -34,7 +34,8 @@ pub use memory::{
     TargetMemoryDocument, remember,
 };
 #[cfg(feature = "recording")]
-pub(crate) use memory::{segment, steady, track};
+pub(crate) use memory::{steady, track};
+pub(crate) use parts::segment;
 pub use parts::*;
 pub use plan::control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,

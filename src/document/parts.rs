@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
+use crate::trajectory::Segment;
+
 /// Point in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PositionDocument {
@@ -124,6 +127,24 @@ pub struct SegmentDocument {
     pub duration_s: f64,
     pub speed_mps: f64,
     pub turn_rate_deg_per_s: f64,
+}
+
+impl StartDocument {
+    pub(crate) fn pose(&self) -> Pose {
+        let position = Vector::new(self.east_m, self.north_m);
+        Pose::new(position, heading_from_course_deg(self.course_deg))
+    }
+}
+
+/// The segment of a document.
+pub(crate) fn segment(document: &SegmentDocument) -> Segment {
+    Segment::new(
+        document.start.pose(),
+        document.start.t_s,
+        document.duration_s,
+        document.speed_mps,
+        radians_from_deg(-document.turn_rate_deg_per_s) + 0.0,
+    )
 }
 
 /// Pose at a time, with the speed from then on.

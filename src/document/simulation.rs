@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::encounter::ConductDocument;
-use super::memory::{StateDocument, segment, steady};
-use super::parts::{PositionDocument, SegmentDocument};
+use super::memory::{StateDocument, steady};
+use super::parts::{PositionDocument, SegmentDocument, segment};
 use crate::colregs::SteadyShip;
 use crate::frame::Pose;
 

@@ -6,7 +6,7 @@ use super::parts::{InitialSetDocument, PositionDocument, VelocitySetDocument};
 use super::plan::{plain, rows, vertices};
 use crate::frame::{course_deg_from_heading, deg_from_radians};
 use crate::geometry::ConvexSet;
-use crate::target::{Representation, ShipTrack, Target, TimedVelocitySet};
+use crate::target::{ShipTrack, Target, TimedVelocitySet};
 
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,11 +56,7 @@ pub(super) fn target(target: &Target) -> TargetDocument {
     let sets = target.sets();
     TargetDocument {
         name: target.name.clone(),
-        representation: match target.representation {
-            Representation::Polytope => "polytope",
-            Representation::Ellipsoid => "ellipsoid",
-        }
-        .to_owned(),
+        representation: target.representation.word().to_owned(),
         ship: target.ship().map(ship),
         initial_set: sets.map(|sets| initial_set(&sets.initial)),
         velocity_sets: sets

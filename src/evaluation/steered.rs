@@ -89,10 +89,8 @@ fn check(request: &Request, steering: &Steering) -> Vec<Violation> {
     found.limit("start time", "s", first.time.abs(), tolerance::TIME_S);
     let gap = (first.pose.position - own.pose.position).norm();
     found.limit("start position", "m from own ship", gap, tolerance::JOINT_M);
-    let (turn, unit) = (
-        wrap(first.pose.heading - own.pose.heading),
-        "rad from own ship's",
-    );
+    let turn = wrap(first.pose.heading - own.pose.heading);
+    let unit = "rad from own ship's";
     found.limit("start heading", unit, turn.abs(), tolerance::JOINT_RAD);
     let speed = (first.velocity - Vector::new(own.speed, 0.0)).norm() + first.yaw_rate.abs();
     let allowed = tolerance::LIMIT * own.speed.max(1.0);

@@ -5,9 +5,7 @@ use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
 use crate::geometry::fixtures::random_vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{
-    DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
-};
+use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
 use crate::vessel::OwnShip;
@@ -83,16 +81,14 @@ fn ship(y: f64, speed: f64) -> Target {
     Target {
         name: "other".to_owned(),
         motion: Motion::Ship(ShipTrack {
-            pose: Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
-            speed,
-            hull: Hull::new(60.0, 12.0),
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.02,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
-            domain: DomainKind::Hull,
+            ..ShipTrack::exact(
+                Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
+                speed,
+                Hull::new(60.0, 12.0),
+            )
         }),
         representation: Representation::Polytope,
     }
@@ -109,10 +105,8 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
     onward.start_time = segments[0].end_time();
     let mut other = ship(0.0, 0.0);
     if let Motion::Ship(track) = &mut other.motion {
-        track.pose = Pose::new(
-            segments[0].end().position + crate::frame::direction(0.75) * 14.0,
-            2.3,
-        );
+        let place = segments[0].end().position + crate::frame::direction(0.75) * 14.0;
+        track.pose = Pose::new(place, 2.3);
         (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
         track.hull = Hull::new(6.0, 1.0);
     }
@@ -128,10 +122,8 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
         .fold(f64::INFINITY, f64::min);
     let found = turned.min_clearance;
     assert!(scan < -1.0 && (found - scan).abs() < 0.01, "{found} {scan}");
-    let met = turned
-        .violations
-        .iter()
-        .find(|v| v.what.contains("hull of 'other'"));
+    let mut violations = turned.violations.iter();
+    let met = violations.find(|v| v.what.contains("hull of 'other'"));
     assert!((met.expect("met").time - 40.0).abs() < 1e-9);
 }
 
@@ -145,19 +137,13 @@ fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Eva
 
 /// First word of each violation.
 fn faults(segments: &[Segment]) -> Vec<String> {
-    words(&judge(
-        segments,
-        &[below(lowest() - 1e-3)],
-        &[ship(300.0, 5.0)],
-    ))
+    let sets = [below(lowest() - 1e-3)];
+    words(&judge(segments, &sets, &[ship(300.0, 5.0)]))
 }
 
 fn words(found: &Evaluation) -> Vec<String> {
-    let mut words: Vec<String> = found
-        .violations
-        .iter()
-        .map(|v| v.what.split(' ').next().unwrap_or_default().to_owned())
-        .collect();
+    let word = |what: &str| what.split(' ').next().unwrap_or_default().to_owned();
+    let mut words: Vec<String> = found.violations.iter().map(|v| word(&v.what)).collect();
     words.dedup();
     words
 }
@@ -190,10 +176,8 @@ fn a_plan_in_another_place_or_time_is_found() {
         faults(&s)
     };
     assert_eq!(shifted(|s| s.start.position.y += 2e-6), ["start"]);
-    assert_eq!(
-        shifted(|s| s.start.position.y += 2e-5),
-        ["start", "arrival:"]
-    );
+    let aside = shifted(|s| s.start.position.y += 2e-5);
+    assert_eq!(aside, ["start", "arrival:"]);
     assert_eq!(shifted(|s| s.start_time += 1e-6), ["start"]);
     assert_eq!(shifted(|s| s.start_time += 200.0), ["start", "arrival"]);
     let mut s = plan();
@@ -274,11 +258,8 @@ fn a_set_crossed_between_any_two_samples_is_found() {
         SpaceTimeSet::constant("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
-        assert_eq!(
-            words(&judge(&plan(), &[thin(half)], &[])),
-            ["set"],
-            "{half}"
-        );
+        let found = judge(&plan(), &[thin(half)], &[]);
+        assert_eq!(words(&found), ["set"], "{half}");
     }
 }
 

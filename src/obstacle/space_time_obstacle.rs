@@ -137,10 +137,8 @@ pub(super) fn largest_risk_of_parts<S: SpaceTimeObstacle + ?Sized>(
     {
         for sample in 0..=SAMPLES {
             let part = sample as f64 / SAMPLES as f64;
-            let (position, time) = (
-                piece.position(part),
-                piece.start_time + part * piece.duration,
-            );
+            let position = piece.position(part);
+            let time = piece.start_time + part * piece.duration;
             let risk = set.risk(position, time);
             if risk > peak.risk
                 && !(set.signed_distance(position, time).distance >= -tolerance::DEPTH_M)

@@ -26,7 +26,10 @@ pub use read::{
 };
 pub use write::{Compared, RecordingError, Simulated, write, write_comparison, write_simulation};
 
-use rerun::{EntityPath, EntityPathPart};
+use rerun::{EntityPath, EntityPathPart, RecordingStreamResult};
+
+/// What logging a part of a recording comes to.
+type Logged<T = ()> = RecordingStreamResult<T>;
 
 const APPLICATION: &str = "searoom";
 const TIMELINE: &str = "sim_time";

@@ -1,6 +1,6 @@
 //! Text of an assessment.
 
-use super::table::{Grid, plain};
+use super::table::{Grid, columns, plain};
 use crate::document::{AssessmentDocument, SectionDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
@@ -52,12 +52,12 @@ fn held(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
             format!("{:.3}", held.max_risk),
         ]
     });
-    let header = ["target", "dCPA\n[m]", "tCPA\n[s]", "largest\nrisk"];
+    let header = "target, dCPA\n[m], tCPA\n[s], largest\nrisk";
     format!(
         "Holding course {} at {:.2} m/s\n{}",
         course(situation.pose.heading),
         situation.speed,
-        table(&header, 1..4, rows)
+        table(header, 1..4, rows)
     )
 }
 
@@ -92,15 +92,7 @@ fn up(value: f64) -> f64 {
 }
 
 fn points(assessment: &AssessmentDocument) -> String {
-    let header = [
-        "target",
-        "east\n[m]",
-        "north\n[m]",
-        "t\n[s]",
-        "alpha",
-        "risk",
-        "inside",
-    ];
+    let header = "target, east\n[m], north\n[m], t\n[s], alpha, risk, inside";
     let rows = assessment.points.iter().flat_map(|point| {
         point.targets.iter().map(|risk| {
             vec![
@@ -114,18 +106,11 @@ fn points(assessment: &AssessmentDocument) -> String {
             ]
         })
     });
-    format!("Points\n{}", table(&header, 1..6, rows))
+    format!("Points\n{}", table(header, 1..6, rows))
 }
 
 fn velocities(assessment: &AssessmentDocument) -> String {
-    let header = [
-        "target",
-        "east\n[m/s]",
-        "north\n[m/s]",
-        "dCPA\n[m]",
-        "tCPA\n[s]",
-        "in velocity\nobstacle",
-    ];
+    let header = "target, east\n[m/s], north\n[m/s], dCPA\n[m], tCPA\n[s], in velocity\nobstacle";
     let rows = assessment.velocities.iter().flat_map(|velocity| {
         velocity.targets.iter().map(|approach| {
             vec![
@@ -138,19 +123,11 @@ fn velocities(assessment: &AssessmentDocument) -> String {
             ]
         })
     });
-    format!("Velocities, from t = 0 on\n{}", table(&header, 1..5, rows))
+    format!("Velocities, from t = 0 on\n{}", table(header, 1..5, rows))
 }
 
 fn sections(assessment: &AssessmentDocument) -> String {
-    let header = [
-        "target",
-        "t\n[s]",
-        "west\n[m]",
-        "east\n[m]",
-        "south\n[m]",
-        "north\n[m]",
-        "made of",
-    ];
+    let header = "target, t\n[s], west\n[m], east\n[m], south\n[m], north\n[m], made of";
     let rows = assessment.targets.iter().flat_map(|target| {
         target.sections.iter().map(|section| {
             let (time, [x, y], made_of) = extent(section);
@@ -159,7 +136,7 @@ fn sections(assessment: &AssessmentDocument) -> String {
             vec![name, number(time), west, east, south, north, made_of]
         })
     });
-    format!("Sections and their extents\n{}", table(&header, 1..6, rows))
+    format!("Sections and their extents\n{}", table(header, 1..6, rows))
 }
 
 /// Time, east and north intervals, and kind of a section.
@@ -200,12 +177,12 @@ fn number(value: f64) -> String {
 
 /// Formats a table without colours.
 fn table(
-    header: &[&'static str],
+    header: &'static str,
     numbers: std::ops::Range<usize>,
     rows: impl Iterator<Item = Vec<String>>,
 ) -> String {
     let grid = Grid {
-        header: header.to_vec(),
+        header: columns(header),
         numbers,
         rows: rows
             .map(|row| row.into_iter().map(plain).collect())

@@ -1,7 +1,7 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::{TIME_COLUMN, rules_broken};
-use super::table::{Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
+use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
+use super::table::{Grid, Styled, columns, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
@@ -37,23 +37,10 @@ pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
 /// Builds one row per entry; in a sweep, with the accepted risk.
 pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let mut grid = Grid {
-        header: vec![
-            "method",
-            "outcome",
-            "J\n[m²]",
-            "arc J\n[m²]",
-            "duration\n[s]",
-            "delay\n[s]",
-            "length\n[m]",
-            "clearance\n[m]",
-            "risk",
-            "largest\nturn",
-            "nodes\nexpanded",
-            TIME_COLUMN,
-            "verified",
-            "safe",
-            "breaks",
-        ],
+        header: columns(
+            "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
+             clearance\n[m], risk, largest\nturn, nodes\nexpanded, time\n[ms], verified, safe, breaks",
+        ),
         numbers: 2..12,
         rows: entries.iter().map(row).collect(),
     };
@@ -86,11 +73,7 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
         figure(|c| c.max_risk, risk_figure),
         or_dash(cost.map(|_| largest_turn(entry))),
         or_dash(entry.search_stats.map(|stats| stats.expanded.to_string())),
-        or_dash(
-            entry
-                .timing
-                .map(|timing| format!("{:.2}", 1e3 * timing.plan_s)),
-        ),
+        or_dash(entry.timing.map(milliseconds)),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
         yes_or_no(safe),
         rules_broken(
@@ -141,31 +124,11 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     lines
 }
 
-/// Columns of [`comparison_csv`].
-pub const COMPARISON_COLUMNS: [&str; 22] = [
-    "file",
-    "scenario",
-    "method",
-    "max_risk",
-    "outcome",
-    "verified",
-    "safe",
-    "arrived",
-    "space_time_error_m2",
-    "space_time_error_until_s",
-    "space_time_error_arc_length_m2",
-    "duration_s",
-    "delay_s",
-    "length_m",
-    "min_clearance_m",
-    "largest_risk",
-    "largest_turn_deg",
-    "largest_turn_side",
-    "breaks",
-    "expanded",
-    "plan_ms",
-    "reason",
-];
+/// Columns of [`comparison_csv`], with commas between them.
+pub const COMPARISON_COLUMNS: &str = "file,scenario,method,max_risk,outcome,verified,safe,arrived,\
+    space_time_error_m2,space_time_error_until_s,space_time_error_arc_length_m2,duration_s,delay_s,\
+    length_m,min_clearance_m,largest_risk,largest_turn_deg,largest_turn_side,breaks,expanded,\
+    plan_ms,reason";
 
 /// Builds a row of values in the order of [`COMPARISON_COLUMNS`]; missing values are empty.
 pub fn comparison_csv(

@@ -1,9 +1,9 @@
 //! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
-use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
-    EncounterDocument, PlanDocument, SuiteRunDocument, breaks, headline, met, passing, plan_lines,
-    turn,
+    EncounterDocument, PlanDocument, SuiteRunDocument, TimingDocument, breaks, headline, met,
+    passing, plan_lines, turn,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -22,22 +22,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     Grid {
-        header: vec![
-            "scenario",
-            "outcome",
-            "encounter",
-            "turn",
-            "passing",
-            "J\n[m²]",
-            "delay\n[s]",
-            "clearance\n[m]",
-            "risk",
-            "breaks",
-            "nodes\nexpanded",
-            TIME_COLUMN,
-            "verified",
-            "safe",
-        ],
+        header: columns(
+            "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], clearance\n[m], \
+             risk, breaks, nodes\nexpanded, time\n[ms], verified, safe",
+        ),
         numbers: 5..12,
         rows: runs.iter().map(suite_row).collect(),
     }
@@ -72,13 +60,14 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
         or_dash(risks.max_by(f64::total_cmp).map(risk_figure)),
         rules_broken(breaks(&run.encounters)),
         or_dash(run.search_stats.map(|stats| stats.expanded.to_string())),
-        or_dash(
-            run.timing
-                .map(|timing| format!("{:.2}", 1e3 * timing.plan_s)),
-        ),
+        or_dash(run.timing.map(milliseconds)),
         verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
         yes_or_no(cost.map(|_| run.safe)),
     ]
+}
+
+pub(super) fn milliseconds(timing: TimingDocument) -> String {
+    format!("{:.2}", 1e3 * timing.plan_s)
 }
 
 /// The broken rules of both judges.

@@ -191,8 +191,8 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             plain(target.name.clone()),
             lines(scores.collect(), Tone::Plain),
             lines(violations.collect(), Tone::Bad),
-            lines(monitors(MonitorVerdict::Satisfied.name()), Tone::Plain),
-            lines(monitors(MonitorVerdict::Violated.name()), Tone::Bad),
+            lines(monitors(MonitorVerdict::Satisfied.word()), Tone::Plain),
+            lines(monitors(MonitorVerdict::Violated.word()), Tone::Bad),
         ]
     });
     Grid {

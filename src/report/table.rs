@@ -16,6 +16,11 @@ pub(super) enum Tone {
 /// Text with its rating.
 pub(super) type Styled = (String, Tone);
 
+/// Column names of a table, from a text with `, ` between them.
+pub(super) fn columns(names: &'static str) -> Vec<&'static str> {
+    names.split(", ").collect()
+}
+
 /// Rows under named columns.
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.

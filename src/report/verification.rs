@@ -1,6 +1,6 @@
 //! Text of a plan document's verification.
 
-use super::table::{Grid, Tone, or_dash, plain};
+use super::table::{Grid, Tone, columns, or_dash, plain};
 use crate::evaluation::{Violation, facts, outcome_word};
 use crate::text::{printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
@@ -134,14 +134,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
             ]
         });
     let grid = Grid {
-        header: vec![
-            "target",
-            "margin\n[m]",
-            "at\n[s]",
-            "clearance\n[m]",
-            "dCPA\n[m]",
-            "tCPA\n[s]",
-        ],
+        header: columns("target, margin\n[m], at\n[s], clearance\n[m], dCPA\n[m], tCPA\n[s]"),
         numbers: 1..6,
         rows: rows.collect(),
     };

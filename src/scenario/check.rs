@@ -147,10 +147,7 @@ pub(super) fn pose(table: &mut Table, plane: &Plane) -> Option<Pose> {
 pub(super) fn hull(table: &mut Table) -> Option<Hull> {
     let length = table.required_number("length_m", limits::LENGTH);
     let beam = table.required_number("beam_m", limits::LENGTH);
-    Some(Hull {
-        length: length?,
-        beam: beam?,
-    })
+    Some(Hull::new(length?, beam?))
 }
 
 /// Own ship; its speed and margin are known even if another field is faulty.

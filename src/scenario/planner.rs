@@ -65,25 +65,17 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
 
 /// The objective; only the one that weighs risk has a weight, and needs it.
 fn objective(table: &mut Table) -> Option<Objective> {
+    use Objective::{Length, SpaceTimeError, Time};
     let weighed = Objective::LengthRisk { weight: 0.0 };
-    let all = [
-        Objective::SpaceTimeError,
-        Objective::Time,
-        Objective::Length,
-        weighed,
-    ];
-    let objective = table.choice(
-        "objective",
-        &all.map(|objective| (objective.word(), objective)),
-    );
+    let all =
+        [SpaceTimeError, Time, Length, weighed].map(|objective| (objective.word(), objective));
+    let objective = table.choice("objective", &all);
     if objective == Some(weighed) {
         let weight = table.required_number("risk_weight_m", limits::DISTANCE)?;
         return Some(Objective::LengthRisk { weight });
     }
-    table.forbid(
-        "risk_weight_m",
-        "nothing: only the objective \"length-risk\" weighs risk",
-    );
+    let because = "nothing: only the objective \"length-risk\" weighs risk";
+    table.forbid("risk_weight_m", because);
     objective
 }
 
@@ -146,10 +138,8 @@ fn weights<const N: usize>(field: &Field, range: Range) -> Option<[f64; N]> {
     let weights = <[f64; N]>::try_from(numbers).ok();
     if weights.is_none() {
         let plural = if count == 1 { "" } else { "s" };
-        field.fault(
-            format_args!("{count} number{plural}"),
-            format_args!("{N} numbers"),
-        );
+        let found = format_args!("{count} number{plural}");
+        field.fault(found, format_args!("{N} numbers"));
     }
     weights
 }

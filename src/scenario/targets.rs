@@ -106,9 +106,11 @@ fn role(
     };
     let (own, since) = (own?, since? - time?);
     let heading = course.unwrap_or(own.pose.heading);
-    let at = |pose: Pose, speed: f64| SteadyShip {
-        pose: Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
-        speed,
+    let at = |pose: Pose, speed: f64| {
+        SteadyShip::new(
+            Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
+            speed,
+        )
     };
     Some(Some(Risk {
         role,
@@ -126,12 +128,8 @@ struct Known {
 
 fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
     let asked = table.take("representation");
-    let representation = asked.as_ref().map(|field| {
-        field.choice(&[
-            ("polytope", Representation::Polytope),
-            ("ellipsoid", Representation::Ellipsoid),
-        ])
-    });
+    let representation = asked.as_ref();
+    let representation = representation.map(|field| field.choice(Representation::WORDS));
     let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| table.has(key));
     let motion = if explicit.contains(&true) {
         explicit_sets::sets(table).map(Motion::Sets)

@@ -7,6 +7,7 @@ use crate::frame::mps_from_knots;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::planner::ControlSettings;
 use crate::target::{DomainKind, Motion, Representation, Uncertainty};
+use crate::text::rows;
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 const SCENARIO: &str = r#"
@@ -93,94 +94,51 @@ fn explicit_sets_are_taken_as_they_are() {
     assert_eq!(paths(&hull), ["targets[0].length_m"]);
 }
 
+/// A text of the least file, what replaces it (`\n` for a new line), and the place of the fault.
+const MISTAKES: &str = r#"
+    title = "least" | | title
+    title = | tilte = | tilte
+    horizon_s = 400 | horizon_s = -inf | horizon_s
+    horizon_s = 400 | horizon_s = 1e999 | horizon_s
+    course_deg = 90 | course_deg = 361 | own_ship.course_deg
+    course_deg = 90 | course = 90 | own_ship.course
+    speed_mps = 5 | speed_kn = 5\nspeed_mps = 5 | own_ship.speed_kn
+    speed_mps = 5 | speed_mps = 1_000 | own_ship.speed_mps
+    speed_mps = 5 | speed_mps = "5" | own_ship.speed_mps
+    speed_mps = 5 | | own_ship.speed_mps
+    beam_m = 8 | beam_m = 8\nspeeds_mps = [] | own_ship.speeds_mps
+    beam_m = 8 | beam_m = 8\nspeeds_mps = [0, 0] | own_ship.speeds_mps
+    beam_m = 8 | beam_m = 8\nspeeds_mps = [-1, 2] | own_ship.speeds_mps[0]
+    _radius_m = 100 | _radius_m = 0 | own_ship.turning_radius_m
+    east_m = 1500, north_m = 0 } | east_m = 0, north_m = 0 } | mission.waypoints[1]
+    [mission] | [mission]\nleg_speeds_mps = [1] | mission.leg_speeds_mps
+    [mission] | [mission]\nleg_speeds_mps = [1, 2]\nspeed_kn = 1 | mission.leg_speeds_mps
+    [mission] | [mission]\nspeed_mps = 0 | mission.speed_mps
+"#;
+
+/// The same for a target; more faults may follow.
+const SHIP_MISTAKES: &str = r#"
+    "ship" | " " | targets[0].name
+    beam_m | speed_spread_mps = -0.1\nbeam_m | targets[0].speed_spread_mps
+    beam_m | course_spread_deg = 181\nbeam_m | targets[0].course_spread_deg
+    beam_m | position_std_m = nan\nbeam_m | targets[0].position_std_m
+    beam_m | domain = "round"\nbeam_m | targets[0].domain
+    beam_m | velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m | targets[0].initial_set
+"#;
+
 #[test]
 fn one_mistake_is_one_fault() {
-    for (from, to, path) in [
-        ("title = \"least\"", "", "title"),
-        ("title =", "tilte =", "tilte"),
-        ("horizon_s = 400", "horizon_s = -inf", "horizon_s"),
-        ("horizon_s = 400", "horizon_s = 1e999", "horizon_s"),
-        ("course_deg = 90", "course_deg = 361", "own_ship.course_deg"),
-        ("course_deg = 90", "course = 90", "own_ship.course"),
-        (
-            "speed_mps = 5",
-            "speed_kn = 5\nspeed_mps = 5",
-            "own_ship.speed_kn",
-        ),
-        ("speed_mps = 5", "speed_mps = 1_000", "own_ship.speed_mps"),
-        ("speed_mps = 5", "speed_mps = \"5\"", "own_ship.speed_mps"),
-        ("speed_mps = 5", "", "own_ship.speed_mps"),
-        (
-            "beam_m = 8",
-            "beam_m = 8\nspeeds_mps = []",
-            "own_ship.speeds_mps",
-        ),
-        (
-            "beam_m = 8",
-            "beam_m = 8\nspeeds_mps = [0, 0]",
-            "own_ship.speeds_mps",
-        ),
-        (
-            "beam_m = 8",
-            "beam_m = 8\nspeeds_mps = [-1, 2]",
-            "own_ship.speeds_mps[0]",
-        ),
-        (
-            "_radius_m = 100",
-            "_radius_m = 0",
-            "own_ship.turning_radius_m",
-        ),
-        (
-            "east_m = 1500, north_m = 0 }",
-            "east_m = 0, north_m = 0 }",
-            "mission.waypoints[1]",
-        ),
-        (
-            "[mission]",
-            "[mission]\nleg_speeds_mps = [1]",
-            "mission.leg_speeds_mps",
-        ),
-        (
-            "[mission]",
-            "[mission]\nleg_speeds_mps = [1, 2]\nspeed_kn = 1",
-            "mission.leg_speeds_mps",
-        ),
-        ("[mission]", "[mission]\nspeed_mps = 0", "mission.speed_mps"),
-    ] {
+    for [from, to, path] in rows(MISTAKES) {
         assert!(SCENARIO.contains(from), "{from}");
-        assert_eq!(paths(&SCENARIO.replacen(from, to, 1)), [path], "{to}");
+        let text = SCENARIO.replacen(from, &to.replace("\\n", "\n"), 1);
+        assert_eq!(paths(&text), [path], "{to}");
     }
-    for (from, to, path) in [
-        ("\"ship\"", "\" \"", "targets[0].name"),
-        (
-            "beam_m",
-            "speed_spread_mps = -0.1\nbeam_m",
-            "targets[0].speed_spread_mps",
-        ),
-        (
-            "beam_m",
-            "course_spread_deg = 181\nbeam_m",
-            "targets[0].course_spread_deg",
-        ),
-        (
-            "beam_m",
-            "position_std_m = nan\nbeam_m",
-            "targets[0].position_std_m",
-        ),
-        ("beam_m", "domain = \"round\"\nbeam_m", "targets[0].domain"),
-        (
-            "beam_m",
-            "velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m",
-            "targets[0].initial_set",
-        ),
-    ] {
-        let text = format!("{SCENARIO}{}", SHIP.replacen(from, to, 1));
-        assert_eq!(paths(&text)[0], path, "{to}");
+    for [from, to, path] in rows(SHIP_MISTAKES) {
+        let ship = SHIP.replacen(from, &to.replace("\\n", "\n"), 1);
+        assert_eq!(paths(&format!("{SCENARIO}{ship}"))[0], path, "{to}");
     }
-    assert_eq!(
-        paths(&format!("{SCENARIO}{SHIP}{SHIP}")),
-        ["targets[1].name"]
-    );
+    let twice = format!("{SCENARIO}{SHIP}{SHIP}");
+    assert_eq!(paths(&twice), ["targets[1].name"]);
 }
 
 #[test]
@@ -222,7 +180,7 @@ const ROUND: &str =
     "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[0.1, 0], [0, 0]] }\n";
 
 fn with_sets(sets: &[&str]) -> Result<Scenario, Vec<String>> {
-    Scenario::parse(&format!("{WITH_SETS}{}", sets.concat())).map_err(|faults| {
+    Scenario::parse(&format!("{WITH_SETS}{}", sets.join("\n"))).map_err(|faults| {
         let short = |path: &str| path.replace("targets[0].", "");
         faults.iter().map(|f| short(&f.path)).collect()
     })
@@ -249,88 +207,39 @@ fn every_kind_is_read() {
     assert!((at.x - (700.0 + 10.0 / 3.0 + 60.0)).abs() < 1e-9);
 }
 
+/// Sets, separated by `;`, and the places of their faults.
+const SET_MISTAKES: &str = r#"
+    ELLIPSE; VELOCITIES | velocity_set
+    POLYGON; ROUND | velocity_set
+    POLYGON | velocity_set
+    VELOCITIES | initial_set
+    initial_set = { center_m = [1, 2], shape_m2 = [[9, 1], [2, 4]] }; velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[1, 2], [2, 1]] } | initial_set.shape_m2 velocity_set.shape_m2_per_s2
+    initial_set = { center_m = [1, inf], shape_m2 = [[9, 1], [2]] }; velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = 4 } | initial_set.center_m[1] initial_set.shape_m2[1] velocity_set.shape_m2_per_s2
+    initial_set = { center_m = [1, 2], shape_m2 = [[9]], vertices_m = [[1, 2]] }; ROUND | initial_set.shape_m2 initial_set.vertices_m
+    POLYGON; velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { until_s = 60, vertices_mps = [] }, { until_s = 70, vertices_mps = [[0, 0]] }] | velocity_sets[1].until_s velocity_sets[1].vertices_mps velocity_sets[2].until_s
+    POLYGON; velocity_sets = [{ vertices_mps = [[1, 0]] }, {}] | velocity_sets[0].until_s velocity_sets[1].vertices_mps
+    POLYGON; velocity_sets = [] | velocity_sets
+    ELLIPSE; velocity_sets = [{ vertices_mps = [[1, 0]] }] | velocity_sets[0]
+    POLYGON; VELOCITIES; velocity_sets = [{ vertices_mps = [[1, 0]] }] | velocity_set
+    ELLIPSE; ROUND; representation = "polytope" | representation
+    POLYGON; velocity_sets = [{ until_s = 9, vertices_mps = [[1, 0]] }, { vertices_mps = [[1, 0]] }]; representation = "ellipsoid" | representation
+    POLYGON; VELOCITIES; turn_rate_deg_per_s = 0 | turn_rate_deg_per_s
+"#;
+
 #[test]
 fn every_mistake_is_one_fault_with_its_place() {
-    for (sets, paths) in [
-        (vec![ELLIPSE, VELOCITIES], vec!["velocity_set"]),
-        (vec![POLYGON, ROUND], vec!["velocity_set"]),
-        (vec![POLYGON], vec!["velocity_set"]),
-        (vec![VELOCITIES], vec!["initial_set"]),
-        (
-            vec![
-                "initial_set = { center_m = [1, 2], shape_m2 = [[9, 1], [2, 4]] }\n",
-                "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[1, 2], [2, 1]] }",
-            ],
-            vec!["initial_set.shape_m2", "velocity_set.shape_m2_per_s2"],
-        ),
-        (
-            vec![
-                "initial_set = { center_m = [1, inf], shape_m2 = [[9, 1], [2]] }\n",
-                "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = 4 }",
-            ],
-            vec![
-                "initial_set.center_m[1]",
-                "initial_set.shape_m2[1]",
-                "velocity_set.shape_m2_per_s2",
-            ],
-        ),
-        (
-            vec![
-                "initial_set = { center_m = [1, 2], shape_m2 = [[9]], vertices_m = [[1, 2]] }\n",
-                ROUND,
-            ],
-            vec!["initial_set.vertices_m", "initial_set.shape_m2"],
-        ),
-        (
-            vec![
-                POLYGON,
-                "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { until_s = 60, vertices_mps = [] }, { until_s = 70, vertices_mps = [[0, 0]] }]",
-            ],
-            vec![
-                "velocity_sets[1].until_s",
-                "velocity_sets[1].vertices_mps",
-                "velocity_sets[2].until_s",
-            ],
-        ),
-        (
-            vec![POLYGON, "velocity_sets = [{ vertices_mps = [[1, 0]] }, {}]"],
-            vec!["velocity_sets[0].until_s", "velocity_sets[1].vertices_mps"],
-        ),
-        (vec![POLYGON, "velocity_sets = []"], vec!["velocity_sets"]),
-        (
-            vec![ELLIPSE, "velocity_sets = [{ vertices_mps = [[1, 0]] }]"],
-            vec!["velocity_sets[0]"],
-        ),
-        (
-            vec![
-                POLYGON,
-                VELOCITIES,
-                "velocity_sets = [{ vertices_mps = [[1, 0]] }]",
-            ],
-            vec!["velocity_set"],
-        ),
-        (
-            vec![ELLIPSE, ROUND, "representation = \"polytope\""],
-            vec!["representation"],
-        ),
-        (
-            vec![
-                POLYGON,
-                "velocity_sets = [{ until_s = 9, vertices_mps = [[1, 0]] }, { vertices_mps = [[1, 0]] }]\n",
-                "representation = \"ellipsoid\"",
-            ],
-            vec!["representation"],
-        ),
-        (
-            vec![POLYGON, VELOCITIES, "turn_rate_deg_per_s = 0"],
-            vec!["turn_rate_deg_per_s"],
-        ),
-    ] {
-        let mut found = with_sets(&sets).expect_err("faulty");
+    for [sets, paths] in rows(SET_MISTAKES) {
+        let named = |set| match set {
+            "ELLIPSE" => ELLIPSE,
+            "POLYGON" => POLYGON,
+            "VELOCITIES" => VELOCITIES,
+            "ROUND" => ROUND,
+            set => set,
+        };
+        let texts: Vec<&str> = sets.split("; ").map(named).collect();
+        let mut found = with_sets(&texts).expect_err("faulty");
         found.sort();
-        let mut paths = paths.clone();
-        paths.sort();
-        assert_eq!(found, paths, "{sets:?}");
+        assert_eq!(found.join(" "), paths, "{sets}");
     }
 }
 
@@ -459,32 +368,26 @@ fn what_is_left_out_is_that_of_the_ship() {
     assert_eq!(given.force_weights, ForceVector::new(7.0, 8.0, 9.0));
 }
 
+/// A table, and the key of its fault.
+const CONTROL_MISTAKES: &str = r#"
+    vessel = "tanker" | vessel
+    intervals = 0 | intervals
+    intervals = 12.5 | intervals
+    intervals = 2001 | intervals
+    force_limits = { surge_n = 0, sway_n = 1, yaw_nm = 1 } | force_limits.surge_n
+    force_limits = { surge_n = 1, sway_n = -1, yaw_nm = 1 } | force_limits.sway_n
+    force_limits = { surge_n = 1, sway_n = 1 } | force_limits.yaw_nm
+    state_weights = [1, 1, 1, 1, 1] | state_weights
+    state_weights = [1, 1, -1, 1, 1, 1] | state_weights[2]
+    state_weights = [0, 0, 0, 0, 0, 0] | state_weights
+    control_weights = [1, 0, 1] | control_weights[1]
+    control_weights = [1, nan, 1] | control_weights[1]
+    weights = [1] | weights
+"#;
+
 #[test]
 fn one_mistake_in_the_control_table_is_one_fault() {
-    for (table, path) in [
-        ("vessel = \"tanker\"", "vessel"),
-        ("intervals = 0", "intervals"),
-        ("intervals = 12.5", "intervals"),
-        ("intervals = 2001", "intervals"),
-        (
-            "force_limits = { surge_n = 0, sway_n = 1, yaw_nm = 1 }",
-            "force_limits.surge_n",
-        ),
-        (
-            "force_limits = { surge_n = 1, sway_n = -1, yaw_nm = 1 }",
-            "force_limits.sway_n",
-        ),
-        (
-            "force_limits = { surge_n = 1, sway_n = 1 }",
-            "force_limits.yaw_nm",
-        ),
-        ("state_weights = [1, 1, 1, 1, 1]", "state_weights"),
-        ("state_weights = [1, 1, -1, 1, 1, 1]", "state_weights[2]"),
-        ("state_weights = [0, 0, 0, 0, 0, 0]", "state_weights"),
-        ("control_weights = [1, 0, 1]", "control_weights[1]"),
-        ("control_weights = [1, nan, 1]", "control_weights[1]"),
-        ("weights = [1]", "weights"),
-    ] {
+    for [table, path] in rows(CONTROL_MISTAKES) {
         let path = format!("planner.optimal_control.{path}");
         assert_eq!(settings(table), Err(vec![path]), "{table}");
     }

@@ -3,16 +3,13 @@ use rand::{Rng, SeedableRng};
 
 fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
     ShipTrack {
-        pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
-        speed: rng.random_range(0.0..10.0),
-        hull: Hull::new(50.0, 10.0),
-        position_std: 0.0,
         speed_spread: rng.random_range(0.0..3.0),
         course_spread: rng.random_range(0.0..1.0),
-        turn_rate: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
-        domain: DomainKind::Hull,
+        ..ShipTrack::exact(
+            Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+            rng.random_range(0.0..10.0),
+            Hull::new(50.0, 10.0),
+        )
     }
 }
 

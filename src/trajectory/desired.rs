@@ -94,10 +94,8 @@ impl DesiredTrajectory {
         let mut legs = Vec::with_capacity(waypoints.len() - 1);
         for (index, pair) in waypoints.windows(2).enumerate() {
             let step = pair[1] - pair[0];
-            let (length, speed) = (
-                step.norm(),
-                leg_speeds.get(index).copied().unwrap_or(f64::NAN),
-            );
+            let length = step.norm();
+            let speed = leg_speeds.get(index).copied().unwrap_or(f64::NAN);
             if !(length > 0.0 && speed > 0.0 && length.is_finite() && speed.is_finite()) {
                 return Err(TrajectoryError::EmptyLeg { index });
             }
@@ -295,10 +293,8 @@ mod tests {
         let q = 25.0;
         for i in 0..200 {
             let k = f64::from(i);
-            let (x, t) = (
-                Vector::new(700.0 * (k * 0.7).sin(), 300.0 * (k * 1.3).cos()),
-                k * 1.1 - 10.0,
-            );
+            let x = Vector::new(700.0 * (k * 0.7).sin(), 300.0 * (k * 1.3).cos());
+            let t = k * 1.1 - 10.0;
             let found = desired.nearest(x, t, q).error;
             let scan = (0..=40_000)
                 .map(|j| {

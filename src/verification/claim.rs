@@ -8,9 +8,7 @@ use crate::document::{OwnShipDocument, PositionDocument, planner_names};
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
-use crate::target::{
-    DomainKind, Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
-};
+use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use crate::text::short_numbers;
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
@@ -96,6 +94,12 @@ impl Claim {
         relaxations.any(|r| r.kind == ARRIVAL)
     }
 
+    /// Time after the end of the motion over which a clearance is reported, seconds.
+    pub fn arrival_hold(&self) -> f64 {
+        let cost = self.file.cost.as_ref();
+        cost.and_then(|cost| cost.arrival_hold_s).unwrap_or(0.0)
+    }
+
     /// Parses a document; the error is the first field that is unreadable or invalid.
     pub fn read(text: &str) -> Result<Self, ClaimError> {
         let file: PlanFile = parse(text)?;
@@ -106,54 +110,32 @@ impl Claim {
         word("compliance", &file.compliance, &COMPLIANCES)?;
         word("objective", &file.objective, &OBJECTIVES)?;
         word("outcome", &file.outcome, &OUTCOMES)?;
-        within(
-            "horizon_s",
-            file.horizon_s,
-            f64::MIN_POSITIVE,
-            f64::INFINITY,
-        )?;
+        positive("horizon_s", file.horizon_s)?;
         let hold = file.cost.as_ref().and_then(|cost| cost.arrival_hold_s);
-        within(
-            "cost.arrival_hold_s",
-            hold.unwrap_or(0.0),
-            0.0,
-            LONGEST_HOLD_S,
-        )?;
+        let hold = hold.unwrap_or(0.0);
+        within("cost.arrival_hold_s", hold, 0.0, LONGEST_HOLD_S)?;
         within("max_risk", file.max_risk, 0.0, 1.0 - f64::EPSILON)?;
-        within(
-            "time_weight_m2_per_s2",
-            file.time_weight_m2_per_s2,
-            0.0,
-            f64::INFINITY,
-        )?;
+        not_negative("time_weight_m2_per_s2", file.time_weight_m2_per_s2)?;
         let own = own_ship(&file.own_ship)?;
-        let waypoints: Vec<Vector> = file.mission.waypoints.iter().copied().map(point).collect();
-        let speeds = file.mission.leg_speeds_mps.len();
+        let mission = &file.mission;
+        let waypoints: Vec<Vector> = mission.waypoints.iter().copied().map(point).collect();
+        let speeds = mission.leg_speeds_mps.len();
         if speeds + 1 != waypoints.len() {
             let found = format!("{speeds} speeds for {} waypoints", waypoints.len());
-            return Err(fault(
-                "mission.leg_speeds_mps",
-                found,
-                "a speed for each leg",
-            ));
+            let allowed = "a speed for each leg";
+            return Err(fault("mission.leg_speeds_mps", found, allowed));
         }
-        let desired =
-            DesiredTrajectory::new(&waypoints, &file.mission.leg_speeds_mps).map_err(|e| {
-                fault(
-                    "mission",
-                    format!("what makes no way ({e})"),
-                    "at least two waypoints, with a speed for each leg",
-                )
-            })?;
+        let desired = DesiredTrajectory::new(&waypoints, &mission.leg_speeds_mps);
+        let desired = desired.map_err(|e| {
+            let allowed = "at least two waypoints, with a speed for each leg";
+            fault("mission", format!("what makes no way ({e})"), allowed)
+        })?;
         let paths = (file.planner == PATH_TIME).then(|| {
-            let others = file.mission.alternatives.iter();
+            let others = mission.alternatives.iter();
             let others = others.map(|path| path.iter().copied().map(point).collect());
             std::iter::once(waypoints).chain(others).collect()
         });
-        let targets = file
-            .targets
-            .iter()
-            .enumerate()
+        let targets = (file.targets.iter().enumerate())
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
         let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
@@ -164,10 +146,7 @@ impl Claim {
             not_negative(&at("amount"), relaxation.amount)?;
         }
         let (sets, mut faults) = sets::read(&file.obstacles, &file.relaxations, file.horizon_s)?;
-        let land = file
-            .land
-            .iter()
-            .enumerate()
+        let land = (file.land.iter().enumerate())
             .map(|(index, ring)| {
                 let ring: Vec<Vector> = ring.iter().copied().map(vector).collect();
                 Polygon::new(&[ring]).map_err(|e| fault(&format!("land[{index}]"), e, "a polygon"))
@@ -193,14 +172,6 @@ const FASTEST_MPS: f64 = 100.0;
 
 /// Longest arrival hold in seconds, equal to that of scenarios.
 const LONGEST_HOLD_S: f64 = 1e6;
-
-impl Claim {
-    /// Time after the end of the motion over which a clearance is reported, seconds.
-    pub fn arrival_hold(&self) -> f64 {
-        let cost = self.file.cost.as_ref();
-        cost.and_then(|cost| cost.arrival_hold_s).unwrap_or(0.0)
-    }
-}
 
 /// Explains why a text was not parsed: invalid JSON, another kind of document, or a plan document
 /// with a broken field.
@@ -273,20 +244,12 @@ pub(super) fn vector([x, y]: [f64; 2]) -> Vector {
 fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     let mut least = 0.0;
     for (index, speed) in own.speeds_mps.iter().enumerate() {
-        within(
-            &format!("own_ship.speeds_mps[{index}]"),
-            *speed,
-            least,
-            f64::INFINITY,
-        )?;
-        least = *speed;
+        let path = format!("own_ship.speeds_mps[{index}]");
+        least = within(&path, *speed, least, f64::INFINITY)?;
     }
     if !(least > 0.0) {
-        return Err(fault(
-            "own_ship.speeds_mps",
-            "no speed above 0",
-            "increasing speeds, the last one positive",
-        ));
+        let allowed = "increasing speeds, the last one positive";
+        return Err(fault("own_ship.speeds_mps", "no speed above 0", allowed));
     }
     not_negative("own_ship.land_margin_m", own.land_margin_m)?;
     Ok(OwnShip {
@@ -311,75 +274,62 @@ pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<ConvexSet, ClaimErr
                 .map(ConvexSet::Polygon)
                 .map_err(|e| fault(path, e, "the vertices of a convex polygon"))
         }
-        (None, Some(center), Some([a, b])) => Ellipse::new(
-            vector(center),
-            nalgebra::Matrix2::new(a[0], a[1], b[0], b[1]),
-        )
-        .map(ConvexSet::Ellipse)
-        .map_err(|e| fault(path, e, "a centre and a shape matrix")),
-        _ => Err(fault(
-            path,
-            "neither vertices alone nor centre and shape alone",
-            "one of the two",
-        )),
+        (None, Some(center), Some([a, b])) => {
+            let shape = nalgebra::Matrix2::new(a[0], a[1], b[0], b[1]);
+            Ellipse::new(vector(center), shape)
+                .map(ConvexSet::Ellipse)
+                .map_err(|e| fault(path, e, "a centre and a shape matrix"))
+        }
+        _ => {
+            let found = "neither vertices alone nor centre and shape alone";
+            Err(fault(path, found, "one of the two"))
+        }
     }
 }
 
 fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
-    let representation = match target.representation.as_str() {
-        "polytope" => Representation::Polytope,
-        "ellipsoid" => Representation::Ellipsoid,
-        other => {
-            let field = format!("{path}.representation");
-            return Err(fault(&field, format!("'{other}'"), "polytope, ellipsoid"));
-        }
+    let found = target.representation.as_str();
+    let mut known = Representation::WORDS.iter();
+    let Some((_, representation)) = known.find(|(word, _)| *word == found) else {
+        let field = format!("{path}.representation");
+        return Err(fault(&field, format!("'{found}'"), "polytope, ellipsoid"));
     };
     let motion = match (&target.ship, &target.initial_set) {
         (Some(ship), None) if target.velocity_sets.is_empty() => {
             let at = |key: &str| format!("{path}.ship.{key}");
+            let number = |key: &str, value: f64| not_negative(&at(key), value);
+            let heading = heading_from_course_deg(ship.course_deg);
+            let speed = number("speed_mps", ship.speed_mps)?;
+            let (length, beam) = (ship.length_m, ship.beam_m);
+            let hull = Hull::new(number("length_m", length)?, number("beam_m", beam)?);
+            let position_std = number("position_std_m", ship.position_std_m)?;
+            let speed_spread = number("speed_spread_mps", ship.speed_spread_mps)?;
+            let spread = &at("course_spread_deg");
+            let course_spread = within(spread, ship.course_spread_deg, 0.0, 180.0)?;
+            let turn_rate = number("turn_rate_deg_per_s", ship.turn_rate_deg_per_s)?;
             Motion::Ship(ShipTrack {
-                pose: Pose::new(
-                    point(ship.position),
-                    heading_from_course_deg(ship.course_deg),
-                ),
-                speed: not_negative(&at("speed_mps"), ship.speed_mps)?,
-                hull: Hull::new(
-                    not_negative(&at("length_m"), ship.length_m)?,
-                    not_negative(&at("beam_m"), ship.beam_m)?,
-                ),
-                position_std: not_negative(&at("position_std_m"), ship.position_std_m)?,
-                speed_spread: not_negative(&at("speed_spread_mps"), ship.speed_spread_mps)?,
-                course_spread: radians_from_deg(within(
-                    &at("course_spread_deg"),
-                    ship.course_spread_deg,
-                    0.0,
-                    180.0,
-                )?),
-                turn_rate: radians_from_deg(not_negative(
-                    &at("turn_rate_deg_per_s"),
-                    ship.turn_rate_deg_per_s,
-                )?),
+                position_std,
+                speed_spread,
+                course_spread: radians_from_deg(course_spread),
+                turn_rate: radians_from_deg(turn_rate),
                 // The ship domain is no part of the proof.
                 kept_positions: kept(&at("kept_positions"), ship.kept_positions.as_ref())?,
                 kept_velocities: kept(&at("kept_velocities"), ship.kept_velocities.as_ref())?,
-                domain: DomainKind::Hull,
+                ..ShipTrack::exact(Pose::new(point(ship.position), heading), speed, hull)
             })
         }
         (None, Some(initial)) if !target.velocity_sets.is_empty() => {
             explicit(path, initial, target)?
         }
         _ => {
-            return Err(fault(
-                path,
-                "neither a ship alone nor an initial set with velocity sets",
-                "one of the two",
-            ));
+            let found = "neither a ship alone nor an initial set with velocity sets";
+            return Err(fault(path, found, "one of the two"));
         }
     };
     Ok(Target {
         name: target.name.clone(),
         motion,
-        representation,
+        representation: *representation,
     })
 }
 
@@ -402,28 +352,22 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
         let field = format!("{path}.velocity_sets[{index}]");
         let last = index + 1 == target.velocity_sets.len();
         if timed.until_s.is_none() != last {
-            return Err(fault(
-                &format!("{field}.until_s"),
-                if last { "a time" } else { "null" },
-                "a time, and null for the last",
-            ));
+            let (path, found) = (format!("{field}.until_s"), ["null", "a time"]);
+            let found = found[usize::from(last)];
+            return Err(fault(&path, found, "a time, and null for the last"));
         }
         let set = plane_set(&field, &timed.set)?;
         if set.as_polygon().is_some() != initial.as_polygon().is_some() {
             return Err(fault(path, "a polygon with an ellipse", "sets of one kind"));
         }
-        velocities.push(TimedVelocitySet::new(
-            timed.until_s.unwrap_or(f64::INFINITY),
-            set,
-        ));
+        let until = timed.until_s.unwrap_or(f64::INFINITY);
+        velocities.push(TimedVelocitySet::new(until, set));
     }
     let ends = std::iter::once(0.0).chain(velocities.iter().map(|timed| timed.until));
     if !ends.is_sorted_by(|before, after| before < after) {
-        return Err(fault(
-            &format!("{path}.velocity_sets"),
-            "ends that do not increase",
-            "one set after another",
-        ));
+        let path = format!("{path}.velocity_sets");
+        let found = "ends that do not increase";
+        return Err(fault(&path, found, "one set after another"));
     }
     Ok(Motion::Sets(Uncertainty::new(initial, velocities)))
 }

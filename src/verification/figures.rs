@@ -24,16 +24,10 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         }
     };
     let mut same = |what: &str, said: Option<f64>, so: f64| same_to(what, said, so, 0.0);
-    same(
-        "mission.duration_s",
-        Some(file.mission.duration_s),
-        claim.desired.duration(),
-    );
-    same(
-        "mission.length_m",
-        Some(file.mission.length_m),
-        claim.desired.length(),
-    );
+    let (mission, desired) = (&file.mission, &claim.desired);
+    let [time, length] = [mission.duration_s, mission.length_m].map(Some);
+    same("mission.duration_s", time, desired.duration());
+    same("mission.length_m", length, desired.length());
     let Some(cost) = &file.cost else {
         found.push(mismatch("cost", "nothing", "that of a motion"));
         return found;
@@ -44,25 +38,18 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         .map(|target| shape_rounding(target, end))
         .fold(0.0, f64::max);
     let forces = file.optimal_control.is_some();
-    same(
-        "cost.space_time_error_m2",
-        Some(cost.space_time_error_m2),
-        evaluation.space_time_error,
-    );
-    same(
-        "cost.space_time_error_arc_length_m2",
-        cost.space_time_error_arc_length_m2,
-        evaluation.arc_length_error,
-    );
-    if let Some(said) = cost.space_time_error_until_s {
+    let (error, until) = (cost.space_time_error_m2, cost.space_time_error_until_s);
+    let so = evaluation.space_time_error;
+    same("cost.space_time_error_m2", Some(error), so);
+    let by_length = cost.space_time_error_arc_length_m2;
+    let so = evaluation.arc_length_error;
+    same("cost.space_time_error_arc_length_m2", by_length, so);
+    if until.is_some() {
         let so = evaluation.counted.until;
-        same("cost.space_time_error_until_s", Some(said), so);
+        same("cost.space_time_error_until_s", until, so);
     }
-    same(
-        "cost.duration_s",
-        Some(cost.duration_s),
-        evaluation.duration,
-    );
+    let so = evaluation.duration;
+    same("cost.duration_s", Some(cost.duration_s), so);
     same("cost.length_m", Some(cost.length_m), evaluation.length);
     same("cost.delay_s", cost.delay_s, evaluation.delay);
     let minimised = match file.objective.as_str() {
@@ -75,20 +62,12 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     if let Some(so) = minimised {
         same("cost.objective", Some(cost.objective), so);
     }
-    same_to(
-        "cost.min_clearance_m",
-        cost.min_clearance_m,
-        evaluation.min_clearance,
-        rounding,
-    );
+    let (said, so) = (cost.min_clearance_m, evaluation.min_clearance);
+    same_to("cost.min_clearance_m", said, so, rounding);
     // A figure that the document omits is not checked.
-    if cost.arrival_hold_s.is_some() || cost.hold_clearance_m.is_some() {
-        same_to(
-            "cost.hold_clearance_m",
-            cost.hold_clearance_m,
-            evaluation.hold_clearance,
-            rounding,
-        );
+    let (said, so) = (cost.hold_clearance_m, evaluation.hold_clearance);
+    if cost.arrival_hold_s.is_some() || said.is_some() {
+        same_to("cost.hold_clearance_m", said, so, rounding);
     }
     let arrives = !forces && !claim.gives_up_arrival();
     if cost.arrived != arrives {
@@ -96,24 +75,21 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     }
     // The document holds only the land within reach; the nearest land of the map may be beyond.
     let land = evaluation.min_land_distance;
-    if let Some(said) = cost
-        .min_land_distance_m
-        .filter(|said| !(*said <= land || near(*said, land)))
-    {
-        found.push(mismatch("cost.min_land_distance_m", said, land));
-    }
-    if let Some(said) = cost
-        .min_land_distance_m
-        .filter(|said| !(land.is_finite() && near(*said, land)))
-    {
-        let beyond = beyond_reach(claim);
-        if !(said >= beyond || near(said, beyond)) {
-            let so = format!("{land}, or at least {beyond} for land beyond reach");
-            found.push(mismatch("cost.min_land_distance_m", said, so));
+    let what = "cost.min_land_distance_m";
+    match cost.min_land_distance_m {
+        None if land.is_finite() => found.push(mismatch(what, "nothing", land)),
+        None => {}
+        Some(said) if land.is_finite() && near(said, land) => {}
+        Some(said) => {
+            if !(said <= land) {
+                found.push(mismatch(what, said, land));
+            }
+            let beyond = beyond_reach(claim);
+            if !(said >= beyond || near(said, beyond)) {
+                let so = format!("{land}, or at least {beyond} for land beyond reach");
+                found.push(mismatch(what, said, so));
+            }
         }
-    }
-    if cost.min_land_distance_m.is_none() && land.is_finite() {
-        found.push(mismatch("cost.min_land_distance_m", "nothing", land));
     }
     found.extend(way_left(claim, evaluation));
     found.extend(closest_approaches(claim, evaluation));

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use crate::document::{
-    ForceLimitsDocument, MissionDocument, OwnShipDocument, PositionDocument, SegmentDocument,
+    ForceLimitsDocument, MissionDocument, OwnShipDocument, PositionDocument, TrajectoryDocument,
 };
 
 #[derive(Debug, Deserialize)]
@@ -33,7 +33,7 @@ pub(super) struct PlanFile {
     pub relaxation: Option<RelaxationFile>,
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
-    pub trajectory: Option<TrajectoryFile>,
+    pub trajectory: Option<TrajectoryDocument>,
     pub encounters: Vec<EncounterFile>,
     pub path_time: Option<IgnoredAny>,
     pub optimal_control: Option<ControlFile>,
@@ -116,29 +116,6 @@ pub(super) struct CostFile {
     pub hold_clearance_m: Option<f64>,
     pub arrival_hold_s: Option<f64>,
     pub min_land_distance_m: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct TrajectoryFile {
-    pub segments: Option<Vec<SegmentDocument>>,
-    pub samples: Vec<SampleFile>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct SampleFile {
-    pub t_s: f64,
-    pub east_m: f64,
-    pub north_m: f64,
-    pub course_deg: f64,
-    pub speed_mps: f64,
-    /// At the nodes of a motion under forces, all of these are present, elsewhere none.
-    pub heading_deg: Option<f64>,
-    pub surge_mps: Option<f64>,
-    pub sway_mps: Option<f64>,
-    pub yaw_rate_deg_per_s: Option<f64>,
-    pub surge_n: Option<f64>,
-    pub sway_n: Option<f64>,
-    pub yaw_nm: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]

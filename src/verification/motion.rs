@@ -1,8 +1,9 @@
 //! Motion of a document: segments, or nodes with forces.
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
-use super::file::{ControlFile, PlanFile, SampleFile};
-use crate::document::{SegmentDocument, StartDocument};
+use super::file::{ControlFile, PlanFile};
+use crate::document::SampleDocument;
+pub(super) use crate::document::segment;
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{ForceNode, Segment, Steered};
@@ -67,10 +68,8 @@ pub(super) fn read(
             segments.iter().map(segment).collect(),
         ))),
         (None, Some(control)) => {
-            let known = VesselKind::WORDS
-                .into_iter()
-                .find(|(word, _)| *word == control.vessel);
-            let Some((_, vessel)) = known else {
+            let mut known = VesselKind::WORDS.into_iter();
+            let Some((_, vessel)) = known.find(|(word, _)| *word == control.vessel) else {
                 let words = VesselKind::WORDS.map(|(word, _)| word).join(", ");
                 let found = format!("'{}'", control.vessel);
                 return Err(fault("optimal_control.vessel", found, &words));
@@ -85,25 +84,22 @@ pub(super) fn read(
                     weights: weights(control)?,
                 })),
                 Err(error) => {
-                    faults.push(Violation::new(
-                        format!("nodes among trajectory.samples: {error}"),
-                        0.0,
-                    ));
+                    let what = format!("nodes among trajectory.samples: {error}");
+                    faults.push(Violation::new(what, 0.0));
                     // A chain without segments is judged as no motion.
                     Ok(Some(ClaimedMotion::Segments(Vec::new())))
                 }
             }
         }
-        (Some(_), Some(_)) => Err(fault(
-            "optimal_control",
-            "beside segments",
-            "one of the two",
-        )),
-        (None, None) => Err(fault(
-            "trajectory.segments",
-            "null without optimal_control",
-            "segments, or a motion under forces",
-        )),
+        (Some(_), Some(_)) => {
+            let found = "beside segments";
+            Err(fault("optimal_control", found, "one of the two"))
+        }
+        (None, None) => {
+            let found = "null without optimal_control";
+            let allowed = "segments, or a motion under forces";
+            Err(fault("trajectory.segments", found, allowed))
+        }
     }
 }
 
@@ -121,26 +117,9 @@ fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
     })
 }
 
-fn pose(start: &StartDocument) -> Pose {
-    Pose::new(
-        Vector::new(start.east_m, start.north_m),
-        heading_from_course_deg(start.course_deg),
-    )
-}
-
-pub(super) fn segment(segment: &SegmentDocument) -> Segment {
-    Segment::new(
-        pose(&segment.start),
-        segment.start.t_s,
-        segment.duration_s,
-        segment.speed_mps,
-        radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
-    )
-}
-
 /// Converts the samples that are nodes. A course has no full circles, so the heading is continued
 /// by the turn nearest to the integral of the yaw rates.
-fn nodes(samples: &[SampleFile]) -> Vec<ForceNode> {
+fn nodes(samples: &[SampleDocument]) -> Vec<ForceNode> {
     let mut nodes: Vec<ForceNode> = Vec::new();
     for sample in samples {
         let Some(mut node) = node(sample) else {
@@ -158,17 +137,15 @@ fn nodes(samples: &[SampleFile]) -> Vec<ForceNode> {
 
 /// Converts the signs: starboard and clockwise are positive in the file, port and counter-clockwise
 /// here.
-fn node(sample: &SampleFile) -> Option<ForceNode> {
-    let yaw_rate = radians_from_deg(-sample.yaw_rate_deg_per_s?);
+fn node(sample: &SampleDocument) -> Option<ForceNode> {
+    let node = sample.node?;
+    let place = Vector::new(sample.east_m, sample.north_m);
     Some(ForceNode {
         time: sample.t_s,
-        pose: Pose::new(
-            Vector::new(sample.east_m, sample.north_m),
-            heading_from_course_deg(sample.heading_deg?),
-        ),
-        velocity: Vector::new(sample.surge_mps?, -sample.sway_mps?),
-        yaw_rate,
-        force: Vector::new(sample.surge_n?, -sample.sway_n?),
-        moment: -sample.yaw_nm?,
+        pose: Pose::new(place, heading_from_course_deg(node.heading_deg)),
+        velocity: Vector::new(node.surge_mps, -node.sway_mps),
+        yaw_rate: radians_from_deg(-node.yaw_rate_deg_per_s),
+        force: Vector::new(node.surge_n, -node.sway_n),
+        moment: -node.yaw_nm,
     })
 }

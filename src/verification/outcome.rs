@@ -49,36 +49,33 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         }
     };
     let forces = file.planner == OPTIMAL_CONTROL;
+    let has_control = file.optimal_control.is_some();
     planner(
-        file.optimal_control.is_some() && !forces,
+        has_control && !forces,
         "that of a document with optimal_control",
     );
+    let on_paths = file.planner == PATH_TIME;
+    let has_diagram = file.path_time.is_some();
     planner(
-        file.path_time.is_some() && file.planner != PATH_TIME,
+        has_diagram && !on_paths,
         "that of a document with path_time",
     );
-    planner(
-        forces && matches!(claim.motion, Some(ClaimedMotion::Segments(_))),
-        "that of a plan of segments",
-    );
+    let of_segments = matches!(claim.motion, Some(ClaimedMotion::Segments(_)));
+    planner(forces && of_segments, "that of a plan of segments");
     let objectives: &[&str] = match file.planner.as_str() {
         OPTIMAL_CONTROL => &["stage-cost"],
         PATH_TIME => &["space-time-error", "time", "length", "length-risk"],
         _ => &["space-time-error"],
     };
     if !objectives.contains(&file.objective.as_str()) {
-        found.push(mismatch(
-            "objective",
-            &file.objective,
-            objectives.join(" or "),
-        ));
+        let so = objectives.join(" or ");
+        found.push(mismatch("objective", &file.objective, so));
     }
     let most_important = file.relaxations.first();
     if file.relaxation.as_ref() != most_important {
         let name = |r: Option<&super::file::RelaxationFile>| {
-            r.map_or("nothing".to_owned(), |r| {
-                format!("{} of '{}'", r.kind, r.target)
-            })
+            let name = |r: &super::file::RelaxationFile| format!("{} of '{}'", r.kind, r.target);
+            r.map_or("nothing".to_owned(), name)
         };
         let so = format!("the first of relaxations, {}", name(most_important));
         found.push(mismatch("relaxation", name(file.relaxation.as_ref()), so));
@@ -127,11 +124,8 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
     for (relaxation, until) in released.filter_map(|r| Some((r, r.until_s?))) {
         let of = |key: &str| format!("relaxation of '{}', {key}", relaxation.target);
         if !OUTCOMES.contains(&claim.file.outcome.as_str()) {
-            found.push(mismatch(
-                "outcome",
-                &claim.file.outcome,
-                OUTCOMES.join(" or "),
-            ));
+            let so = OUTCOMES.join(" or ");
+            found.push(mismatch("outcome", &claim.file.outcome, so));
         }
         if relaxation.kind != RISK {
             found.push(mismatch(&of("kind"), &relaxation.kind, RISK));
@@ -152,11 +146,8 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
         let end = if end > 0.0 { end } else { claim.file.horizon_s };
         // Negated on purpose: a NaN fails.
         if !(until > 0.0 && until <= end + tolerance::TIME_S * (1.0 + end)) {
-            found.push(mismatch(
-                &of("until_s"),
-                until,
-                format!("above 0, at most {end}"),
-            ));
+            let so = format!("above 0, at most {end}");
+            found.push(mismatch(&of("until_s"), until, so));
         }
     }
     found

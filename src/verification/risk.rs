@@ -54,13 +54,8 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
     let released = sets.any(|set| set.name == encounter.target && set.from > 0.0);
     let accepted = if released { 1.0 } else { claim.file.max_risk };
     let within = said >= 0.0 && said <= accepted + tolerance::FIGURE;
-    (!within).then(|| {
-        mismatch(
-            &label(encounter, "max_risk"),
-            said,
-            format!("from 0 to {accepted}"),
-        )
-    })
+    let so = format!("from 0 to {accepted}");
+    (!within).then(|| mismatch(&label(encounter, "max_risk"), said, so))
 }
 
 /// Checks that a target whose risk is taken has a relaxation with that risk.
@@ -179,8 +174,10 @@ fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
             direction(here + 0.5 * (next - here).rem_euclid(std::f64::consts::TAU))
         })
         .collect();
-    let begun: Vec<_> = (initial.extremes(&between))
-        .zip(velocities.extremes(&between))
+    let both = initial
+        .extremes(&between)
+        .zip(velocities.extremes(&between));
+    let begun: Vec<_> = both
         .map(|(place, velocity)| place - velocity * set.from)
         .collect();
     Some(SpaceTimeSet::constant(

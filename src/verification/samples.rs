@@ -1,8 +1,8 @@
 //! Checks that the samples of a document lie on its motion.
 
 use super::claim::{Claim, ClaimedMotion};
-use super::file::SampleFile;
 use super::motion::around;
+use crate::document::SampleDocument;
 use crate::evaluation::Violation;
 use crate::frame::{Vector, heading_from_course_deg, heading_of, wrap};
 use crate::tolerance;
@@ -14,16 +14,11 @@ const PARTS: f64 = 20_000.0;
 
 /// Returns the first sample that is not on the motion or leaves a gap.
 pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> {
-    let samples = claim
-        .file
-        .trajectory
-        .as_ref()
-        .map_or(&[][..], |t| &t.samples);
+    let trajectory = claim.file.trajectory.as_ref();
+    let samples = trajectory.map_or(&[][..], |t| &t.samples);
     let wrong = |index: usize, what: String, time: f64| {
-        Some(Violation::new(
-            format!("trajectory.samples[{index}]: {what}"),
-            time,
-        ))
+        let what = format!("trajectory.samples[{index}]: {what}");
+        Some(Violation::new(what, time))
     };
     let step = STEP.max(motion.end_time() / PARTS);
     let mut before = -tolerance::TIME_S;
@@ -40,11 +35,8 @@ pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> 
             } else {
                 format!("at most {step} s later")
             };
-            return wrong(
-                index,
-                format!("at {} s, expected {allowed}", sample.t_s),
-                before.max(0.0),
-            );
+            let what = format!("at {} s, expected {allowed}", sample.t_s);
+            return wrong(index, what, before.max(0.0));
         }
         before = sample.t_s;
         if let Some(what) = off(sample, motion) {
@@ -53,24 +45,19 @@ pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> 
     }
     let end = motion.end_time();
     if !((before - end).abs() <= tolerance::TIME_S * (1.0 + end)) {
-        return wrong(
-            samples.len(),
-            format!("none at the end of the motion, {end} s"),
-            before.max(0.0),
-        );
+        let what = format!("none at the end of the motion, {end} s");
+        return wrong(samples.len(), what, before.max(0.0));
     }
     None
 }
 
 /// Describes how a sample differs from the motion at its time, if it does.
-fn off(sample: &SampleFile, motion: &ClaimedMotion) -> Option<String> {
+fn off(sample: &SampleDocument, motion: &ClaimedMotion) -> Option<String> {
     let place = Vector::new(sample.east_m, sample.north_m);
     let course = heading_from_course_deg(sample.course_deg);
-    let away = motion
-        .poses_at(sample.t_s)
-        .iter()
-        .map(|pose| (pose.position - place).norm())
-        .fold(f64::INFINITY, f64::min);
+    let poses = motion.poses_at(sample.t_s).into_iter();
+    let away = poses.map(|pose| (pose.position - place).norm());
+    let away = away.fold(f64::INFINITY, f64::min);
     if !(away <= tolerance::FIGURE) {
         return Some(format!("{away:.3e} m off the motion"));
     }

@@ -32,12 +32,8 @@ pub(super) fn read(
         // A set that is not released before the horizon is never valid.
         let never = released.is_some() && from == to && from == horizon;
         if !(from < to || never) {
-            let found = format!("{from} to {to}");
-            return Err(fault(
-                &format!("{path}.valid_s"),
-                found,
-                "a start before an end",
-            ));
+            let (path, found) = (format!("{path}.valid_s"), format!("{from} to {to}"));
+            return Err(fault(&path, found, "a start before an end"));
         }
         let mut note = |what: String, time: f64| {
             let what = format!("set of '{}': {what}", entry.name);
@@ -49,46 +45,27 @@ pub(super) fn read(
             released.unwrap_or(0.0).min(horizon)
         };
         if from != starts {
-            note(
-                format!("valid from {from} s, expected {starts} s"),
-                from.min(starts),
-            );
+            let what = format!("valid from {from} s, expected {starts} s");
+            note(what, from.min(starts));
         }
-        let last = entries
-            .get(index + 1)
-            .is_none_or(|next| next.name != entry.name);
+        let next = entries.get(index + 1);
+        let last = next.is_none_or(|next| next.name != entry.name);
         if last && !((to - horizon).abs() <= tolerance::TIME_S * (1.0 + horizon)) {
-            note(
-                format!("valid until {to} s, expected the horizon, {horizon} s"),
-                to,
-            );
+            let what = format!("valid until {to} s, expected the horizon, {horizon} s");
+            note(what, to);
         }
         let initial = plane_set(&format!("{path}.initial_set"), &entry.initial_set)?;
         let velocity = plane_set(&format!("{path}.velocity_set"), &entry.velocity_set)?;
-        let of_one_kind = matches!(
-            (&initial, &velocity, section.as_ref().filter(|_| follows)),
-            (
-                ConvexSet::Polygon(_),
-                ConvexSet::Polygon(_),
-                None | Some(ConvexSet::Polygon(_))
-            ) | (
-                ConvexSet::Ellipse(_),
-                ConvexSet::Ellipse(_),
-                None | Some(ConvexSet::Ellipse(_))
-            )
-        );
-        if !of_one_kind {
-            return Err(fault(
-                &path,
-                "a polygon with an ellipse",
-                "sets of one kind",
-            ));
+        let is_polygon = |set: &ConvexSet| set.as_polygon().is_some();
+        let before = section.as_ref().filter(|_| follows);
+        let mut others = std::iter::once(&velocity).chain(before);
+        if others.any(|set| is_polygon(set) != is_polygon(&initial)) {
+            let found = "a polygon with an ellipse";
+            return Err(fault(&path, found, "sets of one kind"));
         }
         if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
-            note(
-                "a slab does not begin with the final section of the previous one".to_owned(),
-                from,
-            );
+            let what = "a slab does not begin with the final section of the previous one";
+            note(what.to_owned(), from);
         }
         section = section_after(&initial, &velocity, to - from);
         let until_local = if last {
@@ -150,20 +127,17 @@ pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64
 /// Returns true if the sets have equal supports, to the tolerance of equal sets.
 fn same(a: &ConvexSet, b: &ConvexSet) -> bool {
     let (normals, across) = match (a, b) {
-        (ConvexSet::Polygon(a), ConvexSet::Polygon(b)) => (
-            in_order([a, b].into_iter().flat_map(ConvexPolygon::normals)),
-            a.across(),
-        ),
-        (ConvexSet::Ellipse(a), ConvexSet::Ellipse(b)) => (
-            sampled_directions(a).chain(sampled_directions(b)).collect(),
-            widest(a),
-        ),
+        (ConvexSet::Polygon(a), ConvexSet::Polygon(b)) => {
+            let normals = [a, b].into_iter().flat_map(ConvexPolygon::normals);
+            (in_order(normals), a.across())
+        }
+        (ConvexSet::Ellipse(a), ConvexSet::Ellipse(b)) => {
+            let normals = sampled_directions(a).chain(sampled_directions(b));
+            (normals.collect(), widest(a))
+        }
         _ => return false,
     };
-    let apart = largest(
-        normals
-            .iter()
-            .map(|n| (a.support(*n) - b.support(*n)).abs()),
-    );
+    let apart = |n: &Vector| (a.support(*n) - b.support(*n)).abs();
+    let apart = largest(normals.iter().map(apart));
     apart <= tolerance::DEPTH_M.max(tolerance::COLLINEAR_RAD * across)
 }

@@ -1,19 +1,15 @@
 //! Plans under `compliance = "rules"` over random encounters, counted by both judges from the
 //! trajectories alone.
 
-use std::collections::BTreeMap;
-
-use rayon::prelude::*;
 use searoom::colregs::{
     Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
 };
 use searoom::pipeline::{self, Run};
-use searoom::scenario::Compliance;
-use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
+use searoom::simulation::{EncounterKind, Meeting};
 
-use super::statistics::{failure_bound, quantile};
-use super::{Report, Seeds};
+use super::statistics::{quantiles, share_cells};
+use super::{Report, Seeds, meetings};
 
 /// Least share of plans with which both judges are content, of encounters that begin near. Measured
 /// with 3,000 of each kind: 100, 98.6, 99.0, 99.8 and 100 %.
@@ -22,14 +18,6 @@ const CONTENT: f64 = 0.98;
 /// Least mean of the least scores of each kind. Measured with 3,000 of each: 0.93, 0.57, 0.37, 0.42
 /// and 0.50.
 const LEAST_SCORE: [f64; 5] = [0.90, 0.52, 0.33, 0.40, 0.45];
-
-fn planned(kind: EncounterKind, seed: u64, meeting: &Meeting) -> Run {
-    let mut scenario = random_meeting(kind, seed, Placement::Random, meeting)
-        .expect("drawn")
-        .scenario;
-    scenario.compliance = Compliance::Rules;
-    pipeline::run(scenario)
-}
 
 /// Observations of one plan.
 struct Seen {
@@ -102,69 +90,44 @@ pub fn run(seeds: Seeds, meeting: &Meeting) -> Report {
 
 fn one_kind(kind: EncounterKind, seeds: Seeds, meeting: &Meeting, report: &mut Report) {
     let name = kind.name();
-    let first = seeds.start;
-    let all: Vec<Seen> = (seeds.into_par_iter())
-        .map(|seed| seen(&planned(kind, seed, meeting)))
-        .collect();
-    let count = |holds: &dyn Fn(&Seen) -> bool| all.iter().filter(|s| holds(s)).count();
-    let share = |p: f64, of: &dyn Fn(&Seen) -> Option<f64>| {
-        let values: Vec<f64> = all.iter().filter_map(of).collect();
-        quantile(&values, p)
+    let all = meetings(kind, seeds, meeting, |scenario, _| {
+        seen(&pipeline::run(scenario))
+    });
+    let count = |holds: &dyn Fn(&Seen) -> bool| all.iter().filter(|(_, s)| holds(s)).count();
+    let values = |of: &dyn Fn(&Seen) -> Option<f64>| -> Vec<f64> {
+        all.iter().filter_map(|(_, s)| of(s)).collect()
     };
     let content = count(&|s| s.broken.is_empty());
-    let bound = 1.0 - failure_bound(all.len() - content, all.len());
-    let score = all.iter().map(|s| s.least_score).sum::<f64>() / all.len() as f64;
-    let turns = |p| share(p, &|s| Some(s.turns as f64));
-    let speeds = |p| share(p, &|s| Some(s.speed_changes as f64));
-    let lead = |p| share(p, &|s| s.lead);
-    let lengths = |p| share(p, &|s| Some(s.lengths));
-    let off = |p| share(p, &|s| Some(s.off_path));
-    println!(
-        "| {name} | {content}/{} | {:.2} % | {score:.2} | {:.0} | {:.0}/{:.0}/{:.0} | {:.0}/{:.0}/{:.0} | \
-         {:.0}/{:.0}/{:.0} | {:.0} | {:.1}/{:.1}/{:.1} | {:.0}/{:.0} | {} | {:.1}/{:.1} |",
-        all.len(),
-        100.0 * bound,
-        share(0.5, &|s| Some(s.cost)),
-        lead(0.05),
-        lead(0.5),
-        lead(0.95),
-        turns(0.5),
-        turns(0.95),
-        turns(1.0),
-        speeds(0.5),
-        speeds(0.95),
-        speeds(1.0),
-        share(0.05, &|s| s.smallest_turn).to_degrees(),
-        lengths(0.01),
-        lengths(0.05),
-        lengths(0.5),
-        off(0.5),
-        off(0.95),
-        count(&|s| s.short > 0),
-        share(0.5, &|s| Some(s.milliseconds)),
-        share(0.99, &|s| Some(s.milliseconds)),
-    );
-    let mut rules: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
-    for (seed, seen) in (first..).zip(&all) {
-        for rule in &seen.broken {
-            rules.entry(rule).or_default().push(seed);
-        }
-    }
-    for (rule, seeds) in rules {
-        let few = &seeds[..seeds.len().min(6)];
-        eprintln!("  {name}: {rule} broken by {}, seeds {few:?}", seeds.len());
-    }
+    let score = all.iter().map(|(_, s)| s.least_score).sum::<f64>() / all.len() as f64;
+    let cells = [
+        share_cells(content, all.len()),
+        format!("{score:.2}"),
+        quantiles(&values(&|s| Some(s.cost)), [0.5], 0),
+        quantiles(&values(&|s| s.lead), [0.05, 0.5, 0.95], 0),
+        quantiles(&values(&|s| Some(s.turns as f64)), [0.5, 0.95, 1.0], 0),
+        quantiles(
+            &values(&|s| Some(s.speed_changes as f64)),
+            [0.5, 0.95, 1.0],
+            0,
+        ),
+        quantiles(
+            &values(&|s| s.smallest_turn.map(f64::to_degrees)),
+            [0.05],
+            0,
+        ),
+        quantiles(&values(&|s| Some(s.lengths)), [0.01, 0.05, 0.5], 1),
+        quantiles(&values(&|s| Some(s.off_path)), [0.5, 0.95], 0),
+        count(&|s| s.short > 0).to_string(),
+        quantiles(&values(&|s| Some(s.milliseconds)), [0.5, 0.99], 1),
+    ];
+    println!("| {name} | {} |", cells.join(" | "));
+    let broken = (all.iter()).flat_map(|(seed, s)| s.broken.iter().map(|rule| (*rule, *seed)));
+    Report::print_seeds(name, broken);
     let unverified = all.len() - count(&|s| s.verified);
     report.require(unverified == 0, || {
         format!("{name}: {unverified} not verified")
     });
-    let wanted = CONTENT * all.len() as f64;
-    report.require(content as f64 >= wanted, || {
-        format!(
-            "{name}: both judges content with {content} of {}",
-            all.len()
-        )
-    });
+    report.content(name, CONTENT, content, all.len());
     let least = LEAST_SCORE[kind as usize];
     report.require(score >= least, || {
         format!("{name}: mean score {score:.2} below {least}")

@@ -23,10 +23,8 @@ fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
     for piece in motion.pieces() {
         for look in 0..=LOOKS {
             let part = look as f64 / LOOKS as f64;
-            let (time, place) = (
-                piece.start_time + part * piece.duration,
-                piece.position(part),
-            );
+            let time = piece.start_time + part * piece.duration;
+            let place = piece.position(part);
             for keep in keep_outs {
                 least = least.min(keep.at(time).level(place) - 1.0);
             }

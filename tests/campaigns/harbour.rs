@@ -11,7 +11,7 @@ use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Land, Scenario};
 use searoom::simulation::{Placement, random_traffic};
-use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
@@ -106,16 +106,13 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
             Target {
                 name: format!("target {k}"),
                 motion: Motion::Ship(ShipTrack {
-                    pose: Pose::new(place, course),
-                    speed: pace,
-                    hull: Hull::new(1.2 * hull.length, 1.2 * hull.beam),
-                    position_std: 0.0,
                     speed_spread: 0.2,
                     course_spread: 0.03,
-                    turn_rate: 0.0,
-                    kept_positions: None,
-                    kept_velocities: None,
-                    domain: DomainKind::Hull,
+                    ..ShipTrack::exact(
+                        Pose::new(place, course),
+                        pace,
+                        Hull::new(1.2 * hull.length, 1.2 * hull.beam),
+                    )
                 }),
                 representation: Representation::Polytope,
             }
@@ -149,10 +146,8 @@ pub fn across_the_island(map: &Arc<Map>, seed: u64) -> Option<Scenario> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut scenario = scene(map, &FJORD, seed);
     let aside = Vector::new(rng.random_range(-70.0..70.0), rng.random_range(-70.0..70.0));
-    let (middle, heading) = (
-        Vector::new(-331.0, 801.0) + aside,
-        rng.random_range(-3.1..3.1),
-    );
+    let middle = Vector::new(-331.0, 801.0) + aside;
+    let heading = rng.random_range(-3.1..3.1);
     let path = [-500.0, 500.0].map(|along| middle + direction(heading) * along);
     if path.iter().any(|p| map.signed_distance(*p) < 60.0) {
         return None;

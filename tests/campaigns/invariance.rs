@@ -8,7 +8,7 @@ use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{Placement, random_traffic};
-use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
@@ -182,16 +182,14 @@ pub fn scene(seed: u64) -> Scenario {
         let start = desired.position_at(time) + miss - direction(course) * (pace * time);
         let length = rng.random_range(30.0..150.0);
         let ship = ShipTrack {
-            pose: Pose::new(start, course),
-            speed: pace,
-            hull: Hull::new(length, length / 5.0),
             position_std: rng.random_range(0.0..8.0),
             speed_spread: rng.random_range(0.0..0.2),
             course_spread: rng.random_range(0.0..0.07),
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
-            domain: DomainKind::Hull,
+            ..ShipTrack::exact(
+                Pose::new(start, course),
+                pace,
+                Hull::new(length, length / 5.0),
+            )
         };
         if start.norm() > 1000.0 {
             targets.push(Target {

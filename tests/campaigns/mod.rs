@@ -21,8 +21,35 @@ pub mod simulation;
 pub mod statistics;
 pub mod wild;
 
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use searoom::scenario::{Compliance, Scenario};
+use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
+
 /// Seeds of the scenes of a campaign.
 pub type Seeds = std::ops::Range<u64>;
+
+/// A random meeting under the rules.
+pub fn meeting(kind: EncounterKind, seed: u64, meeting: &Meeting) -> Scenario {
+    let drawn = random_meeting(kind, seed, Placement::Random, meeting).expect("drawn");
+    Scenario {
+        compliance: Compliance::Rules,
+        ..drawn.scenario
+    }
+}
+
+/// Plays random meetings under the rules, each with its seed.
+pub fn meetings<T: Send>(
+    kind: EncounterKind,
+    seeds: Seeds,
+    which: &Meeting,
+    play: impl Fn(Scenario, u64) -> T + Sync,
+) -> Vec<(u64, T)> {
+    (seeds.into_par_iter())
+        .map(|seed| (seed, play(meeting(kind, seed, which), seed)))
+        .collect()
+}
 
 /// Bounds that a campaign has missed, in words.
 #[derive(Debug, Default)]
@@ -48,6 +75,25 @@ impl Report {
         );
         self.require(failing.len() as f64 <= share * all as f64, || {
             format!("{name}: {what}: {failing:?} of {all}")
+        });
+    }
+
+    /// Prints the seeds of each name, and how many there are.
+    pub fn print_seeds<'s>(kind: &str, named: impl Iterator<Item = (&'s str, u64)>) {
+        let mut seeds: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+        for (name, seed) in named {
+            seeds.entry(name).or_default().push(seed);
+        }
+        for (name, seeds) in seeds {
+            let few = &seeds[..seeds.len().min(8)];
+            println!("  {kind}: {name}: {}, seeds {few:?}", seeds.len());
+        }
+    }
+
+    /// Requires that both judges are content with this share of all motions.
+    pub fn content(&mut self, kind: &str, share: f64, content: usize, all: usize) {
+        self.require(content as f64 >= share * all as f64, || {
+            format!("{kind}: both judges content with {content} of {all}")
         });
     }
 

@@ -167,69 +167,44 @@ pub fn assert_sound(drawn: &Drawn, segments: &[Segment], seed: u64) {
     let mut run = 0.0;
     let mut time = 0.0;
     for s in segments {
-        assert!(
-            s.turn_rate == 0.0 && s.speed <= drawn.speed * (1.0 + 1e-9),
-            "{seed}: {s:?}"
-        );
+        let allowed = s.turn_rate == 0.0 && s.speed <= drawn.speed * (1.0 + 1e-9);
+        assert!(allowed, "{seed}: {s:?}");
         assert!((s.start_time - time).abs() < 1e-9, "{seed}");
-        assert!(
-            (s.start.position - drawn.path.at(run).1).norm() < 1e-6,
-            "{seed}: {run} {s:?}"
-        );
+        let begins = (s.start.position - drawn.path.at(run).1).norm();
         run += s.length();
         time = s.end_time();
-        assert!(
-            (s.end().position - drawn.path.at(run).1).norm() < 1e-6,
-            "{seed}: {run} {s:?}"
-        );
+        let ends = (s.end().position - drawn.path.at(run).1).norm();
+        assert!(begins < 1e-6 && ends < 1e-6, "{seed}: {run} {s:?}");
         for o in &drawn.obstacles {
-            assert!(
-                o.first_contact(s, 1e-6).is_none(),
-                "{seed}: {} {s:?}",
-                o.name()
-            );
+            let meets = o.first_contact(s, 1e-6).is_some();
+            assert!(!meets, "{seed}: {} {s:?}", o.name());
         }
     }
-    assert!(
-        (run - drawn.path.length()).abs() < 1e-6 && time <= drawn.horizon + 1e-9,
-        "{seed}"
-    );
+    let whole = (run - drawn.path.length()).abs() < 1e-6;
+    assert!(whole && time <= drawn.horizon + 1e-9, "{seed}");
 }
 
 /// Lists every route through a network that uses no leg twice, as waypoints.
 fn ways(network: &PathNetwork) -> Vec<Vec<Vector>> {
-    fn follow(
-        n: &PathNetwork,
-        at: usize,
-        used: &mut Vec<usize>,
-        way: &mut Vec<Vector>,
-        out: &mut Vec<Vec<Vector>>,
-    ) {
-        if !used.is_empty() && n.is_end(at) {
-            out.push(way.clone());
-            return;
+    let mut ways = Vec::new();
+    let begun = (network.start(), Vec::new(), vec![network.legs()[0].start]);
+    let mut open: Vec<(usize, Vec<usize>, Vec<Vector>)> = vec![begun];
+    while let Some((at, used, way)) = open.pop() {
+        if !used.is_empty() && network.is_end(at) {
+            ways.push(way);
+            continue;
         }
-        for &leg in n.onward(at) {
-            if !used.contains(&leg) {
-                used.push(leg);
-                let l = &n.legs()[leg];
-                way.push(l.start + l.direction * l.length);
-                follow(n, l.ends[1], used, way, out);
-                way.pop();
-                used.pop();
-            }
+        for leg in network.onward(at).iter().filter(|leg| !used.contains(leg)) {
+            let l = &network.legs()[*leg];
+            let place = l.start + l.direction * l.length;
+            open.push((
+                l.ends[1],
+                [&used[..], &[*leg]].concat(),
+                [&way[..], &[place]].concat(),
+            ));
         }
     }
-    let mut out = Vec::new();
-    let first = network.legs()[0].start;
-    follow(
-        network,
-        network.start(),
-        &mut Vec::new(),
-        &mut vec![first],
-        &mut out,
-    );
-    out
+    ways
 }
 
 /// The least time is that of a fine grid, and Dijkstra finds it too.
@@ -259,21 +234,12 @@ fn least_time(seeds: Seeds, report: &mut Report) {
             gap += (upper - arrival) / step;
         }
         let lower = grid(true);
-        assert!(
-            lower.is_some_and(|l| l <= arrival + step + 1e-6),
-            "{seed}: {arrival} {lower:?}"
-        );
+        let above = lower.is_some_and(|l| l <= arrival + step + 1e-6);
+        assert!(above, "{seed}: {arrival} {lower:?}");
         let dijkstra = plan(&drawn, SearchKind::Dijkstra, Objective::Time);
-        let other = dijkstra
-            .outcome
-            .plan()
-            .expect("a plan too")
-            .trajectory
-            .end_time();
-        assert!(
-            (other - arrival).abs() < 1e-9,
-            "{seed}: {arrival}, Dijkstra {other}"
-        );
+        let other = dijkstra.outcome.plan().expect("a plan too");
+        let off = (other.trajectory.end_time() - arrival).abs();
+        assert!(off < 1e-9, "{seed}: {arrival}, by Dijkstra {off} off");
         assert!(dijkstra.stats.expanded >= planned.stats.expanded, "{seed}");
     }
     println!(
@@ -296,27 +262,20 @@ fn space_time_error(seeds: Seeds, report: &mut Report) {
         let legs = vec![drawn.speed * 0.8; drawn.path.points.len() - 1];
         let desired = DesiredTrajectory::new(&drawn.path.points, &legs).expect("valid");
         let (path, obstacles) = (&drawn.path, &drawn.obstacles);
-        let grid = least_error(
-            path,
-            obstacles,
-            &desired,
-            25.0,
-            drawn.speed,
-            drawn.horizon,
-            400,
-        );
+        let (speed, horizon) = (drawn.speed, drawn.horizon);
+        let grid = least_error(path, obstacles, &desired, 25.0, speed, horizon, 400);
         let Some(found) = planned.outcome.plan() else {
             assert_eq!(grid, None, "{seed}: {:?}", planned.outcome);
             continue;
         };
         assert_sound(&drawn, found.trajectory.segments(), seed);
         let dijkstra = plan(&drawn, SearchKind::Dijkstra, Objective::SpaceTimeError);
-        let other = dijkstra.outcome.plan().expect("a plan too").cost;
-        assert!(
-            (other - found.cost).abs() <= 1e-8 * (1.0 + other),
-            "{seed}: {}, Dijkstra {other}",
-            found.cost
+        let (other, cost) = (
+            dijkstra.outcome.plan().expect("a plan too").cost,
+            found.cost,
         );
+        let same = (other - cost).abs() <= 1e-8 * (1.0 + other);
+        assert!(same, "{seed}: {cost}, Dijkstra {other}");
         expanded[0] += planned.stats.expanded;
         expanded[1] += dijkstra.stats.expanded;
         if let Some(grid) = grid {
@@ -362,10 +321,8 @@ fn ellipsoids(seeds: Seeds, report: &mut Report) {
         let grid = |shrunk| drawn.earliest_on_grid(150, shrunk);
         let step = drawn.path.length() / drawn.speed / 150.0;
         let arrival = found.trajectory.end_time();
-        assert!(
-            grid(true).is_some_and(|l| l <= arrival + step + 1e-6),
-            "{seed}"
-        );
+        let above = grid(true).is_some_and(|l| l <= arrival + step + 1e-6);
+        assert!(above, "{seed}");
         if let Some(upper) = grid(false) {
             compared += 1;
             later += usize::from(arrival > upper + 0.1);
@@ -428,10 +385,8 @@ fn alternatives(seeds: Seeds, report: &mut Report) {
             });
             match (best, measure(&planned)) {
                 (Some(best), Some(found)) => {
-                    assert!(
-                        (best - found).abs() < 1e-6,
-                        "{seed} {objective:?}: {best} {found}"
-                    );
+                    let same = (best - found).abs() < 1e-6;
+                    assert!(same, "{seed} {objective:?}: {best} {found}");
                     solved += 1;
                     let legs = &planned.path_time.as_ref().expect("a diagram").legs;
                     switched += usize::from(legs.iter().any(|l| l.path != legs[0].path));

@@ -1,10 +1,7 @@
 //! Plans made again and again from own ship's state on the last one, and the sailed motion judged.
 
-use std::collections::BTreeMap;
-
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use searoom::colregs::{
     SteadyShip, Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
@@ -15,14 +12,14 @@ use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
-use searoom::scenario::{Compliance, Memory, Scenario};
-use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
+use searoom::scenario::{Memory, Scenario};
+use searoom::simulation::{EncounterKind, Meeting};
 use searoom::target::{Motion, ShipTrack};
 use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};
 use searoom::trajectory::Segment;
 
-use super::statistics::{failure_bound, quantile};
-use super::{Report, Seeds};
+use super::statistics::{quantiles, share_cells};
+use super::{Report, Seeds, meetings};
 
 /// Seconds from one plan to the next.
 const STEP_S: f64 = 20.0;
@@ -184,10 +181,7 @@ pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         ComplianceReport::judge(&meeting, Thresholds::standard())
     };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut now = SteadyShip {
-        pose: ship.pose,
-        speed: ship.speed,
-    };
+    let mut now = SteadyShip::new(ship.pose, ship.speed);
     let alone = [(0.0, now)];
     let mut track: Vec<(f64, SteadyShip)> = Vec::new();
     let mut sailed = Sailed {
@@ -267,103 +261,66 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
     println!("|{}", " --- |".repeat(15));
     for kind in EncounterKind::ALL {
         let name = kind.name();
-        let all: Vec<Option<Sailed>> = (seeds.clone().into_par_iter())
-            .map(|seed| {
-                let drawn = random_meeting(kind, seed, Placement::Random, meeting);
-                let mut scenario = drawn.expect("drawn").scenario;
-                scenario.compliance = Compliance::Rules;
-                scenario.memory = Memory::default();
-                scenario.own_ship.tracking_margin = how.off;
-                sail(&scenario, seed, how)
-            })
-            .collect();
-        let lost = all.iter().filter(|s| s.is_none()).count();
-        if lost > 0 {
-            report.missed.push(format!("{name}: {lost} without a plan"));
-        }
-        let all: Vec<Sailed> = all.into_iter().flatten().collect();
-        let share = |p: f64, of: &dyn Fn(&Sailed) -> f64| {
-            let values: Vec<f64> = all.iter().map(of).collect();
-            quantile(&values, p)
-        };
+        let all = meetings(kind, seeds.clone(), meeting, |mut scenario, seed| {
+            scenario.memory = Memory::default();
+            scenario.own_ship.tracking_margin = how.off;
+            sail(&scenario, seed, how)
+        });
+        let lost = all.iter().filter(|(_, s)| s.is_none()).count();
+        report.require(lost == 0, || format!("{name}: {lost} without a plan"));
+        let all: Vec<Sailed> = all.into_iter().filter_map(|(_, sailed)| sailed).collect();
+        let values = |of: &dyn Fn(&Sailed) -> f64| all.iter().map(of).collect::<Vec<f64>>();
         let sum = |of: &dyn Fn(&Sailed) -> usize| all.iter().map(of).sum::<usize>();
         let content = all.iter().filter(|s| s.broken.is_empty()).count();
         let first = all.iter().filter(|s| s.broken_by_the_first == 0).count();
-        let bound = 1.0 - failure_bound(all.len() - content, all.len());
-        let turns = |p| share(p, &|s| s.turns as f64);
-        let speeds = |p| share(p, &|s| s.speed_changes as f64);
         let times: Vec<f64> = all.iter().flat_map(|s| s.milliseconds.clone()).collect();
-        println!(
-            "| {name} | {content}/{} | {:.2} % | {first} | {:.1} | {}/{}/{} | {}/{}/{} | {:.2}/{:.2} | {} | {} | {} | {} | {} | {} | {:.1}/{:.1} |",
-            all.len(),
-            100.0 * bound,
-            share(0.0, &|s| s.apart),
-            turns(0.5),
-            turns(0.95),
-            turns(1.0),
-            speeds(0.5),
-            speeds(0.95),
-            speeds(1.0),
-            share(0.5, &|s| s.cost),
-            share(0.95, &|s| s.cost),
+        let counts = [
             sum(&|s| s.cycles),
             sum(&|s| s.unsafe_plans),
             sum(&|s| s.relaxed),
             sum(&|s| s.turned_back),
             sum(&|s| s.lost),
             sum(&|s| s.dearer),
-            quantile(&times, 0.5),
-            quantile(&times, 0.99),
-        );
+        ];
+        let [cycles, unsafe_plans, _, turned_back, lost, dearer] = counts;
+        let cells = [
+            share_cells(content, all.len()),
+            first.to_string(),
+            quantiles(&values(&|s| s.apart), [0.0], 1),
+            quantiles(&values(&|s| s.turns as f64), [0.5, 0.95, 1.0], 0),
+            quantiles(&values(&|s| s.speed_changes as f64), [0.5, 0.95, 1.0], 0),
+            quantiles(&values(&|s| s.cost), [0.5, 0.95], 2),
+            counts.map(|count| count.to_string()).join(" | "),
+            quantiles(&times, [0.5, 0.99], 1),
+        ];
+        println!("| {name} | {} |", cells.join(" | "));
         // noise moves the targets across the limits of the rules
         let is_known = behaviour == Behaviour::Constant && !how.noise;
         if is_known {
-            report.require(content as f64 >= CONTENT * all.len() as f64, || {
-                format!(
-                    "{name}: both judges content with {content} of {}",
-                    all.len()
-                )
+            report.content(name, CONTENT, content, all.len());
+            report.require(5000 * turned_back <= cycles, || {
+                format!("{name}: {turned_back} manoeuvres are begun again")
             });
-        }
-        if behaviour != Behaviour::Turns {
-            let (unsafe_plans, dearer) = (sum(&|s| s.unsafe_plans), sum(&|s| s.dearer));
-            let lost = sum(&|s| s.lost);
-            report.require(lost == 0 || !how.memory, || {
-                format!("{name}: {lost} remainders are no longer clear")
-            });
-            let turned_back = sum(&|s| s.turned_back);
-            report.require(
-                !is_known || 5000 * turned_back <= sum(&|s| s.cycles),
-                || format!("{name}: {turned_back} manoeuvres are begun again"),
-            );
-            report.require(unsafe_plans == 0, || {
-                format!("{name}: {unsafe_plans} unsafe plans")
-            });
-            report.require(!is_known || 1000 * dearer <= sum(&|s| s.cycles), || {
+            report.require(1000 * dearer <= cycles, || {
                 format!("{name}: {dearer} plans are dearer than the remainder")
             });
         }
-        let mut broken: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
-        for s in &all {
+        if behaviour != Behaviour::Turns {
+            report.require(lost == 0 || !how.memory, || {
+                format!("{name}: {lost} remainders are no longer clear")
+            });
+            report.require(unsafe_plans == 0, || {
+                format!("{name}: {unsafe_plans} unsafe plans")
+            });
+        }
+        let named = all.iter().flat_map(|s| {
             let turned_back = (s.turned_back > 0).then_some("turned back");
             let unsafe_plan = (s.unsafe_plans > 0).then_some("unsafe");
-            for what in s
-                .broken
-                .iter()
-                .copied()
-                .chain(turned_back)
-                .chain(unsafe_plan)
-            {
-                broken.entry(what).or_default().push(s.seed);
-            }
-        }
-        for (what, seeds) in broken {
-            println!(
-                "  {name}: {what}: {}, seeds {:?}",
-                seeds.len(),
-                &seeds[..seeds.len().min(8)]
-            );
-        }
+            let broken = s.broken.iter().copied();
+            let named = broken.chain(turned_back).chain(unsafe_plan);
+            named.map(|what| (what, s.seed))
+        });
+        Report::print_seeds(name, named);
     }
     println!();
     report

@@ -1,17 +1,14 @@
 //! Random meetings sailed in the closed loop, against what was asked for.
 
-use std::collections::BTreeMap;
-
-use rayon::prelude::*;
 use searoom::document::SimulationDocument;
 use searoom::frame::radians_from_deg;
 use searoom::scenario::{
-    Behaviour, Compliance, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
+    Behaviour, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
-use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+use searoom::simulation::{EncounterKind, Meeting, Simulation};
 
-use super::statistics::{failure_bound, quantile};
-use super::{Report, Seeds};
+use super::statistics::{failure_bound, quantiles, share_cells};
+use super::{Report, Seeds, meetings};
 
 /// What a target does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -177,19 +174,14 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
     let mut report = Report::default();
     println!("{seeds:?} of each kind, {how:?}\n");
     println!(
-        "| kind | contacts | at most | both judges | at least | remainders lost | unsafe plans | without a plan | outside the set | least clearance, m | ≥ 0.5 L | turns 50/95 %/most | speeds 50/95 %/most | replaced, other side | J / J of the first plan 50/95 % | off plan, m | plans | plan 50/99 %/most, ms |"
+        "| kind | contacts | at most | both judges | at least | remainders lost | unsafe plans | without a plan | outside the set | least clearance, m | ≥ 0.5 L | turns 50/95 %/most | speeds 50/95 %/most | replaced | other side | J / J of the first plan 50/95 % | off plan, m | plans | plan 50/99 %/most, ms |"
     );
-    println!("|{}", " --- |".repeat(18));
+    println!("|{}", " --- |".repeat(19));
     for kind in EncounterKind::ALL {
-        let all: Vec<(u64, SimulationDocument)> = (seeds.clone().into_par_iter())
-            .map(|seed| {
-                let drawn = random_meeting(kind, seed, Placement::Random, meeting).expect("drawn");
-                let mut scenario = drawn.scenario;
-                scenario.compliance = Compliance::Rules;
-                how.equip(&mut scenario, seed);
-                (seed, sail(scenario))
-            })
-            .collect();
+        let all = meetings(kind, seeds.clone(), meeting, |mut scenario, seed| {
+            how.equip(&mut scenario, seed);
+            sail(scenario)
+        });
         row(kind.name(), &all, how, &mut report);
     }
     println!();
@@ -200,9 +192,8 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
     let count = |of: &dyn Fn(&SimulationDocument) -> usize| -> usize {
         all.iter().map(|(_, sailed)| of(sailed)).sum()
     };
-    let share = |p: f64, of: &dyn Fn(&SimulationDocument) -> f64| {
-        let values: Vec<f64> = all.iter().map(|(_, sailed)| of(sailed)).collect();
-        quantile(&values, p)
+    let values = |of: &dyn Fn(&SimulationDocument) -> f64| -> Vec<f64> {
+        all.iter().map(|(_, sailed)| of(sailed)).collect()
     };
     let contacts = count(&|s| usize::from(s.contact));
     let content = count(&|s| usize::from(s.conduct.breaks.is_empty()));
@@ -223,39 +214,35 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
     let bad = count(&|s| s.conduct.unsafe_plans);
     let without = count(&|s| s.conduct.without_plan);
     let outside = count(&|s| s.targets.iter().map(|t| t.outside_sets).sum());
-    let turns = |p| share(p, &|s| s.conduct.turns as f64);
-    let speeds = |p| share(p, &|s| s.conduct.speed_changes as f64);
-    let cost = |p| {
-        share(p, &|s| {
-            s.conduct.cost_m2 / s.conduct.first_plan_cost_m2.unwrap_or(f64::NAN).max(1.0)
-        })
+    let cost = |s: &SimulationDocument| {
+        s.conduct.cost_m2 / s.conduct.first_plan_cost_m2.unwrap_or(f64::NAN).max(1.0)
     };
     let times: Vec<f64> = (all.iter())
         .flat_map(|(_, s)| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3))
         .collect();
-    println!(
-        "| {name} | {contacts}/{} | {:.2} % | {content} | {:.2} % | {lost} | {bad} | {without} | {outside} | {:.1} | {:.2} % | {}/{}/{} | {}/{}/{} | {}, {} | {:.2}/{:.2} | {:.1} | {} | {:.1}/{:.1}/{:.1} |",
-        all.len(),
-        100.0 * failure_bound(contacts, all.len()),
-        100.0 * (1.0 - failure_bound(all.len() - content, all.len())),
-        share(0.0, &clearance),
-        100.0 * wide as f64 / all.len() as f64,
-        turns(0.5),
-        turns(0.95),
-        turns(1.0),
-        speeds(0.5),
-        speeds(0.95),
-        speeds(1.0),
-        count(&|s| s.conduct.replaced_manoeuvres),
-        count(&|s| s.conduct.side_switches),
-        cost(0.5),
-        cost(0.95),
-        share(1.0, &|s| s.conduct.largest_off_plan_m),
-        count(&|s| s.replans.len()),
-        quantile(&times, 0.5),
-        quantile(&times, 0.99),
-        quantile(&times, 1.0),
-    );
+    let bound = 100.0 * failure_bound(contacts, all.len());
+    let cells = [
+        format!("{contacts}/{} | {bound:.2} %", all.len()),
+        share_cells(content, all.len()),
+        [lost, bad, without, outside]
+            .map(|count| count.to_string())
+            .join(" | "),
+        quantiles(&values(&clearance), [0.0], 1),
+        format!("{:.2} %", 100.0 * wide as f64 / all.len() as f64),
+        quantiles(&values(&|s| s.conduct.turns as f64), [0.5, 0.95, 1.0], 0),
+        quantiles(
+            &values(&|s| s.conduct.speed_changes as f64),
+            [0.5, 0.95, 1.0],
+            0,
+        ),
+        count(&|s| s.conduct.replaced_manoeuvres).to_string(),
+        count(&|s| s.conduct.side_switches).to_string(),
+        quantiles(&values(&cost), [0.5, 0.95], 2),
+        quantiles(&values(&|s| s.conduct.largest_off_plan_m), [1.0], 1),
+        count(&|s| s.replans.len()).to_string(),
+        quantiles(&times, [0.5, 0.99, 1.0], 1),
+    ];
+    println!("| {name} | {} |", cells.join(" | "));
     if how.keeps_assumption() {
         for (what, found) in [
             ("contacts", contacts),
@@ -267,8 +254,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
             report.require(found == 0, || format!("{name}: {found} {what}"));
         }
     }
-    let mut named: BTreeMap<String, Vec<u64>> = BTreeMap::new();
-    for (seed, sailed) in all {
+    let named = all.iter().flat_map(|(seed, sailed)| {
         let flags = [
             (sailed.contact, "contact"),
             (sailed.conduct.lost_remainders > 0, "remainder lost"),
@@ -279,14 +265,9 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         ];
         let flags = flags
             .into_iter()
-            .filter(|(is, _)| *is)
-            .map(|(_, word)| word.to_owned());
-        for word in flags.chain(sailed.conduct.breaks.iter().cloned()) {
-            named.entry(word).or_default().push(*seed);
-        }
-    }
-    for (what, seeds) in named {
-        let few = &seeds[..seeds.len().min(8)];
-        println!("  {name}: {what}: {}, seeds {few:?}", seeds.len());
-    }
+            .filter_map(|(is, word)| is.then_some(word));
+        let breaks = sailed.conduct.breaks.iter().map(String::as_str);
+        flags.chain(breaks).map(|word| (word, *seed))
+    });
+    Report::print_seeds(name, named);
 }

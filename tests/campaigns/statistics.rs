@@ -11,6 +11,18 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// Quantiles with so many decimals, between strokes.
+pub fn quantiles<const N: usize>(values: &[f64], at: [f64; N], decimals: usize) -> String {
+    at.map(|p| format!("{:.decimals$}", quantile(values, p)))
+        .join("/")
+}
+
+/// How many of all, and the 95 % lower bound of their share in percent, as cells of a table.
+pub fn share_cells(count: usize, all: usize) -> String {
+    let bound = 100.0 * (1.0 - failure_bound(all - count, all));
+    format!("{count}/{all} | {bound:.2} %")
+}
+
 /// Median, 95th percentile and maximum in words.
 pub fn spread(values: &[f64]) -> String {
     let [half, most, worst] = [0.5, 0.95, 1.0].map(|p| quantile(values, p));

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{HEAD_ON, assert_values, document, run, searoom, stdout, text, write};
+use super::program::{Folder, HEAD_ON, assert_values, document, json, run, searoom, stdout, text};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
@@ -31,13 +31,9 @@ const ASSESSMENT: &str = r#"
 
 #[test]
 fn an_assessment_document_has_what_the_contract_names() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let points = write(folder.path(), "points.csv", "t_s,east_m,north_m\n300,0,0\n");
-    let velocities = write(
-        folder.path(),
-        "velocities.csv",
-        "east_mps,north_mps\n0,6\n5,0\n",
-    );
+    let folder = Folder::new();
+    let points = folder.write("points.csv", "t_s,east_m,north_m\n300,0,0\n");
+    let velocities = folder.write("velocities.csv", "east_mps,north_mps\n0,6\n5,0\n");
     let asked = format!(
         "assess scenarios/colregs/give-way.toml --at -10,5.5,0 --points {points} \
          --velocity -5,0 --velocities {velocities} --section 0 --section 60 --json"
@@ -54,7 +50,7 @@ fn an_assessment_document_has_what_the_contract_names() {
             [f64::min as fn(f64, f64) -> f64, f64::max].map(|f| norths.iter().copied().reduce(f));
         most.expect("vertices") - least.expect("vertices")
     };
-    let with_domain = document(&run(&format!("{asked} --domains")).success());
+    let with_domain = json(&format!("{asked} --domains"));
     assert!(area(&with_domain) > area(&assessment));
 }
 
@@ -113,58 +109,35 @@ fn an_assessment_reads_as_a_table() {
 
 #[test]
 fn what_an_assessment_cannot_read_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scenario = "scenarios/colregs/head-on.toml";
-    let file = write(
-        folder.path(),
-        "early.csv",
-        "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n",
-    );
-    searoom(&["assess", scenario, "--points", &file])
-        .code(2)
-        .stdout(is_empty())
-        .stderr(contains("early.csv: 3 faults").and(contains("line 2: t_s: found -0.5; allowed:")));
-    let missing = text(&folder.path().join("missing.csv")).to_owned();
-    searoom(&["assess", scenario, "--velocities", &missing])
-        .code(2)
-        .stderr(contains("missing.csv: cannot be read"));
-    searoom(&["assess", scenario, "--velocities", text(folder.path())])
-        .code(2)
-        .stderr(contains("not a regular file"));
-    for (option, value, said) in [
-        ("--at", "1,2,-1", "t_s: found -1; allowed: a number from 0"),
-        ("--velocity", "1,101", "north_mps: found 101"),
-        ("--section", "-1", "t_s: found -1"),
-    ] {
-        searoom(&["assess", scenario, option, value])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(option).and(contains(said)));
-    }
-    // faults of the scenario and of the rows together
-    let bad = write(folder.path(), "bad.toml", "title = 3");
-    let empty = write(folder.path(), "empty.csv", "");
-    searoom(&["assess", &bad, "--points", &empty])
-        .code(2)
-        .stderr(contains("title: found 3").and(contains("an empty file")));
-    searoom(&["assess", text(folder.path())])
-        .code(2)
-        .stderr(contains("a folder"));
+    let folder = Folder::new();
+    folder.write("early.csv", "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n");
+    folder.write("bad.toml", "title = 3");
+    folder.write("empty.csv", "");
     // polygons given velocities that are an ellipse
     let mixed = format!(
         "{HEAD_ON}\n[[targets]]\nname = \"mixed\"\ninitial_set = {{ vertices_m = [[900, 900]] }}\n\
          velocity_set = {{ center_mps = [1, 0], shape_m2_per_s2 = [[0.04, 0], [0, 0.06]] }}\n"
     );
-    let file = write(folder.path(), "mixed.toml", mixed);
-    searoom(&["assess", &file])
-        .code(2)
-        .stdout(is_empty())
-        .stderr(contains("mixed.toml").and(contains("targets[1].velocity_set")));
+    folder.write("mixed.toml", mixed);
+    let assess = "assess scenarios/colregs/head-on.toml";
+    folder.refuses(&format!(
+        "
+        {assess} --points DIR/early.csv | early.csv: 3 faults | line 2: t_s: found -0.5; allowed:
+        {assess} --velocities DIR/missing.csv | missing.csv: cannot be read
+        {assess} --velocities DIR | not a regular file
+        {assess} --at 1,2,-1 | --at | t_s: found -1; allowed: a number from 0
+        {assess} --velocity 1,101 | --velocity | north_mps: found 101
+        {assess} --section -1 | --section | t_s: found -1
+        assess DIR/bad.toml --points DIR/empty.csv | title: found 3 | an empty file
+        assess DIR | a folder
+        assess DIR/mixed.toml | mixed.toml | targets[1].velocity_set
+        "
+    ));
 }
 
 #[test]
 fn an_assessment_can_be_drawn() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let scenario = "scenarios/colregs/give-way.toml";
     let drawn = |name: &str| {
         let file = folder.path().join(name);
@@ -181,16 +154,12 @@ fn an_assessment_can_be_drawn() {
     assert!(svg.starts_with(b"<svg"));
     assert_eq!(svg, drawn("b.SVG"), "the same bytes");
     assert!(drawn("a.png").starts_with(b"\x89PNG\r\n\x1a\n"));
-    for (name, said) in [
-        ("a.pdf", "allowed: one of the two"),
-        ("a", "neither in .svg nor in .png"),
-        ("a.svg/b.svg", "the folder cannot be made"),
-        (".", "neither"),
-    ] {
-        let path = folder.path().join("new").join(name);
-        searoom(&["assess", scenario, "--figure", text(&path)])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(said));
-    }
+    folder.refuses(&format!(
+        "
+        assess {scenario} --figure DIR/new/a.pdf | allowed: one of the two
+        assess {scenario} --figure DIR/new/a | neither in .svg nor in .png
+        assess {scenario} --figure DIR/new/a.svg/b.svg | the folder cannot be made
+        assess {scenario} --figure DIR/new/. | neither
+        "
+    ));
 }

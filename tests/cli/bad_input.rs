@@ -1,7 +1,7 @@
 //! What once went wrong with files and options that nobody means, run as a user runs it. Each test
 //! is named after what holds now.
 
-use super::program::{HEAD_ON, document, run, searoom, stderr, text, write};
+use super::program::{Folder, HEAD_ON, document, json, rows, run, says, searoom, stderr, text};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 
@@ -20,11 +20,11 @@ fn in_legs(count: u32) -> String {
 
 #[test]
 fn waypoints_on_a_line_change_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let mut costs = Vec::new();
     for count in [1, 2, 99] {
-        let file = write(folder.path(), "legs.toml", in_legs(count));
-        let plan = document(&searoom(&["plan", &file, "--json"]).success());
+        let file = folder.write("legs.toml", in_legs(count));
+        let plan = json(&format!("plan {file} --json"));
         assert_eq!(
             plan["mission"]["waypoints"].as_array().map(Vec::len),
             Some(count as usize + 1),
@@ -43,7 +43,7 @@ fn waypoints_on_a_line_change_nothing() {
 /// Sixty targets, a hundred waypoints: one node of the search alone took half a minute.
 #[test]
 fn a_deadline_is_kept_among_many_targets_and_waypoints() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let mut scenario = String::from(
         "title = \"many\"\nhorizon_s = 6400.0\n[own_ship]\nposition = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0\n\
          speed_mps = 5.0\nlength_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\nspeeds_mps = [2.5, 5.0, 6.0]\n[planner]\ncompliance = \"shape\"\ndeadline_s = 0.4\n",
@@ -70,7 +70,7 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
             90.0 + 90.0 * side,
         );
     }
-    let file = write(folder.path(), "many.toml", &scenario);
+    let file = folder.write("many.toml", &scenario);
     // how far the search gets depends on the machine: with a plan that is clear of the ships, the
     // status is 0
     let ended = searoom(&["plan", &file, "--json"]).code(vec![0, 1]);
@@ -84,30 +84,22 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
 
 #[test]
 fn brackets_within_brackets_are_one_fault() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     for value in ["[".repeat(2000), "{a=".repeat(2000), "[".repeat(50)] {
-        let file = write(
-            folder.path(),
-            "deep.toml",
-            format!("title = \"x\"\na = {value}\n"),
-        );
+        let file = folder.write("deep.toml", format!("title = \"x\"\na = {value}\n"));
         let said = stderr(&searoom(&["check", &file]).code(2));
-        assert!(said.contains("1 fault\n"), "{said}");
+        says(&said, "1 fault\n");
     }
     // what else is wrong is still said
-    let file = write(
-        folder.path(),
-        "two.toml",
-        format!("= 1\na = {}\n", "[".repeat(200)),
-    );
+    let file = folder.write("two.toml", format!("= 1\na = {}\n", "[".repeat(200)));
     let said = stderr(&searoom(&["check", &file]).code(2));
-    assert!(said.contains("2 faults\n"), "{said}");
+    says(&said, "2 faults\n");
 }
 
 #[test]
 fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "one.toml", HEAD_ON);
+    let folder = Folder::new();
+    let file = folder.write("one.toml", HEAD_ON);
     let plans = folder.path().join("plans");
     run(&format!(
         "suite {file} {file} {} --plans {}",
@@ -124,8 +116,8 @@ fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
 
 #[test]
 fn no_folder_is_made_of_the_name_of_a_file() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "one.toml", HEAD_ON);
+    let folder = Folder::new();
+    let file = folder.write("one.toml", HEAD_ON);
     let options: &[(&str, &str)] = if cfg!(feature = "recording") {
         &[("--rrd", "foo.txt"), ("--rrd", "foo.svg")]
     } else {
@@ -152,9 +144,8 @@ fn no_folder_is_made_of_the_name_of_a_file() {
 /// verification.
 #[test]
 fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(
-        folder.path(),
+    let folder = Folder::new();
+    let file = folder.write(
         "short.toml",
         HEAD_ON
             .replace("turning_radius_m = 100.0", "turning_radius_m = 1e6")
@@ -168,36 +159,23 @@ fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
         .stdout(contains("verified"));
 }
 
+/// What replaces the intervals of figure 9, and what is said of it.
+const INTERVALS: &str = r#"
+intervals = 1.5 | found 1.5; allowed: a whole number from 1 to 2000
+intervals = 50\ncontrol_weights = [0, 1, 1] | found 0; allowed: a number from 1e-24 to
+intervals = 50\nstate_weights = [1] | found 1 number; allowed: 6 numbers
+intervals = 50\nstate_weights = [0, 0, 0, 0, 0, 0] | found only zeros, with which the mission counts for nothing; allowed: at least one number above 0
+"#;
+
 #[test]
 fn what_was_found_is_said_in_few_words() {
     run("assess scenarios/colregs/head-on.toml --velocity 1e308,0")
         .code(2)
         .stderr(contains("found 1e308;"));
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let figure = include_str!("../../scenarios/paper/figure_9.toml");
-    for (change, said) in [
-        (
-            "intervals = 1.5",
-            "found 1.5; allowed: a whole number from 1 to 2000",
-        ),
-        (
-            "intervals = 50\ncontrol_weights = [0, 1, 1]",
-            "found 0; allowed: a number from 1e-24 to",
-        ),
-        (
-            "intervals = 50\nstate_weights = [1]",
-            "found 1 number; allowed: 6 numbers",
-        ),
-        (
-            "intervals = 50\nstate_weights = [0, 0, 0, 0, 0, 0]",
-            "found only zeros, with which the mission counts for nothing; allowed: at least one number above 0",
-        ),
-    ] {
-        let file = write(
-            folder.path(),
-            "words.toml",
-            figure.replace("intervals = 50", change),
-        );
-        searoom(&["check", &file]).code(2).stderr(contains(said));
+    for [change, said] in rows(INTERVALS) {
+        folder.write("words.toml", figure.replace("intervals = 50", &change));
+        folder.refuses(&format!("check DIR/words.toml | {said}"));
     }
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::program::{document, searoom, stdout, write};
+use super::program::{Folder, document, searoom, stdout};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/documents.md");
@@ -50,16 +50,16 @@ fn every_key_is_on_the_page() {
 
 #[test]
 fn every_key_of_a_verification_is_on_its_page() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let plan = searoom(&["plan", "scenarios/harbour/munkholmen.toml", "--json"]);
-    let plan = write(folder.path(), "plan.json", stdout(&plan));
+    let plan = folder.write("plan.json", stdout(&plan));
     named(VERIFICATION, &keys_of(&["verify", &plan, "--json"]));
 }
 
 #[cfg(feature = "recording")]
 #[test]
 fn every_key_of_a_recording_is_on_the_page() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let file = folder.path().join("a.rrd");
     let file = file.to_str().expect("text");
     searoom(&["plan", "scenarios/colregs/head-on.toml", "--rrd", file]).success();

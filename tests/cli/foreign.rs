@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::time::Instant;
 
-use super::program::{HEAD_ON, document, run, searoom, stderr, text, untimed, write};
+use super::program::{Folder, HEAD_ON, document, json, run, searoom, stderr, text, untimed};
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -14,8 +14,8 @@ const DNV: &str = include_str!("../../scenarios/dnv/traffic_situation_01.json");
 /// rest runs.
 #[test]
 fn a_folder_may_mix_formats_and_faults() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str, contents: &str| write(folder.path(), name, contents);
+    let folder = Folder::new();
+    let at = |name: &str, contents: &str| folder.write(name, contents);
     at("a/head-on.toml", HEAD_ON);
     at("b/dnv.json", DNV);
     at("c/none.json", "{\"answer\": 42}");
@@ -63,28 +63,15 @@ fn a_folder_may_mix_formats_and_faults() {
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }
-    let mut written: Vec<String> = fs::read_dir(&plans)
-        .expect("a folder")
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into()
-        })
-        .collect();
-    written.sort();
-    assert_eq!(
-        written,
-        ["a__head-on.json", "b__dnv.json", "g__imazu-01.json"]
-    );
+    let written = ["a__head-on.json", "b__dnv.json", "g__imazu-01.json"];
+    assert_eq!(folder.names("plans.out"), written);
 }
 
 #[test]
 fn options_say_what_foreign_files_do_not() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "dnv.json", DNV);
-    let of = |options: &str| document(&run(&format!("plan {file} --json {options}")).success());
+    let folder = Folder::new();
+    let file = folder.write("dnv.json", DNV);
+    let of = |options: &str| json(&format!("plan {file} --json {options}"));
     let usual = of("");
     assert_eq!(usual["own_ship"]["safety_margin_m"], 122.0);
     assert_eq!(usual["targets"][0]["ship"]["speed_spread_mps"], 0.5);
@@ -115,21 +102,21 @@ fn one_plan_is_of_one_situation() {
 
 #[test]
 fn a_format_is_told_by_what_is_in_the_file() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let dnv = write(folder.path(), "named.toml", DNV);
-    let toml = write(folder.path(), "named.json", HEAD_ON);
+    let folder = Folder::new();
+    let dnv = folder.write("named.toml", DNV);
+    let toml = folder.write("named.json", HEAD_ON);
     searoom(&["check", &dnv, &toml]).success();
 }
 
 /// Every command reads every format.
 #[test]
 fn foreign_files_are_compared_and_assessed() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(folder.path(), "a.toml", HEAD_ON);
-    write(folder.path(), "b.json", DNV);
+    let folder = Folder::new();
+    folder.write("a.toml", HEAD_ON);
+    folder.write("b.json", DNV);
     let folder = text(folder.path());
     let asked = "--planner space-time --search a-star --margin-m 300 --json";
-    let compared = document(&run(&format!("compare {folder} {asked}")).success());
+    let compared = json(&format!("compare {folder} {asked}"));
     let compared = compared["comparisons"].as_array().expect("a list").clone();
     let titles: Vec<&Value> = compared.iter().map(|c| &c["scenario"]).collect();
     assert_eq!(titles, ["Head-on", "HO"]);
@@ -145,7 +132,7 @@ fn foreign_files_are_compared_and_assessed() {
 /// noted.
 #[test]
 fn imported_files_run_as_their_originals() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let out = folder.path().join("scenarios");
     let sources = ["scenarios/imazu/imazu.json", "scenarios/commonocean"];
     let options = ["--safety-margin-m", "300", "--course-spread-deg", "3"];
@@ -231,9 +218,9 @@ fn a_lint_says_what_is_odd_about_the_published_cases() {
 
 #[test]
 fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let crossing = include_str!("../../scenarios/dnv/traffic_situation_03.json");
-    write(folder.path(), "a.json", crossing);
+    folder.write("a.json", crossing);
     // port and starboard exchanged about own ship's meridian
     let mut mirror: Value = serde_json::from_str(crossing).expect("JSON");
     for place in mirror["targetShips"][0]["waypoints"]
@@ -248,14 +235,14 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
         .expect("degrees");
     mirror["targetShips"][0]["initial"]["heading"] = (360.0 - heading).into();
     mirror["title"] = "CR-SO, HO".into();
-    write(folder.path(), "b.json", mirror.to_string());
+    folder.write("b.json", mirror.to_string());
     let far = HEAD_ON.replace(
         "east_m = 1500.0, north_m = 0.0 }\ncourse",
         "east_m = 90000.0, north_m = 0.0 }\ncourse",
     );
     assert_ne!(far, HEAD_ON);
-    write(folder.path(), "c.toml", far);
-    write(folder.path(), "d.json", "{\"ownShip\": {}}");
+    folder.write("c.toml", far);
+    folder.write("d.json", "{\"ownShip\": {}}");
     let assert = searoom(&["suite", "--lint", "--json", text(folder.path())]).code(2);
     let found = document(&assert);
     let said = findings(&found, "CR-SO, HO");

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use super::program::{
-    HEAD_ON, assert_values, document, head_on_without_planner, rows, run, searoom, stdout, text,
-    untimed, write,
+    Folder, HEAD_ON, assert_values, document, head_on_without_planner, json, rows, run, says,
+    searoom, stdout, text, untimed,
 };
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -27,9 +27,8 @@ fn the_scenarios_of_the_project_are_good() {
 
 #[test]
 fn every_fault_of_a_file_is_reported_at_once() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(
-        folder.path(),
+    let folder = Folder::new();
+    let file = folder.write(
         "bad.toml",
         HEAD_ON
             .replace("horizon_s = 400.0", "horizon_s = -1")
@@ -37,14 +36,8 @@ fn every_fault_of_a_file_is_reported_at_once() {
             .replace("length_m = 30.0", "length_m = nan")
             .replace("turning_radius_m = 100.0", "turning_radius_m = 0")
             .replace("safety_margin_m", "safty_margin_m")
-            .replace(
-                "speed_spread_mps = 0.5",
-                "speed_spread_mps = -0.5\nspeed_kn = 3",
-            )
-            .replace(
-                "{ east_m = 1500.0, north_m = 0.0 }]",
-                "{ east_m = 0, north_m = 0 }]",
-            ),
+            .replace("spread_mps = 0.5", "spread_mps = -0.5\nspeed_kn = 3")
+            .replace("1500.0, north_m = 0.0 }]", "0, north_m = 0 }]"),
     );
     let mut assert = searoom(&["check", &file]).code(2).stdout(is_empty());
     for expected in [
@@ -64,9 +57,9 @@ fn every_fault_of_a_file_is_reported_at_once() {
 
 #[test]
 fn rules_are_kept_by_the_space_time_planner_alone() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let ruled = HEAD_ON;
-    let file = write(folder.path(), "ruled.toml", ruled);
+    let file = folder.write("ruled.toml", ruled);
     searoom(&["plan", &file])
         .code(0)
         .stdout(contains("relaxed").not());
@@ -74,16 +67,12 @@ fn rules_are_kept_by_the_space_time_planner_alone() {
     let other = searoom(&["plan", &file, "--planner", "path-time", "--json"]);
     assert_eq!(document(&other)["compliance"], "shape");
     let asked = ruled.replacen("[planner]", "[planner]\nkind = \"path-time\"", 1);
-    let asked = write(folder.path(), "asked.toml", asked);
+    let asked = folder.write("asked.toml", asked);
     searoom(&["plan", &asked])
         .code(2)
         .stdout(is_empty())
         .stderr(contains("planner.compliance").and(contains("path-time")));
-    let unknown = write(
-        folder.path(),
-        "unknown.toml",
-        ruled.replacen("rules", "rule", 1),
-    );
+    let unknown = folder.write("unknown.toml", ruled.replacen("rules", "rule", 1));
     searoom(&["plan", &unknown])
         .code(2)
         .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
@@ -103,10 +92,10 @@ TIME | 0, 0; 0, 0 | mission.alternatives[0][1]: found the waypoint before it aga
 
 #[test]
 fn what_does_not_fit_the_planner_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let path_time = "[planner]\nkind = \"path-time\"\n";
     let refused = |contents: &str, expected: &str| {
-        let file = write(folder.path(), "unfit.toml", contents);
+        let file = folder.write("unfit.toml", contents);
         for command in ["check", "plan", "suite"] {
             searoom(&[command, &file])
                 .code(2)
@@ -137,7 +126,7 @@ fn what_does_not_fit_the_planner_is_named() {
     );
     // the command line asks for what the file is not for
     let scenario = with(&format!("{path_time}objective = \"time\""));
-    let file = write(folder.path(), "unfit.toml", scenario);
+    let file = folder.write("unfit.toml", scenario);
     // head-on on one path there is no way past each other
     searoom(&["plan", &file])
         .code(1)
@@ -150,41 +139,35 @@ fn what_does_not_fit_the_planner_is_named() {
 
 #[test]
 fn files_that_are_none_are_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let missing = text(&folder.path().join("missing.toml")).to_owned();
-    for command in ["check", "plan", "suite"] {
-        searoom(&[command, &missing])
-            .code(2)
-            .stderr(contains("missing.toml: cannot be read"));
+    let folder = Folder::new();
+    folder.write("bytes.toml", [0x74, 0xff, 0x00]);
+    folder.refuses(
+        "
+        check DIR/missing.toml | missing.toml: cannot be read
+        plan DIR/missing.toml | missing.toml: cannot be read
+        plan DIR | a folder | suite
+        check DIR/bytes.toml | found bytes that are not text at byte 1
+        plan | Usage
+        suite --json --figure x.svg | --figure x.svg: a file, but there are
+        suite --figure x.pdf | --figure: x.pdf | .svg
+        ",
+    );
+    let empty = Folder::new();
+    for (name, said) in [("", "without scenarios"), ("x.toml", "cannot be read")] {
+        let suite = searoom(&["suite", &empty.at(name)]).code(2);
+        suite.stderr(contains(said));
     }
-    searoom(&["suite", text(folder.path())])
-        .code(2)
-        .stderr(contains("a folder without scenarios"));
-    searoom(&["plan", text(folder.path())])
-        .code(2)
-        .stderr(contains("a folder").and(contains("suite")));
-    let bytes = write(folder.path(), "bytes.toml", [0x74, 0xff, 0x00]);
-    searoom(&["check", &bytes])
-        .code(2)
-        .stderr(contains("found bytes that are not text at byte 1"));
-    searoom(&["plan"]).code(2).stderr(contains("Usage"));
-    searoom(&["suite", "--json", "--figure", "x.svg"])
-        .code(2)
-        .stderr(contains("--figure x.svg: a file, but there are"));
-    searoom(&["suite", "--figure", "x.pdf"])
-        .code(2)
-        .stderr(contains("--figure: x.pdf").and(contains(".svg")));
 }
 
 #[test]
 fn a_suite_goes_on_after_a_broken_file() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(folder.path(), "a/good.toml", HEAD_ON);
-    write(folder.path(), "a.toml", "title = 3");
-    write(folder.path(), "z.toml", HEAD_ON.replace("Head-on", "Last"));
-    write(folder.path(), ".hidden/x.toml", "");
-    write(folder.path(), "notes.txt", "");
-    let plans = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
+    folder.write("a/good.toml", HEAD_ON);
+    folder.write("a.toml", "title = 3");
+    folder.write("z.toml", HEAD_ON.replace("Head-on", "Last"));
+    folder.write(".hidden/x.toml", "");
+    folder.write("notes.txt", "");
+    let plans = Folder::new();
     let assert = run(&format!(
         "suite {} --json --plans {}",
         text(folder.path()),
@@ -210,12 +193,7 @@ fn a_suite_goes_on_after_a_broken_file() {
     assert_eq!(suite["summary"]["solved"], 2);
     assert_eq!(suite["summary"]["unreadable"], 1);
     assert_eq!(suite["summary"]["verified"], 2);
-    let mut written: Vec<_> = fs::read_dir(plans.path())
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").file_name())
-        .collect();
-    written.sort();
-    assert_eq!(written, ["a__good.json", "z.json"]);
+    assert_eq!(plans.names(""), ["a__good.json", "z.json"]);
     searoom(&["suite", text(folder.path())])
         .code(2)
         .stdout(contains("unreadable").and(contains("3 scenarios: 2 solved, 1 unreadable")));
@@ -223,11 +201,9 @@ fn a_suite_goes_on_after_a_broken_file() {
 
 #[test]
 fn two_results_never_share_a_file() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (a, b) = (
-        write(folder.path(), "a/same.toml", HEAD_ON),
-        write(folder.path(), "b/same.toml", HEAD_ON),
-    );
+    let folder = Folder::new();
+    let a = folder.write("a/same.toml", HEAD_ON);
+    let b = folder.write("b/same.toml", HEAD_ON);
     let plans = folder.path().join("plans");
     searoom(&["suite", &a, &b, "--plans", text(&plans)])
         .code(2)
@@ -257,7 +233,7 @@ const PLAN: &str = r#"
 
 #[test]
 fn a_plan_document_has_what_the_contract_names() {
-    let plan = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
+    let plan = json("plan scenarios/colregs/head-on.toml --json");
     assert_values(&plan, PLAN);
     assert_eq!(plan["encounters"][0]["scores"].get("rule_15"), None);
     // own ship goes east and turns to starboard first: positive, toward the south
@@ -295,17 +271,13 @@ fn options_replace_what_the_scenario_says() {
 
 #[test]
 fn no_plan_is_an_answer() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let inside = write(
-        folder.path(),
+    let folder = Folder::new();
+    let inside = folder.write(
         "inside.toml",
         HEAD_ON.replace("position = { east_m = 1500.0", "position = { east_m = 30.0"),
     );
-    let late = write(
-        folder.path(),
-        "late.toml",
-        HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 40.0"),
-    );
+    let late = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 40.0");
+    let late = folder.write("late.toml", late);
     let plan = document(&searoom(&["plan", &late, "--json"]).code(1));
     assert_eq!(plan["outcome"], "infeasible");
     assert!(plan["cost"].is_null() && plan["trajectory"].is_null());
@@ -326,20 +298,14 @@ fn no_plan_is_an_answer() {
     let plan = document(&plan);
     assert_eq!(plan["outcome"], "relaxed");
     let given_up = &plan["relaxation"];
-    assert_eq!(
-        (&given_up["kind"], given_up["amount"].as_f64()),
-        (&Value::from("risk"), Some(1.0))
-    );
+    assert_eq!(given_up["kind"], "risk");
+    assert_eq!(given_up["amount"], 1.0);
     let until = given_up["until_s"].as_f64().expect("when it is left");
     let valid = &plan["obstacles"][0]["valid_s"];
     assert_eq!(valid[0].as_f64(), Some(until));
-    assert!(
-        plan["reason"]
-            .as_str()
-            .is_some_and(|r| r.contains("starts inside"))
-    );
+    says(plan["reason"].as_str().expect("a text"), "starts inside");
     let check = |text: &str| {
-        let file = write(folder.path(), "plan.json", text);
+        let file = folder.write("plan.json", text);
         searoom(&["verify", &file])
     };
     check(&text)
@@ -371,7 +337,7 @@ fn no_plan_is_an_answer() {
 /// the end.
 #[test]
 fn a_plan_that_does_not_arrive_says_so() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let along = "plan scenarios/colregs/overtaking.toml --planner path-time";
     run(along)
         .code(1)
@@ -380,20 +346,18 @@ fn a_plan_that_does_not_arrive_says_so() {
     let text = stdout(&run(&format!("{along} --json")).code(1));
     let plan: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(plan["relaxation"]["kind"], "arrival");
-    assert_eq!(
-        (&plan["cost"]["arrived"], &plan["cost"]["delay_s"]),
-        (&Value::from(false), &Value::Null)
-    );
-    let file = write(folder.path(), "plan.json", &text);
+    assert_eq!(plan["cost"]["arrived"], false);
+    assert_eq!(plan["cost"]["delay_s"], Value::Null);
+    let file = folder.write("plan.json", &text);
     searoom(&["verify", &file]).success();
 }
 
 #[test]
 fn without_targets_there_is_no_clearance() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
-    let file = write(folder.path(), "alone.toml", alone);
-    let plan = document(&searoom(&["plan", &file, "--json"]).success());
+    let file = folder.write("alone.toml", alone);
+    let plan = json(&format!("plan {file} --json"));
     assert!(plan["cost"]["min_clearance_m"].is_null());
     assert_eq!(plan["encounters"], Value::Array(Vec::new()));
     searoom(&["plan", &file]).success().stdout(contains("none"));
@@ -415,12 +379,11 @@ fn recordings_need_their_feature() {
 #[cfg(feature = "recording")]
 #[test]
 fn recordings_are_named_after_their_scenarios() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     // the parent of the folder named is where names begin
-    let below = folder.path().join("scenes");
-    fs::create_dir_all(below.join("colregs")).expect("a folder");
-    write(&below.join("colregs"), "head-on.toml", HEAD_ON);
-    searoom(&["suite", text(&below), "--rrd", text(folder.path())]).success();
+    folder.write("scenes/colregs/head-on.toml", HEAD_ON);
+    let below = folder.at("scenes");
+    searoom(&["suite", &below, "--rrd", text(folder.path())]).success();
     let recording = folder.path().join("colregs__head-on.rrd");
     assert!(fs::metadata(recording).expect("a recording").len() > 1000);
     let file = folder.path().join("one.rrd");
@@ -465,18 +428,18 @@ fn with_waypoints(own: &str, waypoints: &str) -> String {
 
 #[test]
 fn a_ship_at_the_last_waypoint_has_arrived() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let own = "position = { east_m = 700.0, north_m = 900.0 }";
     let waypoints = "waypoints = [{ east_m = 0, north_m = 900 }, { east_m = 700, north_m = 900 }]";
-    let file = write(folder.path(), "there.toml", with_waypoints(own, waypoints));
-    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    let file = folder.write("there.toml", with_waypoints(own, waypoints));
+    let document = json(&format!("plan {file} --json"));
     assert_eq!(document["outcome"], "solved");
     assert_eq!(document["cost"]["duration_s"], 0.0);
 }
 
 #[test]
 fn legs_shorter_than_a_turn_are_cut_short_and_too_many_are_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let own = "position = { east_m = 0.0, north_m = 900.0 }";
     let zigzag = |count: usize| {
         let points: Vec<String> = (0..count)
@@ -484,18 +447,18 @@ fn legs_shorter_than_a_turn_are_cut_short_and_too_many_are_refused() {
             .collect();
         with_waypoints(own, &format!("waypoints = [{}]", points.join(", ")))
     };
-    let file = write(folder.path(), "zigzag.toml", zigzag(99));
-    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    let file = folder.write("zigzag.toml", zigzag(99));
+    let document = json(&format!("plan {file} --json"));
     assert_eq!(document["verified"], true);
     assert!(document["cost"]["length_m"].as_f64().expect("a length") < 1600.0);
-    let file = write(folder.path(), "many.toml", zigzag(200));
+    let file = folder.write("many.toml", zigzag(200));
     let refused = searoom(&["check", &file]).code(2);
     refused.stderr(contains("mission.waypoints: found 200 positions"));
 }
 
 #[test]
 fn sets_of_one_point_block_too() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let text = HEAD_ON
         .split("[[targets]]")
         .next()
@@ -503,21 +466,16 @@ fn sets_of_one_point_block_too() {
         .to_owned()
         + "[[targets]]\nname = \"buoy\"\ninitial_set = { vertices_m = [[700.0, 0.0]] }\n\
            velocity_set = { vertices_mps = [[-1.0, 0.0]] }\n";
-    let file = write(folder.path(), "point.toml", text);
-    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    let file = folder.write("point.toml", text);
+    let document = json(&format!("plan {file} --json"));
     assert_eq!(document["verified"], true);
-    assert!(
-        document["cost"]["space_time_error_m2"]
-            .as_f64()
-            .expect("a cost")
-            > 0.0
-    );
+    assert!(document["cost"]["space_time_error_m2"].as_f64() > Some(0.0));
 }
 
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_not_waited_for() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let pipe = folder.path().join("pipe.toml");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     if made.is_ok_and(|status| status.success()) {
@@ -527,8 +485,8 @@ fn a_pipe_is_not_waited_for() {
 
 #[test]
 fn sets_are_of_the_kind_that_was_asked_for() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "risk.toml", HEAD_ON);
+    let folder = Folder::new();
+    let file = folder.write("risk.toml", HEAD_ON);
     searoom(&["plan", &file, "--max-risk", "1"])
         .code(2)
         .stderr(contains("0 to 0.999999"));
@@ -537,7 +495,7 @@ fn sets_are_of_the_kind_that_was_asked_for() {
         ("turn_rate_deg_per_s = 0.05", "vertices_m", 4),
     ] {
         let text = HEAD_ON.replacen("beam_m = 12.0", &format!("beam_m = 12.0\n{change}"), 1);
-        let file = write(folder.path(), "kind.toml", text);
+        let file = folder.write("kind.toml", text);
         let said = searoom(&["plan", &file, "--json"]).success();
         let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
         let obstacles = plan["obstacles"].as_array().expect("a list");
@@ -577,12 +535,12 @@ fn later_on(scenario: &str, plan: &Value, seconds: u32, beside: f64) -> String {
 
 #[test]
 fn a_plan_goes_on_from_the_previous_one() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
-    let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
-    let previous = write(folder.path(), "first.json", first.to_string());
+    let first = json("plan scenarios/colregs/head-on.toml --json");
+    let previous = folder.write("first.json", first.to_string());
     let later = later_on(&scenario, &first, 60, 0.0);
-    let file = write(folder.path(), "later.toml", later.clone());
+    let file = folder.write("later.toml", later.clone());
     let go_on = |file: &str| searoom(&["plan", file, "--previous", &previous, "--json"]);
     let second = document(&go_on(&file).success());
     // the same manoeuvre, not a turn back
@@ -591,19 +549,15 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert_eq!(second["encounters"][0]["roles"][0]["from_s"], -60.0);
     assert_eq!(second["encounters"][0]["violations"], Value::Array(vec![]));
     // without the previous plan own ship turns back at once
-    let anew = document(&searoom(&["plan", &file, "--json"]).success());
+    let anew = json(&format!("plan {file} --json"));
     let side = |plan: &Value| plan["cost"]["first_turn"]["side"].clone();
     assert_eq!(side(&anew), "port");
     assert_ne!(anew["encounters"][0]["violations"], Value::Array(vec![]));
-    let verified = write(folder.path(), "second.json", second.to_string());
+    let verified = folder.write("second.json", second.to_string());
     searoom(&["verify", &verified]).success();
 
     // a metre beside the plan its remainder is of no use, but the manoeuvre goes on
-    let beside = write(
-        folder.path(),
-        "beside.toml",
-        later_on(&scenario, &first, 60, 1.0),
-    );
+    let beside = folder.write("beside.toml", later_on(&scenario, &first, 60, 1.0));
     let third = document(&go_on(&beside).success());
     assert!((begins(&first) - 60.0 - begins(&third)).abs() < 1e-9);
     assert_eq!(third["memory"]["keeps_plan"], false);
@@ -612,11 +566,9 @@ fn a_plan_goes_on_from_the_previous_one() {
     // within its tracking margin own ship goes on from the plan
     let first_ship = |margin: &str, beside| {
         let text = later_on(&scenario, &first, 60, beside);
-        let text = text.replace(
-            "[own_ship]",
-            &format!("[own_ship]\ntracking_margin_m = {margin}"),
-        );
-        write(folder.path(), "near.toml", text)
+        let own = format!("[own_ship]\ntracking_margin_m = {margin}");
+        let text = text.replace("[own_ship]", &own);
+        folder.write("near.toml", text)
     };
     let near = document(&go_on(&first_ship("1.5", 1.0)).success());
     assert_eq!(near["own_ship"]["position"], second["own_ship"]["position"]);
@@ -634,81 +586,68 @@ fn a_plan_goes_on_from_the_previous_one() {
     let times = (160..=224).step_by(4);
     for (seconds, beside) in times.flat_map(|s| [3e-4, -4e-4, 0.01].map(|beside| (s, beside))) {
         let file = later_on(&scenario, &second, seconds, beside);
-        let file = write(folder.path(), "back.toml", file);
+        let file = folder.write("back.toml", file);
         let back = searoom(&["plan", &file, "--previous", &verified, "--json"]).success();
         let delay = document(&back)["cost"]["delay_s"].as_f64();
-        assert!(
-            delay.expect("seconds") < 10.0,
-            "{seconds} {beside}: {delay:?}"
-        );
+        let soon = delay.is_some_and(|delay| delay < 10.0);
+        assert!(soon, "{seconds} {beside}: {delay:?}");
     }
 
     // a target that moved within its spread keeps to the velocities of both plans
     let moved = later.replace("course_deg = 270.0", "course_deg = 274.0");
-    let moved = document(&go_on(&write(folder.path(), "moved.toml", moved)).success());
+    let moved = document(&go_on(&folder.write("moved.toml", moved)).success());
     assert!(moved["targets"][0]["ship"]["kept_velocities"].is_object());
-    let moved = write(folder.path(), "moved.json", moved.to_string());
+    let moved = folder.write("moved.json", moved.to_string());
     searoom(&["verify", &moved]).success();
 
     // a remainder at a speed that is no longer own ship's is not kept
     let slower = later.replace("[2.5, 5.0, 6.0]", "[2.5, 6.0]");
     assert_ne!(slower, later);
-    let slower = document(&go_on(&write(folder.path(), "slower.toml", slower)).success());
+    let slower = document(&go_on(&folder.write("slower.toml", slower)).success());
     assert_eq!(slower["memory"]["keeps_plan"], false);
 
     let turned = later.replace("course_deg = 270.0", "course_deg = 250.0");
-    let turned = write(folder.path(), "turned.toml", turned);
+    let turned = folder.write("turned.toml", turned);
     let turned = document(&go_on(&turned).success());
-    assert_eq!(
-        turned["memory"]["outside_velocities"],
-        Value::from(vec!["target"])
-    );
+    let outside = &turned["memory"]["outside_velocities"];
+    assert_eq!(*outside, serde_json::json!(["target"]));
     assert_eq!(turned["targets"][0]["ship"]["kept_velocities"], Value::Null);
 
     let renamed = later.replace("name = \"target\"", "name = \"other\"");
-    let renamed = write(folder.path(), "renamed.toml", renamed);
+    let renamed = folder.write("renamed.toml", renamed);
     let renamed = searoom(&["plan", &renamed, "--previous", &previous]);
     renamed.stdout(contains(
         "'target' of the previous plan is not in this file",
     ));
 }
 
+/// A text of the scenario, what replaces it, and why the previous plan does not fit.
+const UNFIT_PREVIOUS: &str = r#"
+time_s = 60.0 | time_s = 600.0 | time_s: found a plan from 0 s to
+title = "Head-on" | title = "Other" | allowed: a plan of "Other"
+course_deg = 1 | course_deg = 2 | allowed: at most 30 m, own length, and 20 degrees
+"#;
+
 #[test]
 fn a_previous_plan_that_does_not_fit_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
-    let first = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
-    let previous = write(folder.path(), "first.json", first.to_string());
+    let first = json("plan scenarios/colregs/head-on.toml --json");
+    let previous = folder.write("first.json", first.to_string());
     let mut altered = first.clone();
     altered["own_ship"]["length_m"] = 31.0.into();
-    let altered = write(folder.path(), "altered.json", altered.to_string());
+    let altered = folder.write("altered.json", altered.to_string());
     let later = later_on(&scenario, &first, 60, 0.0);
-    for (old, new, message) in [
-        (
-            "time_s = 60.0",
-            "time_s = 600.0",
-            "time_s: found a plan from 0 s to",
-        ),
-        (
-            "title = \"Head-on\"",
-            "title = \"Other\"",
-            "allowed: a plan of \"Other\"",
-        ),
-        (
-            "course_deg = 1",
-            "course_deg = 2",
-            "allowed: at most 30 m, own length, and 20 degrees",
-        ),
-    ] {
-        let changed = later.replace(old, new);
+    for [old, new, message] in rows(UNFIT_PREVIOUS) {
+        let changed = later.replace(&old, &new);
         assert_ne!(changed, later);
-        let file = write(folder.path(), "changed.toml", changed);
+        let file = folder.write("changed.toml", changed);
         let refused = searoom(&["plan", &file, "--previous", &previous]).code(2);
         refused.stdout(is_empty()).stderr(contains(message));
         let ignored = ["plan", &file, "--previous", &previous, "--ignore-previous"];
         searoom(&ignored).stderr(contains("ignored"));
     }
-    let file = write(folder.path(), "later.toml", later);
+    let file = folder.write("later.toml", later);
     let refused = searoom(&["plan", &file, "--previous", &altered]).code(2);
     refused.stderr(contains("not a plan that verifies"));
     searoom(&["plan", &file, "--previous", "none.json"]).code(2);
@@ -716,70 +655,60 @@ fn a_previous_plan_that_does_not_fit_is_named() {
 
 #[test]
 fn limits_of_risk_and_of_ample_time_can_be_set() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let scenario = fs::read_to_string("scenarios/colregs/give-way.toml").expect("a scenario");
     let plan = |limit: &str| {
         let text = scenario.replace("[planner]", &format!("[planner]\n{limit}"));
-        let file = write(folder.path(), "limits.toml", text);
-        document(&searoom(&["plan", &file, "--json"]).success())
+        let file = folder.write("limits.toml", text);
+        json(&format!("plan {file} --json"))
     };
     let lead = |plan: &Value| plan["encounters"][0]["manoeuvre"]["lead_s"].as_f64();
     let early = plan("");
     assert_eq!(early["thresholds"], "searoom");
     let late = plan("ample_time_s = 110.0");
-    assert_eq!(
-        late["thresholds"],
-        "searoom, with the limits of the scenario"
-    );
+    let limits = "searoom, with the limits of the scenario";
+    assert_eq!(late["thresholds"], limits);
     assert!(lead(&early) > Some(125.0) && lead(&late) > Some(105.0));
     assert!(lead(&late) < Some(115.0));
     // collision is risk at any distance; ships that pass at 60 m are not at a limit of 50 m
-    assert_eq!(
-        plan("cpa_limit_m = 0.0")["encounters"][0]["role"],
-        "give-way"
-    );
+    let nearest = plan("cpa_limit_m = 0.0");
+    assert_eq!(nearest["encounters"][0]["role"], "give-way");
     let aside = |limit: &str| {
         let text = scenario
             .replace("[planner]", &format!("[planner]\n{limit}"))
             .replace("safety_margin_m = 20.0", "safety_margin_m = 2.0")
             .replace("north_m = -750.0", "north_m = -600.0");
         assert!(text.contains("-600.0"), "the target is moved");
-        let file = write(folder.path(), "aside.toml", text);
-        document(&searoom(&["plan", &file, "--json"]).success())["encounters"][0]["role"].clone()
+        let file = folder.write("aside.toml", text);
+        json(&format!("plan {file} --json"))["encounters"][0]["role"].clone()
     };
     assert_eq!(aside("cpa_limit_m = 50.0"), "none");
     assert_eq!(aside("cpa_limit_m = 150.0"), "give-way");
 }
 
+/// Keys of a target, and their fault.
+const ROLE_FAULTS: &str = r#"
+role = "captain" | targets[0].role: found the text "captain"
+role = "stand-on"\nrole_since_s = 91.0 | a number from 0 to 90
+role_since_s = 5.0 | targets[0].role_since_s: found 5
+"#;
+
 #[test]
 fn roles_of_a_file_last() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let with = |keys: &str| {
         let text = scenario.replace("name = \"target\"", &format!("name = \"target\"\n{keys}"));
-        write(
-            folder.path(),
-            "roles.toml",
-            text.replace("horizon_s", "time_s = 90.0\nhorizon_s"),
-        )
+        let text = text.replace("horizon_s", "time_s = 90.0\nhorizon_s");
+        folder.write("roles.toml", text)
     };
     // head-on by geometry
     let file = with("role = \"stand-on\"\nrole_since_s = 30.0\nfirst_course_deg = 85.0");
     let plan = document(&searoom(&["plan", &file, "--json"]));
     assert_eq!(plan["encounters"][0]["role"], "stand-on");
     assert_eq!(plan["encounters"][0]["roles"][0]["from_s"], -60.0);
-    for (keys, message) in [
-        (
-            "role = \"captain\"",
-            "targets[0].role: found the text \"captain\"",
-        ),
-        (
-            "role = \"stand-on\"\nrole_since_s = 91.0",
-            "a number from 0 to 90",
-        ),
-        ("role_since_s = 5.0", "targets[0].role_since_s: found 5"),
-    ] {
-        let file = with(keys);
+    for [keys, message] in rows(ROLE_FAULTS) {
+        let file = with(&keys);
         searoom(&["check", &file]).code(2).stderr(contains(message));
     }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 use serde_json::Value;
+use tempfile::TempDir;
 
 pub const HEAD_ON: &str = include_str!("../../scenarios/colregs/head-on.toml");
 
@@ -32,11 +33,62 @@ pub fn text(path: &Path) -> &str {
     path.to_str().expect("a path that is text")
 }
 
-pub fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> String {
-    let file = folder.join(name);
-    fs::create_dir_all(file.parent().expect("a folder")).expect("made");
-    fs::write(&file, contents).expect("written");
-    text(&file).to_owned()
+/// An empty folder for the files of a test.
+pub struct Folder(TempDir);
+
+impl Folder {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder"))
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// The path of a file, which need not be there.
+    pub fn at(&self, name: &str) -> String {
+        text(&self.path().join(name)).to_owned()
+    }
+
+    /// Writes a file; folders are made.
+    pub fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
+        let file = self.path().join(name);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+        fs::write(&file, contents).expect("written");
+        self.at(name)
+    }
+
+    /// Names of the files, sorted.
+    pub fn names(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path().join(folder)).expect("a folder");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let mut names: Vec<String> = names
+            .map(|name| name.into_string().expect("text"))
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// Runs each command of a table: it ends with status 2, prints no result, and says what stands
+    /// behind it, one text after each `|`. `DIR` is this folder.
+    pub fn refuses(&self, table: &str) {
+        for row in table.lines().map(str::trim).filter(|row| !row.is_empty()) {
+            let row = row.replace("DIR", text(self.path()));
+            let mut cells = row.split('|').map(str::trim);
+            let refused = run(cells.next().expect("a command")).code(2).stdout("");
+            let said = stderr(&refused);
+            for expected in cells {
+                assert!(said.contains(expected), "{row}: {said}");
+            }
+        }
+    }
+}
+
+/// Checks that all of these, with ` | ` between them, are in a text.
+pub fn says(text: &str, expected: &str) {
+    for expected in expected.split(" | ") {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
 }
 
 pub fn stdout(assert: &Assert) -> String {
@@ -45,6 +97,11 @@ pub fn stdout(assert: &Assert) -> String {
 
 pub fn stderr(assert: &Assert) -> String {
     String::from_utf8(assert.get_output().stderr.clone()).expect("text")
+}
+
+/// The one JSON document that a successful command prints.
+pub fn json(words: &str) -> Value {
+    document(&run(words).success())
 }
 
 pub fn document(assert: &Assert) -> Value {

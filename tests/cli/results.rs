@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{document, run, searoom, stdout, text, untimed, write};
+use super::program::{Folder, document, json, run, says, searoom, stdout, text, untimed};
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 #[test]
 fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let plans = text(folder.path()).to_owned();
     searoom(&["suite", "scenarios/colregs", "--plans", &plans]).success();
     let file = |name: &str| format!("{plans}/{name}.json");
@@ -65,24 +65,19 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
 
 #[test]
 fn every_planner_is_compared_on_the_same_scenarios() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let csv = text(&folder.path().join("rows.csv")).to_owned();
-    let figure = text(&folder.path().join("compared.svg")).to_owned();
+    let folder = Folder::new();
+    let csv = folder.at("rows.csv");
+    let figure = folder.at("compared.svg");
     let table = run(&format!(
         "compare scenarios/colregs --csv {csv} --figure {figure}"
     ))
     .success()
     .stderr(is_empty());
     let shown = stdout(&table);
-    for expected in [
-        "Head-on\n",
-        "space-time, Dijkstra, ellipsoids",
-        "hold course",
-        "COLLIDES",
-        "optimal control",
-    ] {
-        assert!(shown.contains(expected), "{expected}: {shown}");
-    }
+    says(
+        &shown,
+        "Head-on\n | space-time, Dijkstra, ellipsoids | hold course | COLLIDES | optimal control",
+    );
     let rows = fs::read_to_string(&csv).expect("rows");
     assert_eq!(rows.lines().count(), 1 + 4 * 9);
     assert!(rows.starts_with("file,scenario,method,max_risk,"));
@@ -120,8 +115,8 @@ fn every_planner_is_compared_on_the_same_scenarios() {
 
 #[test]
 fn a_comparison_answers_every_file_and_says_what_is_wrong() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let bad = text(&folder.path().join("bad.toml")).to_owned();
+    let folder = Folder::new();
+    let bad = folder.at("bad.toml");
     fs::write(&bad, "title = 3").expect("written");
     let head_on = "scenarios/colregs/head-on.toml";
     run(&format!(
@@ -138,27 +133,21 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     searoom(&["compare", head_on, "--planner", "path-time"])
         .code(1)
         .stdout(contains("COLLIDES").and(contains("relaxed").not()));
-    for (args, expected) in [
-        (
-            ["--max-risk", "0,1"],
-            "allowed: a number from 0 to 0.999999",
-        ),
-        (["--figure", "x.pdf"], "ends neither in .svg nor in .png"),
-        (["--csv", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
-    ] {
-        let args: Vec<&str> = ["compare", head_on].into_iter().chain(args).collect();
-        searoom(&args).code(2).stderr(contains(expected));
-    }
+    Folder::new().refuses(
+        "
+        compare scenarios/colregs/head-on.toml --max-risk 0,1 | allowed: a number from 0 to 0.999999
+        compare scenarios/colregs/head-on.toml --figure x.pdf | ends neither in .svg nor in .png
+        ",
+    );
+    let unwritten = run(&format!("compare {head_on} --csv /no/such/folder/x.csv")).code(2);
+    unwritten.stderr(contains("/no/such/folder/x.csv"));
 }
 
 /// Who enters a whole set within the accepted risk is relaxed, whether a planner chose it or not.
 #[test]
 fn a_baseline_that_takes_an_accepted_risk_is_relaxed() {
-    let compared = document(
-        &run(
-            "compare scenarios/colregs/give-way.toml --planner space-time --max-risk 0,0.4 --json",
-        )
-        .success(),
+    let compared = json(
+        "compare scenarios/colregs/give-way.toml --planner space-time --max-risk 0,0.4 --json",
     );
     let entries = compared["comparisons"][0]["entries"].as_array();
     let outcomes: Vec<(&str, f64)> = (entries.expect("a list").iter())
@@ -188,21 +177,15 @@ fn a_plan_on_a_path_says_why_it_has_no_time_of_no_return() {
 /// What is no plan document is said to be none, and what it is.
 #[test]
 fn other_documents_are_no_plans() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let compared = run("compare scenarios/colregs/head-on.toml --planner path-time --json");
-    let comparison = write(folder.path(), "comparison.json", stdout(&compared.code(1)));
-    for (file, found) in [
-        (
-            "README.md",
-            "found no JSON (expected value at line 1 column 1); allowed: a plan document",
-        ),
-        (
-            &comparison,
-            "format: found none in a document with the keys comparisons; allowed: searoom-plan/1",
-        ),
-    ] {
-        searoom(&["verify", file]).code(2).stderr(contains(found));
-    }
+    folder.write("comparison.json", stdout(&compared.code(1)));
+    folder.refuses(
+        "
+        verify README.md | found no JSON (expected value at line 1 column 1); allowed: a plan document
+        verify DIR/comparison.json | format: found none in a document with the keys comparisons; allowed: searoom-plan/1
+        ",
+    );
 }
 
 /// A heading holds for what follows it.
@@ -241,8 +224,8 @@ fn shells_know_every_command() {
 
 #[test]
 fn a_report_is_one_page_with_its_figures() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| text(&folder.path().join(name)).to_owned();
+    let folder = Folder::new();
+    let at = |name: &str| folder.at(name);
     let (suite, plans) = (at("suite"), at("plans"));
     let broken = at("broken.toml");
     fs::write(&broken, "title = \"<b>\"\n").expect("written");
@@ -282,22 +265,16 @@ mod recordings {
 
     #[test]
     fn a_recording_gives_back_what_it_was_made_from() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, plan) = recorded(folder.path(), "head-on.rrd", HEAD_ON);
         searoom(&["verify", &file])
             .success()
             .stdout(contains(": verified"));
         let said = stdout(&searoom(&["inspect", &file]).success());
-        for expected in [
-            "Head-on: solved (verified, safe)",
-            "space-time, a-star",
-            "a manoeuvre by the rules",
-            "head-on with 'target'",
-            "sim_time 0 to 302",
-            "/curves/clearance_m",
-        ] {
-            assert!(said.contains(expected), "{expected}: {said}");
-        }
+        says(
+            &said,
+            "Head-on: solved (verified, safe) | space-time, a-star | a manoeuvre by the rules | head-on with 'target' | sim_time 0 to 302 | /curves/clearance_m",
+        );
         let found = document(&searoom(&["inspect", "--json", &file]).success());
         let plan: Value = serde_json::from_str(&plan).expect("a plan");
         assert_eq!(
@@ -313,32 +290,26 @@ mod recordings {
     /// on holds.
     #[test]
     fn inspect_tells_what_the_rules_say() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
         let scenario = scenarios.join("colregs/stand-on.toml");
         let file = folder.path().join("rules.rrd");
         let (scenario, file) = (text(&scenario), text(&file));
         searoom(&["plan", scenario, "--compliance", "shape", "--rrd", file]).success();
         let said = stdout(&searoom(&["inspect", file]).success());
-        for expected in ["stand-on 0 to", "scores: rule 17 ", "violates 17(c) at"] {
-            assert!(said.contains(expected), "{expected}: {said}");
-        }
-        let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
-        assert!(
-            lanes.contains("target: stand-on") && lanes.contains("target: violates"),
-            "{lanes}"
+        says(
+            &said,
+            "stand-on 0 to | scores: rule 17  | violates 17(c) at",
         );
+        let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
+        says(&lanes, "target: stand-on | target: violates");
         searoom(&["plan", scenario, "--compliance", "rules", "--rrd", file]).success();
         let said = stdout(&searoom(&["inspect", file]).success());
-        assert!(
-            said.contains("stands on    course and speed are held until "),
-            "{said}"
-        );
+        says(&said, "stands on    course and speed are held until ");
         let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
-        let held = "own ship holds course and speed";
-        assert!(
-            lanes.contains(held) && lanes.contains("own ship escapes: "),
-            "{lanes}"
+        says(
+            &lanes,
+            "own ship holds course and speed | own ship escapes: ",
         );
         let whole = document(&searoom(&["inspect", "--json", file]).success());
         assert!(whole["escape"]["held_until_s"].is_f64(), "{whole}");
@@ -347,13 +318,13 @@ mod recordings {
     /// What `--no-return` adds to the document is in the recording, too.
     #[test]
     fn the_time_of_no_return_is_recorded() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = text(&folder.path().join("a.rrd")).to_owned();
+        let folder = Folder::new();
+        let file = folder.at("a.rrd");
         let scenario = "scenarios/colregs/give-way.toml";
         let plan = stdout(
             &searoom(&["plan", scenario, "--no-return", "--json", "--rrd", &file]).success(),
         );
-        assert!(plan.contains("\"time_of_no_return_s\": "), "{plan}");
+        says(&plan, "\"time_of_no_return_s\": ");
         let back = searoom(&["inspect", "--plan", &file]).success();
         assert_eq!(stdout(&back), plan);
         // times are shown to the millisecond
@@ -374,7 +345,7 @@ mod recordings {
 
     #[test]
     fn recordings_of_the_scenarios_are_small() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
         let mut seen = 0;
         for sort in fs::read_dir(scenarios).expect("a folder") {
@@ -400,7 +371,7 @@ mod recordings {
 
     #[test]
     fn curves_and_lines_come_out_as_columns() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, plan) = recorded(folder.path(), "a.rrd", HEAD_ON);
         let curve = stdout(&searoom(&["inspect", "--csv", "curves/clearance_m", &file]).success());
         let mut lines = curve.lines();
@@ -435,7 +406,7 @@ mod recordings {
 
     #[test]
     fn a_comparison_is_recorded_scenario_by_scenario_and_read_again() {
-        let folder = tempfile::tempdir().expect("folder");
+        let folder = Folder::new();
         let recordings = folder.path().join("new");
         let compared = run(&format!(
             "compare scenarios/colregs --search a-star --json --rrd {}",
@@ -483,10 +454,10 @@ mod recordings {
 
     #[test]
     fn what_is_no_whole_recording_is_said_to_be_so() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new();
         let (file, _) = recorded(folder.path(), "a.rrd", HEAD_ON);
         let bytes = fs::read(&file).expect("a recording");
-        let broken = text(&folder.path().join("b.rrd")).to_owned();
+        let broken = folder.at("b.rrd");
         let refused = |contents: &[u8], expected: &str| {
             fs::write(&broken, contents).expect("written");
             for command in ["inspect", "verify"] {
@@ -520,7 +491,7 @@ mod recordings {
 
 #[test]
 fn the_rules_are_judged_by_what_is_asked_for() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let stand_on = "scenarios/colregs/stand-on.toml";
     let plan = |args: &[&str]| {
         let all = [&["plan", stand_on, "--json"], args].concat();
@@ -533,7 +504,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
     let text_of =
         |lines: &str| format!("name = 'mine'\nsource = 'a test'\nlike = 'searoom'\n{lines}");
     let near = "near_miss_lengths = 5\nleast_lengths = 10\npreferred_lengths = 20";
-    let file = write(folder.path(), "mine.toml", text_of(near));
+    let file = folder.write("mine.toml", text_of(near));
     let mine = plan(&["--thresholds", &file]);
     assert_eq!(mine["thresholds"], "mine");
     assert_eq!(mine["trajectory"], usual["trajectory"]);
@@ -552,7 +523,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
 
 #[test]
 fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let compared = |args: &[&str]| {
         let all = [
             &[
@@ -578,7 +549,7 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     assert_eq!(of("hold course", &usual), json!(["17(b)", "R1", "S"]));
     // to whom no turn is one, none is to port
     let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nsteady_deg = 180";
-    let file = write(folder.path(), "mine.toml", text);
+    let file = folder.write("mine.toml", text);
     let mine = compared(&["--thresholds", &file]);
     assert_eq!(of("space-time, A*", &mine), json!([]));
     for (usual, mine) in usual
@@ -589,31 +560,26 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     {
         assert_eq!(usual["track"], mine["track"]);
     }
-    searoom(&["compare", "scenarios/colregs", "--thresholds", "nobody"])
-        .code(2)
-        .stderr(contains("allowed: searoom, dnv-trafficgen, sfi-autoship"));
 }
 
 #[test]
 fn thresholds_that_are_wrong_are_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let stand_on = "scenarios/colregs/stand-on.toml";
-    let refused = |word: &str| searoom(&["plan", stand_on, "--thresholds", word]).code(2);
-    refused("nobody").stderr(contains(
-        "allowed: searoom, dnv-trafficgen, sfi-autoship, or a file that is there",
-    ));
+    let folder = Folder::new();
     let faulty = "name = 'mine'\nsource = 'a'\nlike = 'searoom'\nhead_on_deg = 200\nhold = 1";
-    let file = write(folder.path(), "mine.toml", faulty);
-    refused(&file)
-        .stderr(contains(
-            "line 4: head_on_deg: found 200; allowed: a number from 0 to 180",
-        ))
-        .stderr(contains("mine.toml: 2 faults"))
-        .stderr(contains(
-            "line 5: hold: found an unknown key, perhaps for 'hold_deg'",
-        ));
-    refused(text(folder.path())).stderr(contains("cannot be read"));
-    let long = write(folder.path(), "long.toml", "#".repeat(1_100_000));
-    refused(&long).stderr(contains("found more than 1 MiB"));
-    searoom(&["suite", "--lint", stand_on, "--thresholds", "searoom"]).code(2);
+    folder.write("mine.toml", faulty);
+    folder.write("long.toml", "#".repeat(1_100_000));
+    let all = "allowed: searoom, dnv-trafficgen, sfi-autoship, or a file that is there";
+    let number = "line 4: head_on_deg: found 200; allowed: a number from 0 to 180";
+    let unknown = "line 5: hold: found an unknown key, perhaps for 'hold_deg'";
+    let plan = "plan scenarios/colregs/stand-on.toml --thresholds";
+    folder.refuses(&format!(
+        "
+        {plan} nobody | {all}
+        {plan} DIR/mine.toml | {number} | mine.toml: 2 faults | {unknown}
+        {plan} DIR | cannot be read
+        {plan} DIR/long.toml | found more than 1 MiB
+        suite --lint scenarios/colregs/stand-on.toml --thresholds searoom |
+        compare scenarios/colregs --thresholds nobody | allowed: searoom, dnv-trafficgen, sfi-autoship
+        "
+    ));
 }

@@ -1,6 +1,8 @@
 //! `searoom simulate` as a user runs it.
 
-use super::program::{HEAD_ON, document, run, searoom, stderr, stdout, text, untimed, write};
+use super::program::{
+    Folder, HEAD_ON, document, json, run, says, searoom, stderr, stdout, text, untimed,
+};
 
 const HEAD_ON_FILE: &str = "scenarios/colregs/head-on.toml";
 
@@ -18,25 +20,19 @@ fn a_simulation_says_first_whether_ships_met_and_ends_with_status_0() {
         first.starts_with("Head-on: no contact, every plan safe; arrived after 3"),
         "{first}"
     );
-    for word in [
-        "clearance",
-        "head-on",
-        "Sailed: J",
-        "Plans: 1",
-        "Off the plan",
-        "Planning",
-    ] {
-        assert!(shown.contains(word), "{word}: {shown}");
-    }
+    says(
+        &shown,
+        "clearance | head-on | Sailed: J | Plans: 1 | Off the plan | Planning",
+    );
 }
 
 #[test]
 fn a_contact_ends_with_status_1_and_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let ram = "behaviour = { kind = \"track\", points = [\
                { t_s = 12, position = { east_m = 62, north_m = 0 } }, \
                { t_s = 19, position = { east_m = 62, north_m = 0 } }] }";
-    let file = write(folder.path(), "ram.toml", head_on(ram, ""));
+    let file = folder.write("ram.toml", head_on(ram, ""));
     let shown = stdout(&searoom(&["simulate", &file]).code(1));
     assert!(
         shown.starts_with("Head-on: CONTACT with target ('target' left its set); "),
@@ -50,14 +46,11 @@ fn a_contact_ends_with_status_1_and_is_named() {
 
 #[test]
 fn the_same_run_gives_the_same_document_and_another_seed_another() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nsensor = { kind = \"ais\" }\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.4, toward_deg = 40, std_mps = 0.1 }";
-    let file = write(
-        folder.path(),
-        "a.toml",
-        head_on("behaviour = { kind = \"random\" }", tables),
-    );
+    let scene = head_on("behaviour = { kind = \"random\" }", tables);
+    let file = folder.write("a.toml", scene);
     let sail = |seed: &str| {
         untimed(document(
             // the current carries own ship out of its tracking margin of 0 m
@@ -72,7 +65,7 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
 
 #[test]
 fn every_plan_that_was_followed_verifies() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let plans = folder.path().join("plans");
     searoom(&["simulate", HEAD_ON_FILE, "--plans", text(&plans)]).success();
     let files = std::fs::read_dir(&plans).expect("made");
@@ -88,8 +81,8 @@ fn every_plan_that_was_followed_verifies() {
 #[cfg(feature = "recording")]
 #[test]
 fn a_recording_tells_what_simulate_tells() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = text(&folder.path().join("sailed.rrd")).to_owned();
+    let folder = Folder::new();
+    let file = folder.at("sailed.rrd");
     let sailed = stdout(&searoom(&["simulate", HEAD_ON_FILE, "--rrd", &file]).success());
     let inspected = stdout(&searoom(&["inspect", &file]).success());
     assert!(inspected.contains(sailed.trim_end()), "{inspected}");
@@ -98,10 +91,7 @@ fn a_recording_tells_what_simulate_tells() {
     assert_eq!(found["simulation"]["format"], "searoom-simulation/1");
     for command in [&["inspect", "--plan", &file][..], &["verify", &file]] {
         let refused = stderr(&searoom(command).code(2));
-        assert!(
-            refused.contains("the recording of a simulation"),
-            "{refused}"
-        );
+        says(&refused, "the recording of a simulation");
     }
     searoom(&["simulate", "scenarios/colregs", "--rrd", &file])
         .code(2)
@@ -110,7 +100,7 @@ fn a_recording_tells_what_simulate_tells() {
 
 #[test]
 fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let file = text(&folder.path().join("sailed.svg")).to_owned();
     let sailed =
         document(&searoom(&["simulate", HEAD_ON_FILE, "--json", "--figure", &file]).success());
@@ -134,7 +124,7 @@ fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
 
 #[test]
 fn a_report_shows_every_simulation_and_why_one_was_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let sail = |name: &str| {
         let report = folder.path().join(name);
         let refused = "scenarios/paper/figure_9.toml";
@@ -157,8 +147,7 @@ fn a_report_shows_every_simulation_and_why_one_was_refused() {
 
 #[test]
 fn a_shorter_time_ends_the_simulation_before_arrival() {
-    let found =
-        document(&run(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45")).success());
+    let found = json(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45"));
     assert_eq!(found["duration_s"], 45.0);
     assert_eq!(found["arrived"], false);
     assert_eq!(found["replans"].as_array().map(Vec::len), Some(3));
@@ -166,13 +155,13 @@ fn a_shorter_time_ends_the_simulation_before_arrival() {
 
 #[test]
 fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let target = "behaviour = { kind = \"swims\" }";
     let tables = "[simulation]\nstep_s = 0\nseed = 1.5\nwater = 1\n\
                   vessel = { kind = \"nomoto\", rudder_deg = 200 }\n\
                   sensor = { kind = \"radar\", detection = 0 }\n\
                   current = { speed_mps = -1 }";
-    let file = write(folder.path(), "bad.toml", head_on(target, tables));
+    let file = folder.write("bad.toml", head_on(target, tables));
     for command in ["check", "simulate", "plan"] {
         let said = stderr(&searoom(&[command, &file]).code(2));
         for fault in [
@@ -191,12 +180,8 @@ fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
 
 #[test]
 fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let long = write(
-        folder.path(),
-        "long.toml",
-        head_on("", "[simulation]\nreplan_s = 5000"),
-    );
+    let folder = Folder::new();
+    let long = folder.write("long.toml", head_on("", "[simulation]\nreplan_s = 5000"));
     let sailed = searoom(&[
         "simulate",
         "scenarios/paper/figure_9.toml",
@@ -205,33 +190,30 @@ fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
     ]);
     let sailed = sailed.code(2);
     let said = stderr(&sailed);
-    assert!(
-        said.contains("figure_9.toml: 1 fault\n  planner.kind: found \"optimal-control\""),
-        "{said}"
+    says(
+        &said,
+        "figure_9.toml: 1 fault\n  planner.kind: found \"optimal-control\"",
     );
-    assert!(
-        said.contains("simulation.replan_s: found 5000; allowed: at most 400"),
-        "{said}"
+    says(
+        &said,
+        "simulation.replan_s: found 5000; allowed: at most 400",
     );
     assert!(stdout(&sailed).starts_with("Head-on: no contact"));
 }
 
 #[test]
 fn plans_do_not_depend_on_the_tables_of_the_simulation() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nseed = 3\nsensor = { kind = \"ais\" }";
-    let file = write(
-        folder.path(),
-        "a.toml",
-        head_on("behaviour = { kind = \"pursuit\" }", tables),
-    );
+    let scene = head_on("behaviour = { kind = \"pursuit\" }", tables);
+    let file = folder.write("a.toml", scene);
     let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
     assert_eq!(plan(&file), plan(HEAD_ON_FILE));
 }
 
 #[test]
 fn the_shipped_closed_loops_are_sailed_without_contact() {
-    let found = document(&run("simulate scenarios/closed-loop --json").success());
+    let found = json("simulate scenarios/closed-loop --json");
     let all = found["simulations"].as_array().expect("a list");
     assert_eq!(all.len(), 6);
     for sailed in all {
@@ -245,21 +227,17 @@ fn the_shipped_closed_loops_are_sailed_without_contact() {
 
 #[test]
 fn a_plan_is_asked_for_when_a_target_is_reported_again() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
                   sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
-    let file = write(folder.path(), "a.toml", head_on("", tables));
+    let file = folder.write("a.toml", head_on("", tables));
     let found = document(&searoom(&["simulate", &file, "--json"]).success());
     assert_eq!(found["settings"]["replan_on_events"], true);
     let replans = found["replans"].as_array().expect("a list");
     let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
-    let file = write(
-        folder.path(),
-        "b.toml",
-        head_on("", "[simulation]\nreplan = \"often\""),
-    );
+    let file = folder.write("b.toml", head_on("", "[simulation]\nreplan = \"often\""));
     let refused = stderr(&searoom(&["simulate", &file]).code(2));
     let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
     assert!(refused.contains(fault), "{refused}");
@@ -267,10 +245,10 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
 
 #[test]
 fn a_target_without_size_in_its_reports_has_the_default_size() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let sail = |target: &str, sensor: &str, code: i32| {
         let tables = format!("[simulation]\nsensor = {{ {sensor} }}");
-        let file = write(folder.path(), "a.toml", head_on(target, &tables));
+        let file = folder.write("a.toml", head_on(target, &tables));
         searoom(&["simulate", &file, "--json"]).code(code)
     };
     let both = "not_reported = [\"heading\", \"size\"]";
@@ -308,11 +286,11 @@ fn a_target_without_size_in_its_reports_has_the_default_size() {
 #[test]
 fn ctrl_c_writes_what_was_sailed_so_far() {
     use std::process::{Command, Stdio};
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let far = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 900000.0");
     let far = far.replace("east_m = 1500.0", "east_m = 4000000.0");
     let far = format!("{far}\n[simulation]\nstep_s = 0.01\nreplan_s = 900000.0\n");
-    let file = write(folder.path(), "far.toml", far);
+    let file = folder.write("far.toml", far);
     let plans = folder.path().join("plans");
     let sailing = Command::new(env!("CARGO_BIN_EXE_searoom"))
         .args([
@@ -347,18 +325,18 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     );
     let time = found["duration_s"].as_f64().expect("a time");
     assert!(time > 0.0 && time < 800_000.0, "{time}");
-    let file = write(folder.path(), "sailed.json", sailed.clone());
+    let file = folder.write("sailed.json", sailed.clone());
     let shown = stdout(&searoom(&["verify", &file]).success());
     assert!(shown.contains("verified: no contact"), "{shown}");
     let altered = sailed.replace("\"interrupted\": true", "\"interrupted\": false");
-    let file = write(folder.path(), "altered.json", altered);
+    let file = folder.write("altered.json", altered);
     searoom(&["verify", &file]).code(1);
 }
 
 /// Contacts and distances are computed again from the motions alone.
 #[test]
 fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.3, toward_deg = 10 }";
     let steered = HEAD_ON.replace(
@@ -366,13 +344,13 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
         "tracking_margin_m = 20.0\nsafety_margin_m",
     );
     let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
-    let steered = write(folder.path(), "steered.toml", steered);
+    let steered = folder.write("steered.toml", steered);
     for file in [HEAD_ON_FILE, &steered] {
         let sailed = document(&searoom(&["simulate", file, "--json"]).success());
         let check = |change: &dyn Fn(&mut serde_json::Value)| {
             let mut changed = sailed.clone();
             change(&mut changed);
-            let name = write(folder.path(), "sailed.json", changed.to_string());
+            let name = folder.write("sailed.json", changed.to_string());
             searoom(&["verify", &name])
         };
         let shown = stdout(&check(&|_| {}).success());

@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use super::program::{HEAD_ON, document, run, searoom, stderr, stdout, text, write};
+use super::program::{Folder, HEAD_ON, document, json, run, says, searoom, stderr, stdout, text};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Own ship and a target whose hulls overlap at the start.
 fn overlapping() -> String {
@@ -35,9 +35,9 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         ("overlapping", overlapping(), "COLLIDES"),
         ("abeam", abeam(), "NOT SAFE"),
     ] {
-        let folder = tempfile::tempdir().expect("a folder");
-        let at = |name: &str| text(&folder.path().join(name)).to_owned();
-        let file = write(folder.path(), &format!("{name}.toml"), scene);
+        let folder = Folder::new();
+        let at = |name: &str| folder.at(name);
+        let file = folder.write(&format!("{name}.toml"), scene);
         let both = format!("{word} (verified, not safe)");
 
         let (page, figure) = (at("page"), at("figure.svg"));
@@ -46,55 +46,32 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         assert!(said.starts_with(&format!("Head-on: {both}\n")), "{said}");
         assert!(!said.contains("relaxed"), "{said}");
         let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
-        assert!(
-            page.contains(&format!("<h2>Head-on: {both}</h2>")),
-            "{page}"
-        );
-        assert!(page.contains(&format!("<span>{word}</span>")), "{page}");
-        assert!(
-            fs::read_to_string(&figure)
-                .expect("a figure")
-                .contains(&both)
-        );
+        says(&page, &format!("<h2>Head-on: {both}</h2>"));
+        says(&page, &format!("<span>{word}</span>"));
+        says(&fs::read_to_string(&figure).expect("a figure"), &both);
 
         let plan = searoom(&["plan", &file, "--json"]).code(1);
-        let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+        let plan_file = folder.write("plan.json", stdout(&plan));
         let plan = document(&plan);
         let facts = |d: &Value| ["outcome", "verdict", "verified", "safe"].map(|k| d[k].clone());
-        let expected = [
-            Value::from("relaxed"),
-            Value::from(word),
-            Value::from(true),
-            Value::from(false),
-        ];
+        let expected = [json!("relaxed"), json!(word), json!(true), json!(false)];
         assert_eq!(facts(&plan), expected);
         let checked = searoom(&["verify", &plan_file]).success();
         let first = format!("Head-on: verified, not safe: {word}\n");
         assert!(stdout(&checked).starts_with(&first), "{}", stdout(&checked));
         let checked = document(&searoom(&["verify", "--json", &plan_file]).success());
-        assert_eq!(
-            (&checked["verified"], &checked["safe"]),
-            (&Value::from(1), &Value::from(0))
-        );
-        let checked = &checked["plans"][0];
-        assert_eq!(
-            (&checked["verified"], &checked["safe"]),
-            (&expected[2], &expected[3])
-        );
+        let found = |d: &Value| ["verified", "safe"].map(|k| d[k].clone());
+        assert_eq!(found(&checked), [json!(1), json!(0)]);
+        assert_eq!(found(&checked["plans"][0]), expected[2..]);
 
         let suite = stdout(&searoom(&["suite", &file]).code(1));
-        let row = suite
-            .lines()
-            .find(|line| line.contains(" Head-on "))
-            .expect("a row");
+        let row = suite.lines().find(|line| line.contains(" Head-on "));
+        let row = row.expect("a row");
         assert!(
             row.contains(word) && row.trim_end().ends_with("NO"),
             "{suite}"
         );
-        assert!(
-            suite.contains("0 solved, 1 not safe; 1 verified, 0 safe"),
-            "{suite}"
-        );
+        says(&suite, "0 solved, 1 not safe; 1 verified, 0 safe");
         let suite = document(&searoom(&["suite", &file, "--json"]).code(1));
         assert_eq!(facts(&suite["runs"][0]), expected);
         assert_eq!(suite["summary"]["safe"], 0);
@@ -103,10 +80,8 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         let asked = ["--planner", "space-time", "--search", "a-star"];
         let args = [&["compare", file.as_str()], asked.as_slice()].concat();
         let table = stdout(&searoom(&args).code(1));
-        let row = table
-            .lines()
-            .find(|line| line.contains("space-time, A* "))
-            .expect("a row");
+        let row = table.lines().find(|line| line.contains("space-time, A* "));
+        let row = row.expect("a row");
         assert!(row.contains(word) && row.contains(" NO "), "{table}");
         let compared = document(&searoom(&[args.as_slice(), &["--json"]].concat()).code(1));
         assert_eq!(facts(&compared["comparisons"][0]["entries"][0]), expected);
@@ -116,15 +91,12 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
 /// A baseline is called what a plan is called that does the same.
 #[test]
 fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "a.toml", overlapping());
+    let folder = Folder::new();
+    let file = folder.write("a.toml", overlapping());
     let table = stdout(&searoom(&["compare", &file]).code(1));
     for method in ["space-time, A* ", "path-time ", "hold course "] {
-        let row = table
-            .lines()
-            .find(|line| line.contains(method))
-            .expect("a row");
-        assert!(row.contains("COLLIDES"), "{table}");
+        let row = table.lines().find(|line| line.contains(method));
+        assert!(row.expect("a row").contains("COLLIDES"), "{table}");
     }
     // the shape about a target that lies still is entered, nothing else
     let wide = HEAD_ON
@@ -137,18 +109,15 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
             "speed_mps = 0.0\nlength_m = 60.0",
         )
         + "domain = { fore_m = 200.0, aft_m = 200.0, port_m = 200.0, starboard_m = 200.0 }\n";
-    let file = write(folder.path(), "wide.toml", wide);
+    let file = folder.write("wide.toml", wide);
     let compared = document(&searoom(&["compare", &file, "--json"]).success());
-    let entries = compared["comparisons"][0]["entries"]
-        .as_array()
-        .expect("a list");
-    let held = entries
-        .iter()
-        .find(|e| e["method"] == "hold course")
-        .expect("it is there");
+    let entries = compared["comparisons"][0]["entries"].as_array();
+    let mut entries = entries.expect("a list").iter();
+    let held = entries.find(|e| e["method"] == "hold course");
+    let held = held.expect("it is there");
     assert_eq!(
-        (&held["verdict"], &held["safe"]),
-        (&Value::from("relaxed"), &Value::from(true))
+        [&held["verdict"], &held["safe"]],
+        [&json!("relaxed"), &json!(true)]
     );
     assert_eq!(held["outcome"], "collides", "the key keeps its values");
 }
@@ -157,15 +126,15 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
 /// their figure.
 #[test]
 fn a_risk_that_is_taken_is_told_with_its_figure() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "a.toml", HEAD_ON);
+    let folder = Folder::new();
+    let file = folder.write("a.toml", HEAD_ON);
     for (compliance, safe, facts) in [("shape", true, "safe"), ("none", false, "not safe")] {
         let asked = format!("plan {file} --max-risk 0.2 --compliance {compliance}");
         let said = stdout(&run(&asked).code(1));
         let head = format!("Head-on: at risk 0.20 (verified, {facts})\n");
         assert!(said.starts_with(&head), "{said}");
         let plan = run(&format!("{asked} --json")).code(1);
-        let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+        let plan_file = folder.write("plan.json", stdout(&plan));
         let plan = document(&plan);
         assert_eq!(plan["safe"], safe);
         searoom(&["verify", &plan_file])
@@ -179,13 +148,13 @@ fn a_risk_that_is_taken_is_told_with_its_figure() {
 /// Every document says whether it is safe, and says what is so.
 #[test]
 fn a_document_that_is_wrong_about_its_safety_is_rejected() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     for (name, scene, safe) in [("a", HEAD_ON.to_owned(), true), ("b", overlapping(), false)] {
-        let file = write(folder.path(), &format!("{name}.toml"), scene);
+        let file = folder.write(&format!("{name}.toml"), scene);
         let output = searoom(&["plan", &file, "--json"]).code(i32::from(!safe));
         let plan = document(&output);
         let check = |altered: &Value| {
-            let file = write(folder.path(), "plan.json", altered.to_string());
+            let file = folder.write("plan.json", altered.to_string());
             searoom(&["verify", &file])
         };
         check(&plan).success();
@@ -215,27 +184,23 @@ fn control_characters_of_others_are_shown_as_codes() {
         first.contains(r"verified\u000aspace-time") && first.contains(r"\u001b[8m"),
         "{first}"
     );
-    assert!(first.contains("REJECTED"), "{first}");
+    says(first, "REJECTED");
     // as JSON the text is what it was
     let checked =
         document(&searoom(&["verify", "--json", "tests/faults/verify-spoof.json"]).code(1));
     let title = checked["plans"][0]["scenario"].as_str().expect("a text");
     assert!(title.contains("\u{1b}[8m"));
 
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let bad = "\u{1b}[8m\u{9b}2J\u{202e}\u{7f}";
     let key = format!(
         "\"{}\" = 1\n{HEAD_ON}",
         bad.replace('\u{1b}', "\\u001b")
             .replace('\u{7f}', "\\u007f")
     );
-    let file = write(folder.path(), &format!("a{bad}.toml"), key);
-    let plan = write(
-        folder.path(),
-        &format!("b{bad}.json"),
-        format!("{{\"{bad}\": 1}}"),
-    );
-    let profile = write(folder.path(), "c.toml", format!("x = \"{bad}\"\n"));
+    let file = folder.write(&format!("a{bad}.toml"), key);
+    let plan = folder.write(&format!("b{bad}.json"), format!("{{\"{bad}\": 1}}"));
+    let profile = folder.write("c.toml", format!("x = \"{bad}\"\n"));
     let scenario = "scenarios/colregs/head-on.toml";
     for args in [
         &["check", &file][..],
@@ -259,10 +224,10 @@ fn control_characters_of_others_are_shown_as_codes() {
 /// Scenarios that the rules or a planner of the command line do not fit are no fault of theirs.
 #[test]
 fn a_suite_skips_what_does_not_apply() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let ferry = "scenarios/harbour/ferry-crossing.toml";
     let head_on = "scenarios/colregs/head-on.toml";
-    let page = text(&folder.path().join("page")).to_owned();
+    let page = folder.at("page");
     let asked = ["suite", ferry, head_on, "--compliance", "rules"];
     let said = searoom(&[asked.as_slice(), &["--report", &page]].concat()).success();
     let expected = "2 scenarios: 1 solved, 1 not applicable; 1 verified, 1 safe";
@@ -272,14 +237,11 @@ fn a_suite_skips_what_does_not_apply() {
     assert!(page.contains("not applicable") && page.contains("planner.compliance"));
     let suite = document(&searoom(&[asked.as_slice(), &["--json"]].concat()).success());
     let run = &suite["runs"][0];
-    assert_eq!(
-        (&run["outcome"], &run["error"]),
-        (&Value::from("not-applicable"), &Value::Null)
-    );
-    assert!(
-        run["reason"]
-            .as_str()
-            .is_some_and(|r| r.contains("planner.compliance"))
+    let found = [&run["outcome"], &run["error"]];
+    assert_eq!(found, [&json!("not-applicable"), &Value::Null]);
+    says(
+        run["reason"].as_str().expect("a text"),
+        "planner.compliance",
     );
     assert_eq!(suite["summary"]["not_applicable"], 1);
     assert_eq!(suite["summary"]["unreadable"], 0);
@@ -292,8 +254,8 @@ fn a_suite_skips_what_does_not_apply() {
 /// What was given up stands in a suite's document as in that of the plan.
 #[test]
 fn a_suite_says_what_was_given_up() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = write(folder.path(), "a.toml", overlapping());
+    let folder = Folder::new();
+    let file = folder.write("a.toml", overlapping());
     let suite = document(&searoom(&["suite", &file, "--json"]).code(1));
     let plan = document(&searoom(&["plan", &file, "--json"]).code(1));
     let given_up = &suite["runs"][0]["relaxations"];
@@ -304,14 +266,14 @@ fn a_suite_says_what_was_given_up() {
 /// A page that is given to others does not tell where its files were on this machine.
 #[test]
 fn a_report_has_no_folder_of_this_machine() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let good = write(folder.path(), "secret/good.toml", HEAD_ON);
-    let bad = write(folder.path(), "secret/bad.toml", "title = 3");
+    let folder = Folder::new();
+    let good = folder.write("secret/good.toml", HEAD_ON);
+    let bad = folder.write("secret/bad.toml", "title = 3");
     let here = format!(
         "{}/scenarios/colregs/head-on.toml",
         env!("CARGO_MANIFEST_DIR")
     );
-    let page = text(&folder.path().join("page")).to_owned();
+    let page = folder.at("page");
     let read = || fs::read_to_string(format!("{page}/index.html")).expect("a page");
     searoom(&["suite", &good, &bad, "--report", &page]).code(2);
     assert!(read().contains("good.toml") && read().contains("bad.toml"));
@@ -333,7 +295,7 @@ const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
 /// Every view tells each target's own clearance, and the least of all, to the decimals that it has.
 #[test]
 fn every_view_tells_the_clearance_of_the_right_target() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let (own, _) = HEAD_ON.split_once("[[targets]]").expect("a target");
     let mut scene = own.to_owned();
     for (index, north) in ABEAM_M.iter().enumerate() {
@@ -344,20 +306,20 @@ fn every_view_tells_the_clearance_of_the_right_target() {
         );
     }
     let clearances = ABEAM_M.map(|north| north.abs() - 10.0);
-    let file = write(folder.path(), "three.toml", scene);
+    let file = folder.write("three.toml", scene);
     let near = |found: &Value, so: f64| {
         let value = found.as_f64().expect("a number");
         assert!((value - so).abs() < 1e-6, "{value} for {so}");
     };
 
     let said = stdout(&run(&format!("plan {file}")).success());
-    assert!(said.contains("clearance    290.0 m;"), "{said}");
+    says(&said, "clearance    290.0 m;");
     let plan = run(&format!("plan {file} --json")).success();
-    let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+    let plan_file = folder.write("plan.json", stdout(&plan));
     let plan = document(&plan);
     near(&plan["cost"]["min_clearance_m"], 290.0);
     let table = stdout(&run(&format!("verify {plan_file}")).success());
-    let checked = document(&run(&format!("verify --json {plan_file}")).success());
+    let checked = json(&format!("verify --json {plan_file}"));
     let checked = &checked["plans"][0]["targets"];
     for (index, so) in clearances.into_iter().enumerate() {
         let (met, target) = (&plan["encounters"][index], &checked[index]);
@@ -379,8 +341,8 @@ fn every_view_tells_the_clearance_of_the_right_target() {
         assert_eq!(words[3..5], [so.as_str(), so.as_str()], "{table}");
     }
 
-    let csv = text(&folder.path().join("rows.csv")).to_owned();
-    let compared = document(&run(&format!("compare {file} --json --csv {csv}")).success());
+    let csv = folder.at("rows.csv");
+    let compared = json(&format!("compare {file} --json --csv {csv}"));
     let entries = compared["comparisons"][0]["entries"].as_array();
     for entry in entries.expect("a list") {
         // these keep to the path
@@ -407,8 +369,8 @@ fn every_view_tells_the_clearance_of_the_right_target() {
 /// Figures of a comparison say of a method that it rams.
 #[test]
 fn a_figure_of_a_comparison_says_who_rams() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let figure = text(&folder.path().join("a.svg")).to_owned();
+    let folder = Folder::new();
+    let figure = folder.at("a.svg");
     run(&format!(
         "compare scenarios/colregs/head-on.toml --figure {figure}"
     ))
@@ -419,13 +381,10 @@ fn a_figure_of_a_comparison_says_who_rams() {
         "{}",
         svg.len()
     );
-    let plan = text(&folder.path().join("b.svg")).to_owned();
+    let plan = folder.at("b.svg");
     searoom(&["plan", "scenarios/colregs/head-on.toml", "--figure", &plan])
         .success()
         .stdout(contains("(verified, safe)").and(contains("not safe").not()));
-    assert!(
-        !fs::read_to_string(&plan)
-            .expect("a figure")
-            .contains("verified")
-    );
+    let svg = fs::read_to_string(&plan).expect("a figure");
+    assert!(!svg.contains("verified"));
 }

@@ -99,10 +99,8 @@ fn names_of_2020a_are_read_too() {
         .replace("waterway", "waters")
         .replace("shallow id", "draft id")
         .replace("</shallow>", "</draft>");
-    let (old, new) = (
-        one(&old, &Assumed::default()),
-        one(FAIRWAY, &Assumed::default()),
-    );
+    let old = one(&old, &Assumed::default());
+    let new = one(FAIRWAY, &Assumed::default());
     assert_eq!(old.scenario, new.scenario);
 }
 

@@ -2,14 +2,12 @@
 
 use searoom::document::SimulationDocument;
 use searoom::frame::{Pose, Vector};
-use searoom::scenario::{
-    Behaviour, Compliance, Fault, NotReported, Scenario, SimulationSettings, VesselModel,
-};
-use searoom::simulation::{EncounterKind, Meeting, Placement, Simulation, random_meeting};
+use searoom::scenario::{Behaviour, Fault, NotReported, Scenario, SimulationSettings, VesselModel};
+use searoom::simulation::{EncounterKind, Meeting, Simulation};
 use searoom::vessel::Hull;
 
-use crate::campaigns::replanning;
 use crate::campaigns::simulation::{How, Seen, Ship, Truth, run, sail};
+use crate::campaigns::{self, replanning};
 
 const CONSTANT: How = How {
     truth: Truth::Constant,
@@ -20,9 +18,7 @@ const CONSTANT: How = How {
 };
 
 fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
-    let drawn = random_meeting(kind, seed, Placement::Random, &Meeting::NEAR).expect("drawn");
-    let mut scenario = drawn.scenario;
-    scenario.compliance = Compliance::Rules;
+    let mut scenario = campaigns::meeting(kind, seed, &Meeting::NEAR);
     how.equip(&mut scenario, seed);
     scenario
 }

@@ -17,10 +17,7 @@ const SPEED: f64 = 6.0;
 const RADIUS: f64 = 125.0;
 
 fn ship(position: Vector, heading: f64, speed: f64) -> SteadyShip {
-    SteadyShip {
-        pose: Pose::new(position, heading),
-        speed,
-    }
+    SteadyShip::new(Pose::new(position, heading), speed)
 }
 
 fn word(role: Option<Role>) -> &'static str {
@@ -67,38 +64,28 @@ type Change = (f64, f64, f64);
 
 /// Own motion to the east: turns in degrees to starboard and speeds, each from a time on.
 fn motion(changes: &[Change]) -> Trajectory {
-    let (mut at, mut time) = (Pose::new(Vector::zeros(), 0.0), 0.0);
-    let mut segments = Vec::new();
-    let mut speed = SPEED;
-    let mut add = |at: &mut Pose, time: &mut f64, duration: f64, speed: f64, turn_rate: f64| {
+    let mut segments: Vec<Segment> = Vec::new();
+    let mut add = |duration: f64, speed: f64, turn_rate: f64| {
+        let last = segments.last();
+        let start = last.map_or(Pose::new(Vector::zeros(), 0.0), Segment::end);
+        let time = last.map_or(0.0, Segment::end_time);
         if duration > 0.0 {
-            let segment = Segment {
-                start: *at,
-                start_time: *time,
-                duration,
-                speed,
-                turn_rate,
-            };
-            (*at, *time) = (segment.end(), segment.end_time());
-            segments.push(segment);
+            segments.push(Segment::new(start, time, duration, speed, turn_rate));
         }
+        time + duration.max(0.0)
     };
+    let (mut time, mut speed) = (0.0, SPEED);
     for &(from, turn, next) in changes {
-        let wait = from - time;
-        add(&mut at, &mut time, wait, speed, 0.0);
+        add(from - time, speed, 0.0);
         speed = next;
         let turn = -turn.to_radians();
-        let duration = turn.abs() * RADIUS / speed;
-        add(
-            &mut at,
-            &mut time,
-            duration,
+        time = add(
+            turn.abs() * RADIUS / speed,
             speed,
             turn.signum() * speed / RADIUS,
         );
     }
-    let rest = 600.0 - time;
-    add(&mut at, &mut time, rest, speed, 0.0);
+    add(600.0 - time, speed, 0.0);
     Trajectory::new(segments).expect("a trajectory")
 }
 

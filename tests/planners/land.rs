@@ -89,6 +89,15 @@ fn degrees_and_metres_are_one_plane_and_the_map_lies_on_it() {
     assert!(bare.expect("valid").land.is_none());
 }
 
+/// A text of the scenario, what replaces it, and the fault.
+const MISTAKES: &str = "
+63.44, | 89.5, | origin.lat_deg: found 89.5
+10.399 } | 190 } | origin.lon_deg: found 190
+east_m = 0, | lat_deg = 63.45, east_m = 0, | mission.waypoints[1]: found east_m or north_m beside lat_deg or lon_deg; allowed: one of the two pairs
+63.4530, | 60.39, | mission.waypoints[2]: found lat 60.390000°, lon 10.405000°, 340 km from the origin; allowed: a place within 100 km
+{ lat_deg = 63.4480, lon | { lat = 63.4480, lon | targets[0].position.lat: found an unknown key, perhaps for 'lat_deg'; allowed: one of
+";
+
 #[test]
 fn what_needs_an_origin_asks_for_it_once() {
     let folder = folder();
@@ -96,25 +105,11 @@ fn what_needs_an_origin_asks_for_it_once() {
     let found = faults(folder.path(), &without);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].contains("origin: found nothing; allowed: a table { lat_deg, lon_deg }"));
-    for (from, to, expected) in [
-        ("63.44,", "89.5,", "origin.lat_deg: found 89.5"),
-        ("10.399 }", "190 }", "origin.lon_deg: found 190"),
-        (
-            "east_m = 0,",
-            "lat_deg = 63.45, east_m = 0,",
-            "mission.waypoints[1]: found east_m or north_m beside lat_deg or lon_deg; allowed: one of the two pairs",
-        ),
-        (
-            "63.4530,",
-            "60.39,",
-            "mission.waypoints[2]: found lat 60.390000°, lon 10.405000°, 340 km from the origin; allowed: a place within 100 km",
-        ),
-        (
-            "{ lat_deg = 63.4480, lon",
-            "{ lat = 63.4480, lon",
-            "targets[0].position.lat: found an unknown key, perhaps for 'lat_deg'; allowed: one of ",
-        ),
-    ] {
+    for line in MISTAKES.lines().filter(|line| !line.is_empty()) {
+        let cells: Vec<&str> = line.split(" | ").collect();
+        let [from, to, expected] = cells[..] else {
+            panic!("{line}");
+        };
         assert!(SCENARIO.contains(from), "{from}");
         let found = faults(folder.path(), &SCENARIO.replacen(from, to, 1));
         assert_eq!(found.len(), 1, "{found:?}");
@@ -168,20 +163,11 @@ fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
     let folder = folder();
     let origin = Geographic::new(63.44, 10.399);
     let earth = Georeference::new(origin).expect("valid");
-    let corners = [
-        (-1.0, -1.0),
-        (1.0, -1.0),
-        (1.0, 1.0),
-        (-1.0, 1.0),
-        (-1.0, -1.0),
-    ];
-    let ring: Vec<String> = corners
-        .iter()
-        .map(|(x, y)| {
-            let place = earth.to_geographic(Vector::new(212.5 + x, 12.5 + y));
-            format!("[{:.9}, {:.9}]", place.lon_deg, place.lat_deg)
-        })
-        .collect();
+    let ring = [(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)].map(|(x, y)| {
+        let place = Vector::new(212.5 + f64::from(x), 12.5 + f64::from(y));
+        let place = earth.to_geographic(place);
+        format!("[{:.9}, {:.9}]", place.lon_deg, place.lat_deg)
+    });
     let islet = format!(
         r#"{{ "type": "Polygon", "coordinates": [[{}]] }}"#,
         ring.join(", ")

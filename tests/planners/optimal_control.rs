@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use searoom::document::PlanDocument;
-use searoom::evaluation::{Evaluation, Steering};
+use searoom::evaluation::{Evaluation, Request, Steering, evaluate_steered};
 use searoom::frame::Vector;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
@@ -74,14 +74,7 @@ fn figure_9_is_solved_verified_and_written() {
         .filter(|s| s["surge_n"].is_number())
         .collect();
     assert_eq!(nodes.len(), report.intervals + 1);
-    for key in [
-        "heading_deg",
-        "surge_mps",
-        "sway_mps",
-        "yaw_rate_deg_per_s",
-        "sway_n",
-        "yaw_nm",
-    ] {
+    for key in "heading_deg surge_mps sway_mps yaw_rate_deg_per_s sway_n yaw_nm".split(' ') {
         assert!(nodes.iter().all(|n| n[key].is_number()), "{key}");
     }
     // own ship turns to port first: counter-clockwise, which is negative there
@@ -128,11 +121,8 @@ fn judged(run: &Run, change: impl Fn(&mut Vec<ForceNode>)) -> Vec<String> {
     let mut nodes = plan.trajectory.steered().expect("forces").nodes().to_vec();
     change(&mut nodes);
     let motion = Trajectory::from(Steered::new(nodes).expect("in order"));
-    words(&pipeline::judge(
-        &run.scenario,
-        &run.obstacles().cloned().collect::<Vec<_>>(),
-        &motion,
-    ))
+    let obstacles: Vec<_> = run.obstacles().cloned().collect();
+    words(&pipeline::judge(&run.scenario, &obstacles, &motion))
 }
 
 #[test]
@@ -160,19 +150,11 @@ fn every_way_to_spoil_a_plan_is_found() {
             sets.initial = sets.initial.scaled_about_center(1.001);
         }
     }
-    let obstacles: Vec<_> = pipeline::sets(&wider.scenario)
-        .into_iter()
-        .map(|s| s.hard)
-        .collect();
+    let sets = pipeline::sets(&wider.scenario).into_iter();
+    let obstacles: Vec<_> = sets.map(|s| s.hard).collect();
     let plan = run.planned.outcome.plan().expect("a plan");
-    assert_eq!(
-        words(&pipeline::judge(
-            &run.scenario,
-            &obstacles,
-            &plan.trajectory
-        )),
-        ["set"]
-    );
+    let found = pipeline::judge(&run.scenario, &obstacles, &plan.trajectory);
+    assert_eq!(words(&found), ["set"]);
 }
 
 #[test]
@@ -211,15 +193,8 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     // the goal is inside a set for the whole horizon: approach it as closely as possible
     let goal = with_targets(&target("on the goal", [20.0, 10.0], [4.0; 2], still, 1e-4));
     let found = run(&goal);
-    let end = found
-        .planned
-        .outcome
-        .plan()
-        .expect("a plan")
-        .trajectory
-        .end()
-        .position;
-    let away = (end - Vector::new(20.0, 10.0)).norm();
+    let plan = found.planned.outcome.plan().expect("a plan");
+    let away = (plan.trajectory.end().position - Vector::new(20.0, 10.0)).norm();
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
     assert!(away > 2.9 && away < 4.5, "{away}");
 }
@@ -278,15 +253,11 @@ fn what_is_not_solved_comes_with_what_may_help() {
     let NoPlan::Unsolved { starts, .. } = reason(&long) else {
         panic!("{:?}", reason(&long));
     };
-    assert_eq!(
-        *starts,
-        long.planned.control.as_ref().expect("forces").starts.len()
-    );
+    let control = long.planned.control.as_ref().expect("forces");
+    assert_eq!(*starts, control.starts.len());
     let said = plan_text(&long);
-    assert!(
-        said.contains("what may help: ") && said.contains("a shorter horizon"),
-        "{said}"
-    );
+    let helps = said.contains("what may help: ") && said.contains("a shorter horizon");
+    assert!(helps, "{said}");
     let fast = run(&patient.replace("speed_mps = 0.2\n", "speed_mps = 60.0\n"));
     let said = plan_text(&fast);
     match reason(&fast) {
@@ -337,17 +308,11 @@ vessel = "cybership2-full"
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
     let axes = |run: &Run| plan_figure(run).svg();
-    for (svg, names) in [
-        (
-            axes(&full),
-            ["Force [N]", "Moment [Nm]", "Rate of turn [°/s]"],
-        ),
-        (
-            axes(&free),
-            ["Force [N]", "Moment [Nm]", "Speed through water [m/s]"],
-        ),
+    for (svg, third) in [
+        (axes(&full), "Rate of turn [°/s]"),
+        (axes(&free), "Speed through water [m/s]"),
     ] {
-        for name in names {
+        for name in ["Force [N]", "Moment [Nm]", third] {
             assert!(svg.contains(name), "{name}");
         }
     }
@@ -436,14 +401,8 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     for k in 0..=1000 {
         let time = 0.1 * f64::from(k);
         let place = plan.trajectory.pose_at(time).position;
-        assert!(
-            found.targets[0]
-                .sets
-                .hard
-                .signed_distance(place, time)
-                .distance
-                > 0.0
-        );
+        let hard = &found.targets[0].sets.hard;
+        assert!(hard.signed_distance(place, time).distance > 0.0);
     }
 }
 
@@ -458,20 +417,8 @@ fn a_judge_without_its_ship_knows_no_plan() {
         vessel: full.as_ref(),
         force_limits: ForceVector::new(2.0, 1.5, 1.5),
     };
-    let request = searoom::evaluation::Request {
-        segments: &[],
-        own: &run.scenario.own_ship,
-        desired: &run.scenario.desired,
-        targets: &[],
-        sets: &[],
-        freedom: searoom::evaluation::Freedom::Limits,
-        land: &[],
-        land_margin: 0.0,
-        horizon: 100.0,
-        arrival_hold: 60.0,
-        time_weight: 0.05,
-        max_risk: 0.0,
-    };
-    let found = searoom::evaluation::evaluate_steered(&request, &steering);
+    let scenario = &run.scenario;
+    let request = Request::new(&[], &scenario.own_ship, &scenario.desired, 100.0);
+    let found = evaluate_steered(&request, &steering);
     assert_eq!(words(&found), ["vessel"]);
 }

@@ -154,10 +154,8 @@ fn the_least_alteration_is_that_of_a_dense_search() {
             let step = s.max_speed / STEPS as f64;
             let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
             let slower = |change: f64| free(-change);
-            let (down, up) = (
-                sampled(step, s.speed, slower),
-                sampled(step, s.max_speed - s.speed, free),
-            );
+            let down = sampled(step, s.speed, slower);
+            let up = sampled(step, s.max_speed - s.speed, free);
             let what = "speed";
             match found.speed {
                 Some(change) if change < 0.0 => {

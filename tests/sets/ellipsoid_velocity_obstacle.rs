@@ -31,10 +31,8 @@ fn searched(o: &EllipsoidObstacle, x: Vector, horizon: f64, distance: f64, n: Ve
     let best = (0..times.len())
         .max_by(|a, b| of(times[*a]).total_cmp(&of(times[*b])))
         .expect("times");
-    let (low, high) = (
-        times[(best + 1).min(times.len() - 1)],
-        times[best.saturating_sub(1)],
-    );
+    let low = times[(best + 1).min(times.len() - 1)];
+    let high = times[best.saturating_sub(1)];
     of(golden_maximum(low, high, of)).max(of(times[best]))
 }
 

@@ -121,10 +121,8 @@ fn compare(o: &Obstacle, map: &Map, (x, t, v, horizon, s): Question) {
         }
     }
     let (from, going, last) = (map.place(x), map.velocity(v), horizon * map.stretch);
-    let (p, q) = (
-        o.closest_approach(x, v, horizon),
-        other.closest_approach(from, going, last),
-    );
+    let p = o.closest_approach(x, v, horizon);
+    let q = other.closest_approach(from, going, last);
     let slack = 100.0 * digits * (1.0 + map.scale);
     assert!(
         (p.distance * map.scale - q.distance).abs() <= slack,
@@ -214,10 +212,8 @@ fn larger_sets_contain_and_endanger_more() {
             let large = made(&initial, &velocity);
             let distance = |o: &PolytopeObstacle| o.signed_distance(x, t).distance;
             assert!(distance(&large) <= distance(&small) + 1e-9);
-            let (a, b) = (
-                small.closest_approach(x, v, 100.0),
-                large.closest_approach(x, v, 100.0),
-            );
+            let a = small.closest_approach(x, v, 100.0);
+            let b = large.closest_approach(x, v, 100.0);
             assert!(b.distance <= a.distance + 1e-9, "{a:?} {b:?}");
             // the centre of the velocities is fixed if only the positions grow
             assert!(wider.risk(x, t) >= small.risk(x, t) - 1e-9);

@@ -155,10 +155,8 @@ fn a_star_finds_the_cost_of_dijkstra() {
                     });
                     planned.outcome.plan().and_then(|p| p.graph_cost)
                 };
-                let (best, exhaustive) = (
-                    graph_cost(SearchKind::AStar),
-                    graph_cost(SearchKind::Dijkstra),
-                );
+                let best = graph_cost(SearchKind::AStar);
+                let exhaustive = graph_cost(SearchKind::Dijkstra);
                 match (best, exhaustive) {
                     (Some(a), Some(b)) => {
                         let most = if obstacles.len() > 1 { HASTE } else { 1.0 };

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::alter::{alter, assert_rejected, assert_word, give_up, list};
+use crate::alter::{alter, assert_rejected, assert_word, give_up, list, rows};
 use crate::documents::{document, inside, is_caught, scenario};
 
 /// Alterations that increase the danger.
@@ -142,6 +142,15 @@ another planner's objective | /objective = "length-risk" | objective
 another relaxation | /relaxation = {"kind": "risk", "target": "target", "amount": 0.9} | relaxation
 "#;
 
+/// Compliance, requirements given up, and what is said of them.
+const GIVEN_UP: &str = r#"
+shape | risk 0 | amount: the document says 0, it is nothing
+shape | compliance 1 | not possible with compliance 'shape'
+none | domain 1 | not possible with compliance 'none'
+shape | domain 1, domain 2 | 'domain' twice
+shape | domain 0 | reduced by 0
+"#;
+
 /// Checks that the words of a document agree with its content, and that figures independent of the
 /// motion are recomputed.
 #[test]
@@ -159,34 +168,14 @@ fn every_claim_of_a_document_is_held() {
         let free = r#"as free | /planner = "space-time" | planner"#;
         assert_rejected(&document(scenario(file)), free);
     }
-    for (compliance, given_up, word) in [
-        (
-            "shape",
-            &[("risk", 0.0)][..],
-            "amount: the document says 0, it is nothing",
-        ),
-        (
-            "shape",
-            &[("compliance", 1.0)],
-            "not possible with compliance 'shape'",
-        ),
-        (
-            "none",
-            &[("domain", 1.0)],
-            "not possible with compliance 'none'",
-        ),
-        (
-            "shape",
-            &[("domain", 1.0), ("domain", 2.0)],
-            "'domain' twice",
-        ),
-        ("shape", &[("domain", 0.0)], "reduced by 0"),
-    ] {
+    for [compliance, given_up, word] in rows(GIVEN_UP) {
         let mut document = clear.clone();
         document["compliance"] = json!(compliance);
         document["outcome"] = json!("relaxed");
-        for (kind, amount) in given_up {
-            give_up(&mut document, kind, "target", *amount);
+        for given_up in given_up.split(", ") {
+            let (kind, amount) = given_up.split_once(' ').expect("an amount");
+            let amount = amount.parse().expect("a number");
+            give_up(&mut document, kind, "target", amount);
         }
         assert_word(&document, word, word);
     }

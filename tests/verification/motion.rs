@@ -1,5 +1,6 @@
 //! Altered motions: every one is detected.
 
+use searoom::evaluation::Violation;
 use searoom::scenario::Scenario;
 use serde_json::{Value, json};
 
@@ -151,12 +152,8 @@ fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
         "/obstacles/0/initial_set/vertices_m/*/1 * 0.001",
     );
     let found = checked(&document);
-    assert!(
-        found
-            .violations
-            .iter()
-            .any(|v| v.what.contains("too small for the hull"))
-    );
+    let small = |v: &Violation| v.what.contains("too small for the hull");
+    assert!(found.violations.iter().any(small));
 }
 
 /// Tests a hull that is nearest during a turn on the spot, on a heading between two legs.
@@ -165,28 +162,10 @@ fn a_closest_approach_in_a_turn_on_the_spot_passes() {
     let text = r#"
         title = "corner"
         horizon_s = 600.0
-        [own_ship]
-        position = { east_m = 0.0, north_m = 0.0 }
-        course_deg = 90.0
-        speed_mps = 5.0
-        length_m = 30.0
-        beam_m = 8.0
-        turning_radius_m = 100.0
-        [mission]
-        waypoints = [
-            { east_m = 0.0, north_m = 0.0 },
-            { east_m = 1000.0, north_m = 0.0 },
-            { east_m = 1000.0, north_m = 1000.0 },
-        ]
-        [planner]
-        kind = "path-time"
-        [[targets]]
-        name = "moored"
-        position = { east_m = 1700.0, north_m = -100.0 }
-        course_deg = 0.0
-        speed_mps = 0.0
-        length_m = 60.0
-        beam_m = 12.0
+        planner = { kind = "path-time" }
+        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
+        mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }, { east_m = 1000, north_m = 1000 }] }
+        targets = [{ name = "moored", position = { east_m = 1700, north_m = -100 }, course_deg = 0, speed_mps = 0, length_m = 60, beam_m = 12 }]
     "#;
     let mut document = document(Scenario::parse(text).expect("sound"));
     assert!(!is_caught(&document));

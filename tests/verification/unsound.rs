@@ -41,6 +41,12 @@ fn scaled(corners: &Value, factor: f64) -> Value {
     json!(corners.iter().map(scaled).collect::<Vec<_>>())
 }
 
+/// Corners of a square, half of whose side is `half`.
+fn square([x, y]: [f64; 2], half: f64) -> Value {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    json!(corners.map(|(east, north)| [x + half * east, y + half * north]))
+}
+
 /// A slab of half a nanosecond that carries the set aside; a level set to one side of the
 /// velocities, in two slabs; a jump through a wall during a turn of many circles; a round trip that
 /// nobody sails.
@@ -48,10 +54,7 @@ fn scaled(corners: &Value, factor: f64) -> Value {
 fn unsound_documents_are_rejected() {
     for (name, expected) in [
         ("tiny-slab", "set of 'log': too small for the velocity set"),
-        (
-            "lopsided",
-            "too small for the velocities at the accepted risk",
-        ),
+        ("lopsided", "too small for the velocities at the accepted"),
         ("teleport", "position at the joint of segments 3 and 4"),
         ("null-plan", "0 m sailed, with the path still ahead"),
     ] {
@@ -67,29 +70,18 @@ fn sets_under_forces_hold_the_velocities_at_a_risk() {
     plan["max_risk"] = json!(1e-12);
     let horizon = plan["horizon_s"].clone();
     let center = pairs(&json!([plan["obstacles"][0]["initial_set"]["center_m"]]))[0];
-    let corner = |x: f64, y: f64| [center[0] + 700.0 * x, center[1] + 700.0 * y];
-    let square = json!([
-        corner(-1.0, -1.0),
-        corner(1.0, -1.0),
-        corner(1.0, 1.0),
-        corner(-1.0, 1.0)
-    ]);
+    let square = square(center, 700.0);
     let set = |velocity: [f64; 2]| {
         json!([{ "name": plan["targets"][0]["name"], "valid_s": [0.0, horizon],
             "initial_set": { "vertices_m": square }, "velocity_set": { "vertices_mps": [velocity] } }])
     };
     let mut away = plan.clone();
     away["obstacles"] = set([35.0, -35.0]);
-    assert!(said(
-        &away,
-        "too small for the velocities at the accepted risk"
-    ));
+    let level = "too small for the velocities at the accepted risk";
+    assert!(said(&away, level));
     let mut round = plan.clone();
     *at(&mut round, "/obstacles/0/velocity_set/center_mps") = json!([3.0, -3.0]);
-    assert!(said(
-        &round,
-        "too small for the velocities at the accepted risk"
-    ));
+    assert!(said(&round, level));
 }
 
 /// Along a path out and back that is not sailed to its end.
@@ -241,28 +233,22 @@ fn after_release(plan: &Value, later: f64) -> ([f64; 2], f64) {
 fn what_is_entered_after_a_release_is_found() {
     let plan = inside();
     assert!(checked(&plan).verified());
+    let entered = |document: &Value, what: &str, time: f64, by: f64| {
+        let found = checked(document).violations;
+        let entered = found.iter().find(|v| v.what.contains(what));
+        let then = entered.is_some_and(|v| (v.time - time).abs() < by);
+        assert!(then, "{found:#?}");
+    };
     for later in [3.0, 30.0] {
         let (place, time) = after_release(&plan, later);
         // the set fast across its way
         let mut set = plan.clone();
         let obstacle = &mut set["obstacles"][0];
         let from = obstacle["valid_s"][0].as_f64().expect("a start");
-        let side = |x: f64, y: f64| [place[0] + x, place[1] + y - 50.0 * (time - from)];
-        obstacle["initial_set"]["vertices_m"] = json!([
-            side(-9.0, -9.0),
-            side(9.0, -9.0),
-            side(9.0, 9.0),
-            side(-9.0, 9.0)
-        ]);
+        let center = [place[0], place[1] - 50.0 * (time - from)];
+        obstacle["initial_set"]["vertices_m"] = square(center, 9.0);
         obstacle["velocity_set"]["vertices_mps"] = json!([[0.0, 50.0]]);
-        let found = checked(&set).violations;
-        let entered = found
-            .iter()
-            .find(|v| v.what.contains("set of 'target': distance"));
-        assert!(
-            entered.is_some_and(|v| (v.time - time).abs() < 1.0),
-            "{found:#?}"
-        );
+        entered(&set, "set of 'target': distance", time, 1.0);
         // its hull fast across its way
         let mut hull = plan.clone();
         let ship = &mut hull["targets"][0]["ship"];
@@ -276,14 +262,7 @@ fn what_is_entered_after_a_release_is_found() {
         ] {
             ship[spread] = json!(0.0);
         }
-        let found = checked(&hull).violations;
-        let entered = found
-            .iter()
-            .find(|v| v.what.contains("hull of 'target': distance"));
-        assert!(
-            entered.is_some_and(|v| (v.time - time).abs() < 3.0),
-            "{found:#?}"
-        );
+        entered(&hull, "hull of 'target': distance", time, 3.0);
     }
 }
 

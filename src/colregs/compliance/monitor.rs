@@ -19,17 +19,12 @@ pub enum MonitorVerdict {
     Undecided,
 }
 
-impl MonitorVerdict {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Satisfied => "satisfied",
-            Self::Violated => "violated",
-            Self::Idle => "idle",
-            Self::Undecided => "undecided",
-        }
-    }
-}
+words!(MonitorVerdict {
+    Satisfied => "satisfied",
+    Violated => "violated",
+    Idle => "idle",
+    Undecided => "undecided",
+});
 
 /// Unit of robustness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -54,10 +54,10 @@ impl EncounterSample {
     /// True if own ship, on its first course and at its first speed again, would have the target
     /// behind: the closest approach is over.
     pub fn is_past(&self, first: &SteadyShip) -> bool {
-        let own = SteadyShip {
-            pose: Pose::new(self.own.pose.position, first.pose.heading),
-            speed: first.speed,
-        };
+        let own = SteadyShip::new(
+            Pose::new(self.own.pose.position, first.pose.heading),
+            first.speed,
+        );
         Self { own, ..*self }.ahead().time <= 0.0
     }
 
@@ -209,10 +209,7 @@ impl OwnSamples {
         hull: Hull,
         ordered_speed: f64,
     ) -> Self {
-        let at = |time: f64| SteadyShip {
-            pose: trajectory.pose_at(time),
-            speed: trajectory.speed_at(time),
-        };
+        let at = |time: f64| SteadyShip::new(trajectory.pose_at(time), trajectory.speed_at(time));
         let mut ships = sampled(sailed);
         let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
         ships.extend(times.map(|time| (time, at(time))));
@@ -359,10 +356,7 @@ fn sampled(sailed: &[Segment]) -> Vec<(f64, SteadyShip)> {
             .min(f64::from(MOST_SAMPLES));
         (0..steps as usize).map(move |k| {
             let time = s.start_time + STEP_S * k as f64;
-            let ship = SteadyShip {
-                pose: s.pose_at(time),
-                speed: s.speed,
-            };
+            let ship = SteadyShip::new(s.pose_at(time), s.speed);
             (time, ship)
         })
     });
@@ -527,10 +521,10 @@ mod tests {
 
     fn ship(rng: &mut ChaCha8Rng, range: f64) -> SteadyShip {
         let mut within = |r: f64| rng.random_range(-r..r);
-        SteadyShip {
-            pose: Pose::new(Vector::new(within(range), within(range)), within(3.1)),
-            speed: 5.0 + within(4.0),
-        }
+        SteadyShip::new(
+            Pose::new(Vector::new(within(range), within(range)), within(3.1)),
+            5.0 + within(4.0),
+        )
     }
 
     /// Against sums of polygons, overlapping, close and far.
@@ -540,9 +534,8 @@ mod tests {
         let (mut met, mut meeting) = (0, 0);
         for case in 0..4000 {
             let range = [30.0, 100.0, 1000.0][case % 3];
-            let hull = |rng: &mut ChaCha8Rng| Hull {
-                length: rng.random_range(10.0..90.0),
-                beam: rng.random_range(3.0..20.0),
+            let hull = |rng: &mut ChaCha8Rng| {
+                Hull::new(rng.random_range(10.0..90.0), rng.random_range(3.0..20.0))
             };
             let (own, other) = (hull(&mut rng), hull(&mut rng));
             let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
@@ -569,10 +562,7 @@ mod tests {
     fn a_far_target_is_judged_by_its_nearest_sight() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let own = planned(&[(0.0, 240.0), (0.7, 120.0), (-0.9, 300.0)], 6.0);
-        let hull = Hull {
-            length: 50.0,
-            beam: 10.0,
-        };
+        let hull = Hull::new(50.0, 10.0);
         let track = OwnSamples::along(&[], &own, hull, 6.0);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {

@@ -26,10 +26,7 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
     OwnShip {
         pose: Pose::new(position, 0.0),
         speed: 6.0,
-        hull: Hull {
-            length: 50.0,
-            beam: 10.0,
-        },
+        hull: Hull::new(50.0, 10.0),
         turning_radius: 100.0,
         speeds: vec![3.0, 6.0],
         safety_margin,
@@ -39,28 +36,18 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
 
 fn track(position: Vector, heading: f64, speed: f64) -> ShipTrack {
     ShipTrack {
-        pose: Pose::new(position, heading),
-        speed,
-        hull: Hull {
-            length: 50.0,
-            beam: 10.0,
-        },
         position_std: 2.0,
         speed_spread: 0.5,
         course_spread: 0.1,
-        turn_rate: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
         domain: DomainKind::Colregs,
+        ..ShipTrack::exact(Pose::new(position, heading), speed, Hull::new(50.0, 10.0))
     }
 }
 
 fn risk_with(own: &OwnShip, target: &ShipTrack) -> Risk {
     let steady = |pose, speed| SteadyShip { pose, speed };
-    let (own, target) = (
-        steady(own.pose, own.speed),
-        steady(target.pose, target.speed),
-    );
+    let own = steady(own.pose, own.speed);
+    let target = steady(target.pose, target.speed);
     Risk {
         role: raw_role(&own, &target).expect("finite"),
         time: 0.0,
@@ -181,10 +168,8 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         let whole = shapes(&away, &target, Some(&risk), HORIZON);
         assert!(inside(&found.with_domain, &whole.with_domain) && whole.reduced == 0.0);
         let start = own.pose.position;
-        let (from_hard, from_whole) = (
-            found.hard.signed_distance(start),
-            whole.with_domain.signed_distance(start),
-        );
+        let from_hard = found.hard.signed_distance(start);
+        let from_whole = whole.with_domain.signed_distance(start);
         if from_hard <= 0.0 || from_whole > 0.0 {
             assert_eq!(found.with_domain, whole.with_domain);
             assert_eq!(found.reduced, 0.0);

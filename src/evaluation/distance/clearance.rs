@@ -240,10 +240,8 @@ fn beyond_side(
     half: f64,
 ) -> Probe {
     let turning = to_port(normal) * moving.turn_rate;
-    let (turn, swing) = (
-        bounds.yaw_rate,
-        bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration,
-    );
+    let turn = bounds.yaw_rate;
+    let swing = bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration;
     let mut gap = Probe::new(f64::INFINITY, f64::INFINITY);
     for vertex in &set.vertices {
         let offset = vertex.at(time) - pose.position;

@@ -100,7 +100,6 @@ impl TurnedHull {
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::target::DomainKind;
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -114,19 +113,16 @@ mod tests {
             let length = 10.0_f64.powf(rng.random_range(0.0..3.0));
             let position = Vector::new(rng.random_range(-2e3..2e3), 300.0);
             let ship = ShipTrack {
-                pose: Pose::new(position, rng.random_range(-3.0..3.0)),
-                speed: 5.0,
-                hull: Hull::new(length, length * rng.random_range(0.01..1.2)),
-                position_std: 0.0,
-                speed_spread: 0.0,
                 course_spread: match case % 4 {
                     0 => 10.0_f64.powf(rng.random_range(-12.0..-3.0)),
                     _ => rng.random_range(0.0..0.4),
                 },
                 turn_rate: [0.0, 0.01, 0.2][case % 3],
-                kept_positions: None,
-                kept_velocities: None,
-                domain: DomainKind::Hull,
+                ..ShipTrack::exact(
+                    Pose::new(position, rng.random_range(-3.0..3.0)),
+                    5.0,
+                    Hull::new(length, length * rng.random_range(0.01..1.2)),
+                )
             };
             let time = rng.random_range(0.0..30.0);
             let hull = TurnedHull::of(&ship, time);

@@ -222,11 +222,9 @@ mod tests {
     #[test]
     fn known_shapes_have_their_known_ellipses() {
         let relative = |found: f64, known: f64| (found / known - 1.0).abs();
-        let (a, b, c) = (
-            Vector::new(0.0, 0.0),
-            Vector::new(7.0, 1.0),
-            Vector::new(2.0, 5.0),
-        );
+        let a = Vector::new(0.0, 0.0);
+        let b = Vector::new(7.0, 1.0);
+        let c = Vector::new(2.0, 5.0);
         // Steiner's ellipse of a triangle
         let steiner = 4.0 * PI / (3.0 * 3.0_f64.sqrt()) * 0.5 * cross(b - a, c - a);
         let found = outer_enclosing_ellipse(&hull(&[a, b, c]));

@@ -195,10 +195,8 @@ fn contacts_in_space_time_are_those_of_parry() {
             &b,
             options,
         );
-        let (theirs, ours) = (
-            hit.map(|h| h.time_of_impact),
-            inside.first().map(|c| c.start),
-        );
+        let theirs = hit.map(|h| h.time_of_impact);
+        let ours = inside.first().map(|c| c.start);
         // a graze is a hit for the one and none for the other
         let long = inside.first().is_some_and(|c| c.end - c.start > 1e-3);
         if long {

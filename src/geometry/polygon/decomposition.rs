@@ -53,10 +53,8 @@ fn inner_faces(mesh: &Mesh) -> Vec<bool> {
     let mut beyond: Vec<Vec<(usize, bool)>> = vec![Vec::new(); mesh.num_all_faces()];
     for edge in mesh.undirected_edges() {
         let directed = edge.as_directed();
-        let (a, b) = (
-            directed.face().fix().index(),
-            directed.rev().face().fix().index(),
-        );
+        let a = directed.face().fix().index();
+        let b = directed.rev().face().fix().index();
         let of_the_polygon = mesh.is_constraint_edge(edge.fix());
         beyond[a].push((b, of_the_polygon));
         beyond[b].push((a, of_the_polygon));
@@ -95,10 +93,8 @@ fn merged(mesh: &Mesh, inside: &[bool]) -> Vec<ConvexPolygon> {
     let mut inner: Vec<[usize; 4]> = Vec::new();
     for edge in mesh.undirected_edges() {
         let directed = edge.as_directed();
-        let (a, b) = (
-            directed.face().fix().index(),
-            directed.rev().face().fix().index(),
-        );
+        let a = directed.face().fix().index();
+        let b = directed.rev().face().fix().index();
         if inside[a] && inside[b] && !mesh.is_constraint_edge(edge.fix()) {
             let (u, v) = (directed.from().fix().index(), directed.to().fix().index());
             inner.push([u, v, a, b]);
@@ -154,6 +150,7 @@ fn joined(a: &Loop, b: &Loop, [from, to]: [usize; 2], at: &[Vector]) -> Option<L
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::ring;
     use super::*;
     use crate::frame::direction;
     use rand::{Rng, SeedableRng};
@@ -178,21 +175,16 @@ mod tests {
         let area: f64 = pieces.iter().map(ConvexPolygon::area).sum();
         assert!((area - polygon.area()).abs() < 1e-9 * (1.0 + polygon.area()));
         let corners = polygon.rings()[0].iter();
-        let (low, high) = corners.fold(
-            (
-                Vector::repeat(f64::INFINITY),
-                Vector::repeat(-f64::INFINITY),
-            ),
-            |(low, high), p| (low.inf(p), high.sup(p)),
-        );
+        let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
+        let [low, high] = corners.fold(nothing, |[low, high], p| [low.inf(p), high.sup(p)]);
         for _ in 0..200 {
             let share = Vector::new(rng.random_range(-0.1..1.1), rng.random_range(-0.1..1.1));
             let p = low + (high - low).component_mul(&share);
-            let within = pieces
-                .iter()
-                .filter(|c| c.signed_distance(p) < -1e-9)
-                .count();
-            let touched = pieces.iter().filter(|c| c.contains(p)).count();
+            let count = |holds: &dyn Fn(&ConvexPolygon) -> bool| {
+                pieces.iter().filter(|piece| holds(piece)).count()
+            };
+            let within = count(&|piece| piece.signed_distance(p) < -1e-9);
+            let touched = count(&|piece| piece.contains(p));
             assert!(within <= 1, "{p:?} is in {within} pieces");
             if touched == within {
                 assert_eq!(within == 1, polygon.contains(p), "{p:?}");
@@ -225,55 +217,31 @@ mod tests {
     #[test]
     fn needles_combs_and_touching_rings_tile_too() {
         let mut rng = ChaCha8Rng::seed_from_u64(73);
-        let at = |x: f64, y: f64| Vector::new(x, y);
-        let convex = Polygon::new(&[vec![at(0.0, 0.0), at(4.0, 0.0), at(4.0, 3.0), at(0.0, 3.0)]]);
+        let convex = Polygon::new(&[ring("0,0 4,0 4,3 0,3")]);
         assert_eq!(assert_tiles(&convex.expect("valid"), &mut rng), 1);
-        let needle = [
-            at(0.0, 0.0),
-            at(1000.0, 1e-3),
-            at(2000.0, 0.0),
-            at(1000.0, 2e-3),
-        ];
+        let needle = ring("0,0 1000,1e-3 2000,0 1000,2e-3");
         let comb: Vec<Vector> = (0..40)
-            .map(|k| at(f64::from(k), if k % 2 == 0 { 30.0 } else { 1.0 }))
+            .map(|k| Vector::new(f64::from(k), if k % 2 == 0 { 30.0 } else { 1.0 }))
             .rev()
-            .chain([at(0.0, 0.0), at(39.0, 0.0)])
+            .chain(ring("0,0 39,0"))
             .collect();
-        let hole = vec![at(5.0, 0.0), at(8.0, 0.5), at(6.0, 0.9)];
-        for rings in [vec![needle.to_vec()], vec![comb.clone()], vec![comb, hole]] {
+        let pinched = ring("0,0 4,0 2,2 4,4 0,4 2,2");
+        // collinear vertices, and the line on which a hole lies
+        let straight = ring("0,0 2,0 5,0 9,0 9,9 0,9");
+        for rings in [
+            vec![needle],
+            vec![comb.clone()],
+            vec![comb, ring("5,0 8,0.5 6,0.9")],
+            vec![pinched],
+            vec![straight, ring("5,0 6,3 4,3")],
+        ] {
             assert_tiles(&Polygon::new(&rings).expect("valid"), &mut rng);
         }
-        let pinched = [
-            at(0.0, 0.0),
-            at(4.0, 0.0),
-            at(2.0, 2.0),
-            at(4.0, 4.0),
-            at(0.0, 4.0),
-            at(2.0, 2.0),
-        ];
-        assert_tiles(&Polygon::new(&[pinched.to_vec()]).expect("valid"), &mut rng);
-        // collinear vertices, and the line on which a hole lies
-        let straight = vec![
-            at(0.0, 0.0),
-            at(2.0, 0.0),
-            at(5.0, 0.0),
-            at(9.0, 0.0),
-            at(9.0, 9.0),
-            at(0.0, 9.0),
-        ];
-        let hole = vec![at(5.0, 0.0), at(6.0, 3.0), at(4.0, 3.0)];
-        assert_tiles(&Polygon::new(&[straight, hole]).expect("valid"), &mut rng);
     }
 
     #[test]
     fn what_cannot_be_triangulated_is_an_error() {
-        let far = 1e300;
-        let ring = vec![
-            Vector::new(0.0, 0.0),
-            Vector::new(far, 0.0),
-            Vector::new(0.0, far),
-        ];
-        let found = Polygon::new(&[ring]).map(|p| convex_pieces(&p));
+        let found = Polygon::new(&[ring("0,0 1e300,0 0,1e300")]).map(|p| convex_pieces(&p));
         assert!(!matches!(found, Ok(Ok(_))), "{found:?}");
     }
 }

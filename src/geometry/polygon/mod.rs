@@ -175,15 +175,23 @@ fn signed_area(ring: &[Vector]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn ring(points: &[(f64, f64)]) -> Vec<Vector> {
-        points.iter().map(|&(x, y)| Vector::new(x, y)).collect()
+    /// Points `x,y` with blanks between them.
+    pub fn ring(points: &str) -> Vec<Vector> {
+        let number = |text: &str| text.parse().expect("a number");
+        let points = points
+            .split(' ')
+            .map(|p| p.split_once(',').expect("two numbers"));
+        points
+            .map(|(x, y)| Vector::new(number(x), number(y)))
+            .collect()
     }
 
     fn square(low: f64, high: f64) -> Vec<Vector> {
-        ring(&[(low, low), (high, low), (high, high), (low, high)])
+        let corners = [(low, low), (high, low), (high, high), (low, high)];
+        corners.map(|(x, y)| Vector::new(x, y)).to_vec()
     }
 
     #[test]
@@ -202,38 +210,33 @@ mod tests {
 
     #[test]
     fn what_is_no_polygon_is_named() {
-        let bow_tie = ring(&[(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)]);
+        let bow_tie = ring("0,0 10,10 10,0 0,10");
         let Err(PolygonError::Crosses { crossing }) = Polygon::new(&[bow_tie]) else {
             panic!("crosses");
         };
         assert!((crossing.at - Vector::new(5.0, 5.0)).norm() < 1e-12);
-        let flat = ring(&[(0.0, 0.0), (10.0, 0.0), (5.0, 0.0)]);
+        let flat = ring("0,0 10,0 5,0");
         assert!(matches!(
             Polygon::new(&[flat]),
             Err(PolygonError::Crosses { .. })
         ));
-        let few = ring(&[(0.0, 0.0), (10.0, 0.0), (10.0, 0.0), (0.0, 0.0)]);
+        let few = ring("0,0 10,0 10,0 0,0");
         assert_eq!(
             Polygon::new(&[few]),
             Err(PolygonError::TooFewVertices { ring: 0, found: 2 })
         );
         assert!(Polygon::new(&[]).is_err());
-        let lost = ring(&[(0.0, 0.0), (10.0, f64::NAN), (10.0, 0.0)]);
+        let lost = ring("0,0 10,nan 10,0");
         assert!(matches!(
             Polygon::new(&[lost]),
             Err(PolygonError::NotFinite { ring: 0, vertex: 1 })
         ));
+        let outside = |ring| Err(PolygonError::HoleOutside { ring });
         for hole in [square(20.0, 22.0), square(-5.0, 15.0)] {
-            assert_eq!(
-                Polygon::new(&[square(0.0, 10.0), hole]),
-                Err(PolygonError::HoleOutside { ring: 1 })
-            );
+            assert_eq!(Polygon::new(&[square(0.0, 10.0), hole]), outside(1));
         }
         let nested = [square(0.0, 10.0), square(1.0, 9.0), square(4.0, 5.0)];
-        assert_eq!(
-            Polygon::new(&nested),
-            Err(PolygonError::HoleOutside { ring: 2 })
-        );
+        assert_eq!(Polygon::new(&nested), outside(2));
         assert!(matches!(
             Polygon::new(&[square(0.0, 10.0), square(5.0, 15.0)]),
             Err(PolygonError::Crosses { .. })
@@ -243,16 +246,9 @@ mod tests {
     #[test]
     fn touching_in_points_is_allowed() {
         // a hole that touches the outer ring in a vertex, and a ring that touches itself
-        let hole = ring(&[(0.0, 0.0), (3.0, 1.0), (1.0, 3.0)]);
+        let hole = ring("0,0 3,1 1,3");
         assert!(Polygon::new(&[square(0.0, 10.0), hole]).is_ok());
-        let pinched = ring(&[
-            (0.0, 0.0),
-            (4.0, 0.0),
-            (2.0, 2.0),
-            (4.0, 4.0),
-            (0.0, 4.0),
-            (2.0, 2.0),
-        ]);
+        let pinched = ring("0,0 4,0 2,2 4,4 0,4 2,2");
         let polygon = Polygon::new(&[pinched]).expect("touches only");
         assert_eq!(polygon.area(), 8.0);
     }

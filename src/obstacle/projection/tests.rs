@@ -27,10 +27,8 @@ fn the_projection_is_membership_along_the_path() {
         let polygon = ConvexPolygon::hull(&points).ok();
         met += usize::from(polygon.is_some());
         for _ in 0..200 {
-            let (s, t) = (
-                rng.random_range(0.0..length),
-                rng.random_range(0.0..horizon),
-            );
+            let s = rng.random_range(0.0..length);
+            let t = rng.random_range(0.0..horizon);
             let slack = o.slack(start + direction * s, t).value;
             let inside = polygon
                 .as_ref()
@@ -48,10 +46,8 @@ fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(52);
     let (mut met, mut most) = (0, 0);
     for _ in 0..300 {
-        let (initial, velocity) = (
-            random_polygon(&mut rng, 27.0),
-            random_polygon(&mut rng, 1.0),
-        );
+        let initial = random_polygon(&mut rng, 27.0);
+        let velocity = random_polygon(&mut rng, 1.0);
         let o = EllipsoidObstacle::outer_of(&PolytopeObstacle::new("x", initial, velocity));
         let bend = Vector::new(
             rng.random_range(-150.0..50.0),

@@ -2,6 +2,7 @@
 
 mod panes;
 
+use rerun::EntityPath;
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns,
@@ -14,7 +15,6 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLog
 use rerun::external::re_sdk_types::blueprint::views::{
     Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TextLogView, TimeSeriesView,
 };
-use rerun::{EntityPath, RecordingStreamResult};
 
 use panes::{Pane, Panes};
 
@@ -28,14 +28,14 @@ use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EVENTS, EXPLORED, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
+    CHART, EVENTS, EXPLORED, Logged, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
 };
 
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
 /// Lays out all views of a run.
-pub fn of_run(model: &ViewModel) -> RecordingStreamResult<Recorder> {
+pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let mut left = vec![chart_view(to, model)?];
@@ -71,7 +71,7 @@ pub fn of_run(model: &ViewModel) -> RecordingStreamResult<Recorder> {
 }
 
 /// Lays out a comparison: chart and volume side by side, below them the table and the curves.
-pub fn of_comparison(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
+pub fn of_comparison(canvas: &Canvas) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let chart = chart_view(to, canvas)?;
@@ -91,7 +91,7 @@ pub fn of_comparison(canvas: &Canvas) -> RecordingStreamResult<Recorder> {
 }
 
 /// Lays out a simulation: the chart over the events, beside them the summary over the curves.
-pub fn of_simulation(model: &ClosedLoop) -> RecordingStreamResult<Recorder> {
+pub fn of_simulation(model: &ClosedLoop) -> Logged<Recorder> {
     let canvas = &model.canvas;
     let mut layout = Panes::default();
     let to = &mut layout;
@@ -162,7 +162,7 @@ fn whole_time(canvas: &Canvas) -> TimeRange {
     }
 }
 
-fn chart_view(to: &mut Panes, canvas: &Canvas) -> RecordingStreamResult<Pane> {
+fn chart_view(to: &mut Panes, canvas: &Canvas) -> Logged<Pane> {
     let (low, high) = (canvas.bounds.low, canvas.bounds.high);
     // the view's own axis points down: north is negative there
     let shown = [[low.x, high.x], [-high.y, -low.y]];
@@ -177,7 +177,7 @@ fn plane_view(
     to: &mut Panes,
     (name, origin): (&str, &str),
     [right, down]: [[f64; 2]; 2],
-) -> RecordingStreamResult<Pane> {
+) -> Logged<Pane> {
     let view = to.view::<Spatial2DView>(name, origin)?;
     let shown = rerun::datatypes::Range2D {
         x_range: right.into(),
@@ -189,12 +189,12 @@ fn plane_view(
 }
 
 /// Hides a folder of a view until it is switched on.
-fn hide(to: &mut Panes, view: &Pane, folder: EntityPath) -> RecordingStreamResult<()> {
+fn hide(to: &mut Panes, view: &Pane, folder: EntityPath) -> Logged {
     let hidden = EntityBehavior::new().with_visible(false);
     to.set_of(view, &folder, &hidden)
 }
 
-fn volume_view(to: &mut Panes, canvas: &Canvas, hidden: EntityPath) -> RecordingStreamResult<Pane> {
+fn volume_view(to: &mut Panes, canvas: &Canvas, hidden: EntityPath) -> Logged<Pane> {
     let size = 0.92 * canvas.bounds.size().norm();
     let middle = canvas.lifted(canvas.bounds.center(), 0.42 * canvas.end);
     // from starboard and somewhat astern: own ship runs from left to right and upward
@@ -219,11 +219,7 @@ fn volume_view(to: &mut Panes, canvas: &Canvas, hidden: EntityPath) -> Recording
 }
 
 /// Plots over the whole time, by name and entity, with their legends in the upper corner.
-fn plot_views(
-    to: &mut Panes,
-    canvas: &Canvas,
-    plots: &[(&str, &str)],
-) -> RecordingStreamResult<Vec<Pane>> {
+fn plot_views(to: &mut Panes, canvas: &Canvas, plots: &[(&str, &str)]) -> Logged<Vec<Pane>> {
     let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
     let plot = |(name, origin): &(&str, &str)| {
         let view = to.view::<TimeSeriesView>(name, origin)?;
@@ -238,14 +234,14 @@ fn time_axis(canvas: &Canvas) -> TimeAxis {
     TimeAxis::new().with_view_range(whole_time(canvas))
 }
 
-fn velocity_view(to: &mut Panes, model: &ViewModel) -> RecordingStreamResult<Pane> {
+fn velocity_view(to: &mut Panes, model: &ViewModel) -> Logged<Pane> {
     let limit = 1.05 * velocities::limit(model);
     let name = "Velocity obstacles (m/s, north up)";
     plane_view(to, (name, VELOCITIES), [[-limit, limit]; 2])
 }
 
 /// The roles over time and the fraction of the height that they need; `None` where no rule applies.
-fn rules_view(to: &mut Panes, model: &ViewModel) -> RecordingStreamResult<Option<(Pane, f32)>> {
+fn rules_view(to: &mut Panes, model: &ViewModel) -> Logged<Option<(Pane, f32)>> {
     let lanes = rules::height(model);
     if lanes == 0 {
         return Ok(None);

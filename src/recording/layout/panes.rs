@@ -7,8 +7,9 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 };
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, PanelState};
 use rerun::external::re_sdk_types::{View, datatypes};
-use rerun::{AsComponents, EntityPath, RecordingStreamResult, TimeColumn};
+use rerun::{AsComponents, EntityPath, TimeColumn};
 
+use crate::recording::Logged;
 use crate::recording::write::Recorder;
 
 /// The timeline of a layout: changes by the user come later on it.
@@ -31,7 +32,7 @@ pub struct Panes {
 
 impl Panes {
     /// Adds a view of a class, with its name and the entity at its origin.
-    pub fn view<V: View>(&mut self, name: &str, origin: &str) -> RecordingStreamResult<Pane> {
+    pub fn view<V: View>(&mut self, name: &str, origin: &str) -> Logged<Pane> {
         let pane = self.pane("view");
         let contents = ViewContents::new(["$origin/**"]);
         self.log(&format!("{}/ViewContents", pane.path), &contents)?;
@@ -43,22 +44,12 @@ impl Panes {
     }
 
     /// Sets a property of a view.
-    pub fn set(
-        &mut self,
-        pane: &Pane,
-        property: &str,
-        value: &dyn AsComponents,
-    ) -> RecordingStreamResult<()> {
+    pub fn set(&mut self, pane: &Pane, property: &str, value: &dyn AsComponents) -> Logged {
         self.log(&format!("{}/{property}", pane.path), value)
     }
 
     /// Sets how a view shows an entity and all below it.
-    pub fn set_of(
-        &mut self,
-        pane: &Pane,
-        entity: &EntityPath,
-        value: &dyn AsComponents,
-    ) -> RecordingStreamResult<()> {
+    pub fn set_of(&mut self, pane: &Pane, entity: &EntityPath, value: &dyn AsComponents) -> Logged {
         let entity = entity.to_string();
         let entity = entity.trim_start_matches('/');
         let property = format!("ViewContents/overrides/{entity}/visualizers");
@@ -70,33 +61,25 @@ impl Panes {
         &mut self,
         panes: &[Pane],
         shares: impl IntoIterator<Item = f32>,
-    ) -> RecordingStreamResult<Pane> {
+    ) -> Logged<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Horizontal);
         self.container(panes, kind.with_col_shares(shares))
     }
 
     /// Puts panes one below another, each with its fraction of the height.
-    pub fn below(
-        &mut self,
-        panes: &[Pane],
-        shares: impl IntoIterator<Item = f32>,
-    ) -> RecordingStreamResult<Pane> {
+    pub fn below(&mut self, panes: &[Pane], shares: impl IntoIterator<Item = f32>) -> Logged<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Vertical);
         self.container(panes, kind.with_row_shares(shares))
     }
 
     /// Puts panes in rows with `columns` of them.
-    pub fn grid(&mut self, panes: &[Pane], columns: u32) -> RecordingStreamResult<Pane> {
+    pub fn grid(&mut self, panes: &[Pane], columns: u32) -> Logged<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Grid);
         self.container(panes, kind.with_grid_columns(columns))
     }
 
     /// Finishes the layout: `root` fills the window above the time panel, other panels are hidden.
-    pub fn finished(
-        mut self,
-        root: &Pane,
-        time: &TimePanelBlueprint,
-    ) -> RecordingStreamResult<Recorder> {
+    pub fn finished(mut self, root: &Pane, time: &TimePanelBlueprint) -> Logged<Recorder> {
         let viewport = ViewportBlueprint::new()
             .with_root_container(datatypes::Uuid::from(root.id))
             .with_auto_layout(false)
@@ -109,11 +92,7 @@ impl Panes {
         Ok(self.rec)
     }
 
-    fn container(
-        &mut self,
-        panes: &[Pane],
-        container: ContainerBlueprint,
-    ) -> RecordingStreamResult<Pane> {
+    fn container(&mut self, panes: &[Pane], container: ContainerBlueprint) -> Logged<Pane> {
         let pane = self.pane("container");
         let contents = panes.iter().map(|p| format!("/{}", p.path));
         self.log(&pane.path, &container.with_contents(contents))?;
@@ -138,7 +117,7 @@ impl Panes {
         }
     }
 
-    fn log(&mut self, entity: &str, parts: &dyn AsComponents) -> RecordingStreamResult<()> {
+    fn log(&mut self, entity: &str, parts: &dyn AsComponents) -> Logged {
         let time = TimeColumn::new_sequence(TIMELINE, [0]);
         let columns = parts.as_serialized_batches().into_iter();
         self.rec

@@ -1,6 +1,6 @@
 //! Static parts of the chart: grid, desired and planned trajectory, time marks, closest points.
 
-use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult};
+use rerun::{AsComponents, LineStrips2D, Points2D};
 
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
@@ -9,7 +9,7 @@ use crate::recording::canvas::{
     Bounds, Canvas, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
 };
 use crate::recording::write::Recorder;
-use crate::recording::{MAP, path};
+use crate::recording::{Logged, MAP, path};
 use crate::target::Target;
 use crate::trajectory::{Cubic, Segment, Trajectory};
 
@@ -20,7 +20,7 @@ const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 pub type Strip = Vec<[f32; 2]>;
 
 /// Logs everything of the chart that does not move.
-pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
     log_time_marks(rec, model)?;
@@ -30,7 +30,7 @@ pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
 }
 
 /// Logs the grid and the desired trajectory.
-pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     // views of Rerun are y-down: this turns north up for everything below
     rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     log_grid(rec, canvas)?;
@@ -38,7 +38,7 @@ pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()>
 }
 
 /// Logs what does not depend on own ship: the grid, the desired trajectory, the targets' tracks.
-pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     log_sea(rec, canvas)?;
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         log_track(rec, canvas, index, target)?;
@@ -47,7 +47,7 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
 }
 
 /// Logs lines every round number of metres, and the north arrow.
-fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Bounds { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.extent());
     let spacing = grid_spacing(canvas);
     let mut lines = Lines::new();
@@ -85,7 +85,7 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 }
 
 /// Logs the desired trajectory, dashed.
-fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let dash = canvas.bounds.extent() / 120.0;
     let mut lines = Lines::new();
     for leg in canvas.scenario.desired.legs() {
@@ -101,7 +101,7 @@ fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()>
 }
 
 /// Logs the plan, one line per segment, styled by its speed.
-fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
@@ -131,10 +131,8 @@ pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, Vec<
         let strip = |piece: Cubic| {
             let points = (0..=PIECE_POINTS).map(|k| {
                 let part = k as f64 / PIECE_POINTS as f64;
-                (
-                    piece.position(part),
-                    piece.start_time + part * piece.duration,
-                )
+                let time = piece.start_time + part * piece.duration;
+                (piece.position(part), time)
             });
             let speed = piece.velocity(0.5).norm();
             let wanted = desired_leg(desired, piece.start_time).speed;
@@ -189,7 +187,7 @@ pub fn mark_step(canvas: &Canvas) -> f64 {
 }
 
 /// Logs own ship's position every round number of seconds, with the time.
-fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let times: Vec<f64> = multiples(0.0, model.end, mark_step(model))
         .skip(1)
         .collect();
@@ -202,32 +200,24 @@ fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
 }
 
 /// Logs where a target is expected, with the same time marks.
-fn log_track(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    index: usize,
-    target: &Target,
-) -> RecordingStreamResult<()> {
+fn log_track(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let color = style::toward_background(canvas.target_color(index), 0.6);
     let ends = [0.0, canvas.end].map(|t| flat(target.position_at(t)));
-    let marks = multiples(0.0, canvas.end, mark_step(canvas))
-        .skip(1)
-        .map(|t| flat(target.position_at(t)));
+    let times = multiples(0.0, canvas.end, mark_step(canvas)).skip(1);
+    let marks = times.map(|t| flat(target.position_at(t)));
     let line = LineStrips2D::new([ends])
         .with_colors([color])
         .with_radii([style::points(0.6)]);
     let marks = Points2D::new(marks)
         .with_colors([color])
         .with_radii([style::points(3.0)]);
-    rec.log_static(
-        path(&[MAP, "tracks", &target.name]),
-        &[&line as &dyn AsComponents, &marks],
-    )
+    let parts = [&line as &dyn AsComponents, &marks];
+    rec.log_static(path(&[MAP, "tracks", &target.name]), &parts)
 }
 
 /// Logs a line between own ship and each target at their closest approach. Distance and time are
 /// shown where a line is pointed at.
-fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
@@ -248,7 +238,7 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
 }
 
 /// Logs, without a plan, where own ship on the desired trajectory first enters a set.
-fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if model.motion.is_planned() {
         return Ok(());
     }
@@ -256,10 +246,8 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<
         let own = model.motion.pose_at(time).position;
         let mut sets = model.run.obstacles();
         let set = sets.find(|set| set.contains(own, time))?;
-        Some((
-            own,
-            format!("in the set of {} from {time:.0} s", set.name()),
-        ))
+        let name = set.name();
+        Some((own, format!("in the set of {name} from {time:.0} s")))
     });
     let Some((place, label)) = inside else {
         return Ok(());
@@ -269,7 +257,7 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<
 }
 
 /// Logs where the independent check found a fault.
-fn log_violations(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_violations(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let violations = match &model.run.evaluation {
         Some(evaluation) if !evaluation.violations.is_empty() => &evaluation.violations,
         _ => return Ok(()),

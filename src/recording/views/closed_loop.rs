@@ -1,14 +1,14 @@
 //! The closed loop on the chart, and its curves.
 
-use rerun::components::InterpolationMode;
-use rerun::{LineStrips2D, Points2D, RecordingStreamResult, TimeColumn};
+use rerun::components::InterpolationMode::Linear;
+use rerun::{LineStrips2D, Points2D, TimeColumn};
 
 use super::chart::{self, Strip};
 use super::curves::{self, CLEARANCE, Series};
 use super::ships::{self, outline};
 use crate::recording::canvas::{ClosedLoop, flat, labelled, style};
 use crate::recording::write::Recorder;
-use crate::recording::{MAP, TIMELINE, TRAILS, path};
+use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 
 /// Distance from the plan that own ship follows.
 pub const OFF_PLAN: &str = "curves/off_plan_m";
@@ -16,7 +16,7 @@ pub const OFF_PLAN: &str = "curves/off_plan_m";
 pub const PLANNING: &str = "curves/planning_ms";
 
 /// Logs the chart.
-pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     chart::log_sea(rec, &model.canvas)?;
     log_plans(rec, model)?;
     log_assumed(rec, model)?;
@@ -25,7 +25,7 @@ pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResul
 }
 
 /// Logs the plan that own ship follows, a row per plan.
-fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let (mut lines, mut colors, mut radii) = (Vec::<Strip>::new(), Vec::new(), Vec::new());
     let mut lengths = Vec::new();
     for plan in &model.plans {
@@ -48,7 +48,7 @@ fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()
 }
 
 /// Logs the targets as the plan at the cursor assumes them: their hulls and their hard sets.
-fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let names = model.targets.iter().map(|target| target.name.as_str());
     let colors = (0..model.targets.len()).map(style::target);
     let sets = ships::set_style(style::CHART_TEXT, ships::HARD_RADIUS)
@@ -57,28 +57,27 @@ fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<
         .with_show_labels(false);
     log_strips(rec, model, "hard_sets", &sets, |time| {
         let plan = model.plan_at(time)?;
-        let sets = plan.targets.iter();
-        Some(
-            sets.map(|target| outline(&target.hard_at(time - plan.from)))
-                .collect(),
-        )
+        let sets = plan
+            .targets
+            .iter()
+            .map(|target| target.hard_at(time - plan.from));
+        Some(sets.map(|set| outline(&set)).collect())
     })?;
     let hulls = ships::set_style(style::DESIRED, 1.0)
         .with_labels(names.map(|name| format!("{name}, estimate")))
         .with_show_labels(false);
     log_strips(rec, model, "estimates", &hulls, |time| {
         let plan = model.plan_at(time)?;
-        let hulls = plan.targets.iter();
-        Some(
-            hulls
-                .map(|target| outline(&target.hull_at(time - plan.from)))
-                .collect(),
-        )
+        let hulls = plan
+            .targets
+            .iter()
+            .map(|target| target.hull_at(time - plan.from));
+        Some(hulls.map(|hull| outline(&hull)).collect())
     })
 }
 
 /// Logs the true ships: hulls with speed vectors, names, and a dot per ship and cursor time.
-fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let canvas = &model.canvas;
     let colors: Vec<_> = std::iter::once(style::OWN_SHIP)
         .chain((0..model.targets.len()).map(style::target))
@@ -124,12 +123,8 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()
         .with_labels(std::iter::once("Own ship").chain(names))
         .with_show_labels(true);
     let columns = places(ships::label_offset(canvas))?;
-    rec.log_moving(
-        path(&[MAP, "names"]),
-        canvas.cursor_column(),
-        &names,
-        columns,
-    )?;
+    let times = canvas.cursor_column();
+    rec.log_moving(path(&[MAP, "names"]), times, &names, columns)?;
     let dots = Points2D::update_fields()
         .with_colors(colors.iter().copied())
         .with_radii([style::points(2.0)]);
@@ -138,7 +133,7 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()
 }
 
 /// Logs where hulls met, from then on.
-fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     for target in &model.simulation.targets {
         let Some(time) = target.contact_t_s else {
             continue;
@@ -160,32 +155,22 @@ fn log_strips(
     entity: &str,
     style: &LineStrips2D,
     at: impl Fn(f64) -> Option<Vec<Strip>>,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let times = model.canvas.cursor_times.iter();
     let rows: Vec<Vec<Strip>> = times.map(|&time| at(time).unwrap_or_default()).collect();
     let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
     let columns = LineStrips2D::update_fields()
         .with_strips(rows.into_iter().flatten())
         .columns(lengths)?;
-    rec.log_moving(
-        path(&[MAP, entity]),
-        model.canvas.cursor_column(),
-        style,
-        columns,
-    )
+    let times = model.canvas.cursor_column();
+    rec.log_moving(path(&[MAP, entity]), times, style, columns)
 }
 
 /// Logs the curves.
-pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResult<()> {
+pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let (canvas, simulation) = (&model.canvas, model.simulation);
     let mut log = |entity: &str, times: &[f64], series: &[Series]| {
-        curves::log_plot(
-            rec,
-            path(&[entity]),
-            times,
-            InterpolationMode::Linear,
-            series,
-        )
+        curves::log_plot(rec, path(&[entity]), times, Linear, series)
     };
     let mut series = Vec::new();
     for (index, target) in model.targets.iter().enumerate() {
@@ -193,12 +178,8 @@ pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResu
             .samples
             .iter()
             .map_while(|&time| model.clearance(target, time));
-        series.push(Series::new(
-            &target.name,
-            style::target(index),
-            2.0,
-            distances.collect(),
-        ));
+        let (color, distances) = (style::target(index), distances.collect());
+        series.push(Series::new(&target.name, color, 2.0, distances));
     }
     if !series.is_empty() {
         series.push(curves::safety_margin(canvas));
@@ -213,14 +194,8 @@ pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> RecordingStreamResu
     let (times, off): (Vec<f64>, Vec<f64>) = off.unzip();
     let margin = vec![canvas.scenario.own_ship.tracking_margin; off.len()];
     let off = Series::new("off the plan", style::OWN_SHIP, 2.0, off);
-    log(
-        OFF_PLAN,
-        &times,
-        &[
-            off,
-            Series::new("tracking margin", style::ALARM, 1.0, margin),
-        ],
-    )?;
+    let margin = Series::new("tracking margin", style::ALARM, 1.0, margin);
+    log(OFF_PLAN, &times, &[off, margin])?;
     let times: Vec<f64> = simulation.replans.iter().map(|replan| replan.t_s).collect();
     let milliseconds = simulation.timing.plan_s.iter().map(|s| s * 1e3);
     let planning = Series::new("planning", style::OWN_SHIP, 2.0, milliseconds.collect());

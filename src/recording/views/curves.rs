@@ -1,8 +1,9 @@
 //! Curves over time: clearance, margin, risk, speed, course; for a plan of forces also velocities
 //! and forces.
 
-use rerun::components::{AggregationPolicy, InterpolationMode};
-use rerun::{Color, EntityPath, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
+use rerun::components::AggregationPolicy;
+use rerun::components::InterpolationMode::{self, Linear, StepAfter};
+use rerun::{Color, EntityPath, Scalars, SeriesLines, TimeColumn};
 
 use crate::frame::{
     clockwise_deg_per_s, course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps,
@@ -12,7 +13,7 @@ use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg};
 use crate::recording::write::Recorder;
-use crate::recording::{TIMELINE, path};
+use crate::recording::{Logged, TIMELINE, path};
 use crate::target::Target;
 use crate::tolerance;
 use crate::trajectory::{ForceNode, Steered};
@@ -33,15 +34,9 @@ pub const STATES: &str = "curves/states";
 pub const FORCES: &str = "curves/forces";
 
 /// Logs all curves.
-pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let mut log = |entity: &str, times: &[f64], series: &[Series]| {
-        log_plot(
-            rec,
-            path(&[entity]),
-            times,
-            InterpolationMode::Linear,
-            series,
-        )
+        log_plot(rec, path(&[entity]), times, Linear, series)
     };
     log(CLEARANCE, &model.samples, &clearance_curves(model))?;
     if !model.sets.is_empty() {
@@ -87,7 +82,7 @@ pub fn log_plot(
     times: &[f64],
     between: InterpolationMode,
     series: &[Series],
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let rows = series.iter().map(|s| s.values.len()).min().unwrap_or(0);
     let times = &times[..rows.min(times.len())];
     let style = SeriesLines::new()
@@ -215,7 +210,7 @@ fn risks(model: &ViewModel, set: &Obstacle, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_speed(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_speed(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let wanted = ShownMotion::Nominal(&model.scenario.desired);
     let mut shown = vec![(wanted, "desired", style::DESIRED, 1.0)];
     if model.motion.is_planned() {
@@ -226,7 +221,7 @@ fn log_speed(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
         Series::new(name, color, width, speeds(&motion, &times))
     };
     let series: Vec<Series> = shown.into_iter().map(curve).collect();
-    let between = InterpolationMode::StepAfter;
+    let between = StepAfter;
     log_plot(rec, path(&[SPEED]), &times, between, &series)
 }
 
@@ -311,13 +306,10 @@ const FORCE: [Quantity; 3] = [
     ("yaw clockwise, Nm", |n| -n.moment),
 ];
 
-fn log_forces(rec: &mut Recorder, motion: &Steered) -> RecordingStreamResult<()> {
+fn log_forces(rec: &mut Recorder, motion: &Steered) -> Logged {
     let nodes = motion.nodes();
     let times: Vec<f64> = nodes.iter().map(|n| n.time).collect();
-    for (entity, between, quantities) in [
-        (STATES, InterpolationMode::Linear, STATE),
-        (FORCES, InterpolationMode::StepAfter, FORCE),
-    ] {
+    for (entity, between, quantities) in [(STATES, Linear, STATE), (FORCES, StepAfter, FORCE)] {
         let quantities = quantities.into_iter().enumerate();
         let series = quantities.map(|(index, (name, value))| {
             let values = nodes.iter().map(value).collect();

@@ -2,13 +2,14 @@
 
 use std::cell::OnceCell;
 
-use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStreamResult};
+use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
 
 use super::chart::polyline;
 use crate::frame::Vector;
 use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
+use crate::recording::Logged;
 use crate::recording::canvas::{Canvas, flat, style};
 use crate::recording::write::Recorder;
 use crate::tolerance;
@@ -49,7 +50,7 @@ pub fn log_explored(
     canvas: &Canvas,
     run: &Run,
     folders: &[EntityPath; 2],
-) -> RecordingStreamResult<DrawnGraph> {
+) -> Logged<DrawnGraph> {
     let kind = |name, color| Kind {
         name,
         color,
@@ -164,12 +165,7 @@ fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
     line
 }
 
-fn log_kind(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    kind: Kind,
-    folders: &[EntityPath; 2],
-) -> RecordingStreamResult<()> {
+fn log_kind(rec: &mut Recorder, canvas: &Canvas, kind: Kind, folders: &[EntityPath; 2]) -> Logged {
     if kind.strips.is_empty() {
         return Ok(());
     }

@@ -1,20 +1,20 @@
 //! Land: its outlines on the chart, its surface under the space-time volume.
 
-use rerun::{LineStrips2D, Mesh3D, RecordingStreamResult};
+use rerun::{LineStrips2D, Mesh3D};
 
 use crate::geometry::{Polygon, Window};
 use crate::recording::canvas::{Canvas, flat, style};
 use crate::recording::write::Recorder;
-use crate::recording::{MAP, VOLUME, path};
+use crate::recording::{Logged, MAP, VOLUME, path};
 
 /// Logs the land, where there is a map.
-pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     log_outlines(rec, canvas)?;
     log_surface(rec, canvas)
 }
 
 /// Logs the outlines on the chart.
-pub fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Some(land) = &canvas.scenario.land else {
         return Ok(());
     };
@@ -28,7 +28,7 @@ pub fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResul
     )
 }
 
-fn log_surface(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+fn log_surface(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Some(land) = &canvas.scenario.land else {
         return Ok(());
     };

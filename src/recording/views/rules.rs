@@ -1,8 +1,6 @@
 //! Own ship's roles over time, the rules that it breaks, and how long it stands on.
 
-use rerun::{
-    Color, Points2D, Points3D, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn,
-};
+use rerun::{Color, Points2D, Points3D, StateChange, StateConfiguration, TimeColumn};
 
 use crate::colregs::compliance::{ComplianceReport, MonitorResult, MonitorVerdict};
 use crate::frame::{Side, clockwise_deg, knots_from_mps};
@@ -10,7 +8,7 @@ use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{ViewModel, flat};
 use crate::recording::write::Recorder;
-use crate::recording::{MAP, TIMELINE, VOLUME, path};
+use crate::recording::{Logged, MAP, TIMELINE, VOLUME, path};
 
 /// Entity of the lanes. It has a row where one changes, with a text per lane, empty where nothing
 /// holds.
@@ -124,7 +122,7 @@ pub fn height(model: &ViewModel) -> usize {
 }
 
 /// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies.
-pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let lanes = lanes(model);
     if lanes.is_empty() {
         return Ok(());
@@ -134,13 +132,12 @@ pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     times.extend(lanes.iter().flat_map(|l| l.states.iter().map(|(t, _)| *t)));
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let known = lanes
+    let states = lanes
         .iter()
-        .flat_map(|lane| lane.states.iter().zip(&lane.colors))
-        .filter(|((_, text), _)| !text.is_empty());
-    let (values, colors): (Vec<&str>, Vec<Color>) = known
-        .map(|((_, text), color)| (text.as_str(), *color))
-        .unzip();
+        .flat_map(|lane| lane.states.iter().zip(&lane.colors));
+    let known = states.filter(|((_, text), _)| !text.is_empty());
+    let known = known.map(|((_, text), color)| (text.as_str(), *color));
+    let (values, colors): (Vec<&str>, Vec<Color>) = known.unzip();
     let style = StateConfiguration::update_fields()
         .with_values(values)
         .with_colors(colors);
@@ -157,7 +154,7 @@ pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
 
 /// Logs where own ship breaks a rule, and where it stops standing on. A mark is named where it is
 /// pointed at.
-fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
     for (_, name, conduct) in judged(model) {
         for violation in &conduct.violations {
@@ -194,10 +191,10 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
 fn manoeuvre(escape: &Escape) -> String {
     let speed = knots_from_mps(escape.speed);
     match Side::of_turn(escape.turn) {
-        Some(side) => format!(
-            "{:.0}° to {side} at {speed:.1} kn",
-            clockwise_deg(escape.turn).abs()
-        ),
+        Some(side) => {
+            let degrees = clockwise_deg(escape.turn).abs();
+            format!("{degrees:.0}° to {side} at {speed:.1} kn")
+        }
         None => format!("{speed:.1} kn"),
     }
 }

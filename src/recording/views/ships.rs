@@ -1,8 +1,7 @@
 //! Moving parts of the chart: ships and the sections of their sets.
 
 use rerun::{
-    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, RecordingStreamResult,
-    TimeColumn, Transform3D,
+    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, TimeColumn, Transform3D,
 };
 
 use super::chart::Strip;
@@ -13,7 +12,7 @@ use crate::recording::canvas::{
     Canvas, Lines, ShownMotion, ViewModel, flat, labelled, round_down, style,
 };
 use crate::recording::write::Recorder;
-use crate::recording::{MAP, TIMELINE, TRAILS, path};
+use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::target::Target;
 
 /// Line width of hard sets.
@@ -36,7 +35,7 @@ pub struct DrawnShip<'a> {
 }
 
 /// Logs everything that moves on the chart.
-pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_others(rec, model)?;
     let name = if model.motion.is_planned() {
         "Own ship"
@@ -53,7 +52,7 @@ pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
 }
 
 /// Logs the targets and their sets.
-pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     for (index, sets) in canvas.sets.iter().enumerate() {
         let name = sets.hard.name();
         if let Some(with_domain) = canvas.with_domain(sets) {
@@ -85,7 +84,7 @@ pub fn log_sections(
     entity: EntityPath,
     set: &Obstacle,
     style: &LineStrips2D,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let outlines = canvas
         .cursor_times
         .iter()
@@ -104,12 +103,7 @@ pub fn outline(polygon: &ConvexPolygon) -> Strip {
 }
 
 /// Logs a target. Its hull and speed vector do not turn: they are drawn turned and only move.
-fn log_target(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    index: usize,
-    target: &Target,
-) -> RecordingStreamResult<()> {
+fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
     let mut lines = Lines::new();
@@ -134,7 +128,7 @@ pub fn log_own_ship(
     entity: EntityPath,
     own: &DrawnShip,
     named: bool,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let name = label(canvas, own.color, &own.name).with_show_labels(named);
     let places = canvas
         .cursor_times
@@ -150,7 +144,7 @@ fn log_places(
     entity: EntityPath,
     style: &dyn AsComponents,
     places: impl Iterator<Item = Vector>,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let raised = places.map(|p| [p.x as f32, p.y as f32, 0.0]);
     let columns = Transform3D::update_fields()
         .with_many_translation(raised)
@@ -160,11 +154,7 @@ fn log_places(
 
 /// Logs a dot per ship and cursor time; the layout shows those up to the cursor. The last one marks
 /// the ship at any zoom.
-pub fn log_trails(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    own: &[DrawnShip],
-) -> RecordingStreamResult<()> {
+pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
     let targets = &canvas.scenario.targets;
     let entity = path(&[TRAILS]);
     let others = (0..targets.len()).map(|index| canvas.target_color(index));
@@ -191,7 +181,7 @@ fn log_own_hull(
     canvas: &Canvas,
     entity: EntityPath,
     own: &DrawnShip,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let style = LineStrips2D::update_fields()
         .with_colors([own.color])
         .with_radii([style::points(1.2), style::points(0.8)]);

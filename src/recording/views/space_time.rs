@@ -1,9 +1,6 @@
 //! The space-time volume: east, north and, upward, time.
 
-use rerun::{
-    AsComponents, Color, LineStrips3D, Points3D, RecordingStreamResult, Transform3D,
-    ViewCoordinates,
-};
+use rerun::{AsComponents, Color, LineStrips3D, Points3D, Transform3D, ViewCoordinates};
 
 use super::body::mesh;
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
@@ -12,7 +9,7 @@ use crate::frame::{Vector, to_port};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Bounds, Canvas, Lines, ViewModel, style};
 use crate::recording::write::Recorder;
-use crate::recording::{VOLUME, path};
+use crate::recording::{Logged, VOLUME, path};
 
 /// Strength of the shadow of a plan on the sea, of 1.
 const SHADOW: f32 = 0.35;
@@ -23,7 +20,7 @@ pub const DOMAIN_ALPHA: u8 = 16;
 const HARD_ALPHA: u8 = 36;
 
 /// Logs the whole volume.
-pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
     let own = DrawnShip {
@@ -35,7 +32,7 @@ pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
 }
 
 /// Logs what does not depend on own ship: the axes, the sets, the desired motion, the targets.
-pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
     log_axes(rec, canvas)?;
     for (index, sets) in canvas.sets.iter().enumerate() {
@@ -53,7 +50,7 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<
 }
 
 /// Logs the sea at t = 0 as a grid, and the time axis with its ticks.
-fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Bounds { low, high } = canvas.bounds;
     let spacing = grid_spacing(canvas);
     let mut lines = Lines::new();
@@ -117,7 +114,7 @@ pub fn log_body(
     entity: rerun::EntityPath,
     set: &Obstacle,
     (color, alpha): (Color, u8),
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let body = mesh(canvas, set).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
@@ -134,7 +131,7 @@ pub fn log_body(
 }
 
 /// Logs the plan, and its shadow on the sea.
-fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
@@ -150,7 +147,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<(
 }
 
 /// Logs the desired motion and the expected ones of the targets.
-fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let desired = &canvas.scenario.desired;
     let mut lines = Lines::new();
     let mut strip: Vec<_> = desired
@@ -177,11 +174,7 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()
 }
 
 /// Logs the plane of the cursor, and the ships in it.
-pub fn log_now(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    own: &[DrawnShip],
-) -> RecordingStreamResult<()> {
+pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
     let Bounds { low, high } = canvas.bounds;
     let frame = [
         [low.x, low.y],

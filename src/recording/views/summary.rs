@@ -1,14 +1,14 @@
 //! The verdict in words and figures, as markdown.
 
-use rerun::{MediaType, RecordingStreamResult, TextDocument};
+use rerun::{MediaType, TextDocument};
 
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
 use crate::document::{PlanDocument, TIME_LINE, headline, plan_lines};
 use crate::evaluation::Evaluation;
-use crate::recording::SUMMARY;
 use crate::recording::canvas::{ShownMotion, ViewModel};
 use crate::recording::write::Recorder;
+use crate::recording::{Logged, SUMMARY};
 
 /// Logs the text, which holds at all times.
 pub fn log_summary(
@@ -16,7 +16,7 @@ pub fn log_summary(
     model: &ViewModel,
     plan: &PlanDocument,
     drawn: DrawnGraph,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     rec.log_static(
         SUMMARY,
         &TextDocument::new(text(model, plan, drawn)).with_media_type(MediaType::MARKDOWN),

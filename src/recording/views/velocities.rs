@@ -1,6 +1,6 @@
 //! The plane of velocities at the cursor: own ship's velocity, velocity obstacles of the hard sets.
 
-use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
+use rerun::{AsComponents, LineStrips2D, Points2D, Transform3D};
 
 use super::chart::Strip;
 use super::ships::{HARD_RADIUS, outline, set_style};
@@ -9,7 +9,7 @@ use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Lines, ViewModel, flat, labelled, style};
 use crate::recording::write::Recorder;
-use crate::recording::{PLANE, path};
+use crate::recording::{Logged, PLANE, path};
 
 /// Longest time ahead that is looked at, seconds.
 const LOOK_AHEAD_S: f64 = 300.0;
@@ -23,7 +23,7 @@ pub fn limit(model: &ViewModel) -> f64 {
 }
 
 /// Logs the whole view.
-pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
     // north up, as on the chart
     let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
     rec.log_static(PLANE, &turned)?;
@@ -58,7 +58,7 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
 }
 
 /// Logs the axes, and a circle for each of own ship's speeds.
-fn log_axes(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+fn log_axes(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let limit = limit(model);
     let mut lines = Lines::new();
     for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {

@@ -3,10 +3,8 @@
 
 use std::path::Path;
 
-use rerun::components::InterpolationMode;
-use rerun::{
-    Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, RecordingStreamResult, TextDocument,
-};
+use rerun::components::InterpolationMode::{Linear, StepAfter};
+use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, TextDocument};
 
 use super::{Recorder, RecordingError, put};
 use crate::frame::Vector;
@@ -18,7 +16,7 @@ use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
 use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
-use crate::recording::{COMPARISON, EXPLORED, MAP, SUMMARY, VOLUME, layout, path};
+use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Method, Stroke};
 
@@ -90,7 +88,7 @@ struct Candidate<'a> {
     style: Stroke,
 }
 
-fn log(rec: &mut Recorder, compared: &Compared) -> RecordingStreamResult<Recorder> {
+fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
     let Compared {
         scenario, entries, ..
     } = *compared;
@@ -184,7 +182,7 @@ fn log_kept_out_of(
     canvas: &Canvas,
     candidate: &Candidate,
     run: &Run,
-) -> RecordingStreamResult<()> {
+) -> Logged {
     let DrawnShip { name, color, .. } = &candidate.own;
     let faint = style::toward_background(*color, SET_STRENGTH);
     for set in run.obstacles() {
@@ -200,12 +198,7 @@ fn log_kept_out_of(
 }
 
 /// Logs the motion on the chart and in the volume.
-fn log_way(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    candidate: &Candidate,
-    order: f32,
-) -> RecordingStreamResult<()> {
+fn log_way(rec: &mut Recorder, canvas: &Canvas, candidate: &Candidate, order: f32) -> Logged {
     let Candidate { own, style, .. } = candidate;
     let ShownMotion::Planned(trajectory) = own.motion else {
         return Ok(());
@@ -233,11 +226,7 @@ fn log_way(
 }
 
 /// Logs the distance from the nearest target that keeps course and speed, and the speed.
-fn log_curves(
-    rec: &mut Recorder,
-    canvas: &Canvas,
-    candidates: &[Candidate],
-) -> RecordingStreamResult<()> {
+fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> Logged {
     let series = |c: &Candidate, values: Vec<f64>| {
         let width = (c.style.width as f32).min(WIDEST);
         Series::new(&c.own.name, c.own.color, width, values)
@@ -257,14 +246,14 @@ fn log_curves(
         // each ends with its motion, so each is an entity
         for curve in curves {
             let entity = path(&[CLEARANCE, &curve.name]);
-            let (times, between) = (&canvas.samples, InterpolationMode::Linear);
+            let (times, between) = (&canvas.samples, Linear);
             curves::log_plot(rec, entity, times, between, &[curve])?;
         }
     }
     let times = curves::step_times(canvas, candidates.iter().map(|c| &c.own.motion));
     let speed = |c: &Candidate| series(c, curves::speeds(&c.own.motion, &times));
     let speeds: Vec<Series> = candidates.iter().map(speed).collect();
-    let between = InterpolationMode::StepAfter;
+    let between = StepAfter;
     curves::log_plot(rec, path(&[SPEED]), &times, between, &speeds)
 }
 

@@ -12,7 +12,7 @@ pub use simulation::{Simulated, write_simulation};
 use std::path::{Path, PathBuf};
 
 use rerun::components::MediaType;
-use rerun::{EntityPath, RecordingInfo, RecordingStreamResult, TextDocument};
+use rerun::{EntityPath, RecordingInfo, TextDocument};
 
 use super::canvas::ViewModel;
 use super::views::{chart, curves, explored, land, rules, ships, space_time, summary, velocities};
@@ -20,6 +20,7 @@ use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
 use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
+use crate::recording::Logged;
 
 /// Why there is no recording.
 #[derive(Debug, thiserror::Error)]
@@ -88,7 +89,7 @@ fn put(
     path: &Path,
     title: &str,
     document: (&str, &str),
-    log: impl FnOnce(&mut Recorder) -> RecordingStreamResult<Recorder>,
+    log: impl FnOnce(&mut Recorder) -> Logged<Recorder>,
 ) -> Result<(), RecordingError> {
     let bytes = bytes(title, document, log).map_err(|source| encoding_error(path, source))?;
     let written = std::fs::create_dir_all(folder_of(path)).and_then(|()| write_whole(path, &bytes));
@@ -101,7 +102,7 @@ fn put(
 fn bytes(
     title: &str,
     (entity, document): (&str, &str),
-    log: impl FnOnce(&mut Recorder) -> RecordingStreamResult<Recorder>,
+    log: impl FnOnce(&mut Recorder) -> Logged<Recorder>,
 ) -> Result<Vec<u8>, Failure> {
     let mut recording = Recorder::default();
     let name = RecordingInfo::update_fields().with_name(title);
@@ -115,11 +116,7 @@ fn bytes(
 const JSON: &str = "application/json";
 
 /// Logs all views of a run and returns their layout.
-fn log_run(
-    rec: &mut Recorder,
-    model: &ViewModel,
-    plan: &PlanDocument,
-) -> RecordingStreamResult<Recorder> {
+fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged<Recorder> {
     ships::log_ships(rec, model)?;
     velocities::log_velocities(rec, model)?;
     land::log_land(rec, model)?;

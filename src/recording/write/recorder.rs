@@ -1,10 +1,9 @@
 //! Collects the chunks of a store, in the order in which they are logged.
 
+use crate::recording::Logged;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::log::{Chunk, ChunkId};
-use rerun::{
-    AsComponents, EntityPath, RecordingStreamResult, SerializedComponentColumn, TimeColumn,
-};
+use rerun::{AsComponents, EntityPath, SerializedComponentColumn, TimeColumn};
 
 /// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
 /// environment variables that redirect it; this has none, so that the same run makes the same
@@ -20,7 +19,7 @@ impl Recorder {
         &mut self,
         entity: impl Into<EntityPath>,
         parts: &(impl AsComponents + ?Sized),
-    ) -> RecordingStreamResult<()> {
+    ) -> Logged {
         let columns = parts.as_serialized_batches().into_iter();
         self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
     }
@@ -32,7 +31,7 @@ impl Recorder {
         times: TimeColumn,
         style: &(impl AsComponents + ?Sized),
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
-    ) -> RecordingStreamResult<()> {
+    ) -> Logged {
         let entity = entity.into();
         self.log_static(entity.clone(), style)?;
         self.send_columns(entity, Some(times), columns)
@@ -44,7 +43,7 @@ impl Recorder {
         entity: impl Into<EntityPath>,
         times: Option<TimeColumn>,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
-    ) -> RecordingStreamResult<()> {
+    ) -> Logged {
         if times.as_ref().is_some_and(|times| times.num_rows() == 0) {
             return Ok(());
         }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use rerun::{MediaType, RecordingStreamResult, TextDocument, TextLog, TextLogLevel, TimeColumn};
+use rerun::{MediaType, TextDocument, TextLog, TextLogLevel, TimeColumn};
 
 use super::{Recorder, RecordingError, encoding_error, put};
 use crate::document::{self, PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, ships};
-use crate::recording::{EVENTS, SIMULATION, SUMMARY, TIMELINE, layout, path};
+use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 
 /// An alarm goes on where it is raised again within this many times between plans.
@@ -75,7 +75,7 @@ fn without_motions(document: &SimulationDocument) -> SimulationDocument {
     short
 }
 
-fn log(rec: &mut Recorder, simulated: &Simulated) -> RecordingStreamResult<Recorder> {
+fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     let Simulated {
         scenario,
         document,
@@ -115,7 +115,7 @@ struct Event {
 }
 
 /// Logs what happened, in order of time.
-fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> RecordingStreamResult<()> {
+fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> Logged {
     let mut events = outcomes(document);
     events.extend(alarms(document));
     for target in &document.targets {

@@ -3,7 +3,7 @@
 
 use super::outline::{area, curve, marks, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel};
-use super::plan::{DESIRED, LAND, land_areas};
+use super::plan::{DESIRED, LAND, land_areas, moments};
 use super::sections::PLAN;
 use super::{Figure, Panel, PlotWindow, Stroke};
 use crate::evaluation::{Safety, outcome_word};
@@ -15,9 +15,6 @@ use crate::study::compare::{Entry, Method};
 
 /// Colour of the targets' sets.
 const SETS: &str = "#888888";
-
-/// Number of instants at which the sets are drawn, including the start.
-const MOMENTS: usize = 4;
 
 /// Time step of a curve in seconds.
 const STEP: f64 = 2.0;
@@ -100,10 +97,10 @@ fn named(method: Method, entries: &[Entry]) -> String {
     let own = entries.iter().filter(|e| e.candidate.method == method);
     let unsafe_ones = own.filter(|e| e.safety() > Some(Safety::Safe));
     match unsafe_ones.max_by_key(|e| e.safety()) {
-        Some(entry) => format!(
-            "{method}: {}",
-            outcome_word("relaxed", entry.safety(), entry.largest_risk())
-        ),
+        Some(entry) => {
+            let word = outcome_word("relaxed", entry.safety(), entry.largest_risk());
+            format!("{method}: {word}")
+        }
         None => method.to_string(),
     }
 }
@@ -129,8 +126,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut sets: Vec<Vec<Vector>> = Vec::new();
     let first = entries.iter().find_map(|e| e.motion.as_ref());
     for obstacle in first.iter().flat_map(|motion| &motion.obstacles) {
-        for k in 0..MOMENTS {
-            let time = end * k as f64 / (MOMENTS - 1) as f64;
+        for time in moments(end) {
             let boundary = sampled_boundary(&obstacle.section(time.min(scenario.horizon)));
             if boundary.iter().any(within) {
                 shown.extend(boundary.iter().copied().filter(within));
@@ -156,11 +152,9 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     keys(&mut panel, entries);
     panel.line_key("desired", DESIRED);
     let wide = |colour| Stroke::solid(colour, 3.0);
-    let thirds: Vec<String> = (0..MOMENTS)
-        .map(|k| format!("{:.0}", end * k as f64 / (MOMENTS - 1) as f64))
-        .collect();
     if !sets.is_empty() {
-        panel.line_key(&format!("sets at {} s", thirds.join(", ")), wide(SETS));
+        let moments = moments(end).map(|time| format!("{time:.0}")).join(", ");
+        panel.line_key(&format!("sets at {moments} s"), wide(SETS));
     }
     if land.is_some() {
         panel.line_key("land", wide(LAND));
@@ -188,15 +182,11 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let farthest = lines.iter().map(|(_, line)| least(line));
     let top = SHOWN * farthest.filter(|d| d.is_finite()).fold(0.0, f64::max);
-    let near = lines
-        .iter()
-        .flat_map(|(_, line)| line)
-        .filter(|p| p.y <= top);
+    let points = lines.iter().flat_map(|(_, line)| line);
+    let near = points.filter(|p| p.y <= top);
     let end = near.map(|p| p.x).fold(1.0, f64::max);
-    let window = PlotWindow::new(
-        Vector::new(0.0, 0.0),
-        Vector::new(end, if top > 0.0 { top } else { 1.0 }),
-    );
+    let high = Vector::new(end, if top > 0.0 { top } else { 1.0 });
+    let window = PlotWindow::new(Vector::zeros(), high);
     let title = format!("{}: distance from the nearest target", scenario.title);
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
@@ -231,19 +221,12 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         right = right.max(p.x);
         top = top.max(p.y);
     }
-    let window = PlotWindow::new(
-        Vector::zeros(),
-        Vector::new(
-            if right > 0.0 { right * 1.05 } else { 1.0 },
-            if top > 0.0 { top * 1.08 } else { 1.0 },
-        ),
-    );
+    let right = if right > 0.0 { right * 1.05 } else { 1.0 };
+    let top = if top > 0.0 { top * 1.08 } else { 1.0 };
+    let window = PlotWindow::new(Vector::zeros(), Vector::new(right, top));
     let title = format!("{}: cost of safety", scenario.title);
-    let mut panel = Panel::free(
-        title,
-        ["Accepted risk [-]", "Space-time error J [m²]"],
-        window,
-    );
+    let axes = ["Accepted risk [-]", "Space-time error J [m²]"];
+    let mut panel = Panel::free(title, axes, window);
     for (method, line) in lines.iter().rev() {
         let stroke = Stroke::of(*method);
         panel.plots.push(curve(line, false, stroke));

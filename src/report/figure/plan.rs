@@ -39,6 +39,11 @@ const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 /// Number of instants at which the sets are drawn, including the start.
 const MOMENTS: usize = 4;
 
+/// Evenly spaced instants from 0 to `end` seconds.
+pub(super) fn moments(end: f64) -> [f64; MOMENTS] {
+    std::array::from_fn(|k| end * k as f64 / (MOMENTS - 1) as f64)
+}
+
 /// Time step of a curve in seconds, and the maximum number of points besides its joints.
 const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
@@ -101,9 +106,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let desired = run.scenario.desired.duration();
     let end = trajectory.map_or(desired, |t| t.end_time());
     let end = end.min(run.scenario.horizon);
-    let times: Vec<f64> = (0..MOMENTS)
-        .map(|i| end * i as f64 / (MOMENTS - 1) as f64)
-        .collect();
+    let times = moments(end).to_vec();
     let at = |t: &Trajectory, time: f64| t.pose_at(time).position;
     let sampled = trajectory.map(|t| t.sample_times(STEP, MOST_POINTS));
     let track = trajectory.zip(sampled);

@@ -20,10 +20,8 @@ impl PlotWindow {
     /// Bounding box of points, with a margin of `share` of its longer side. Without finite points,
     /// a window of size 1 around the origin.
     pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {
-        let (mut low, mut high) = (
-            Vector::repeat(f64::INFINITY),
-            Vector::repeat(f64::NEG_INFINITY),
-        );
+        let mut low = Vector::repeat(f64::INFINITY);
+        let mut high = Vector::repeat(f64::NEG_INFINITY);
         for p in points {
             low = low.inf(&p);
             high = high.sup(&p);

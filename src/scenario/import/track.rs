@@ -71,16 +71,14 @@ impl Stretch {
     /// A ship with every velocity of this stretch, spreads added; only its velocities are of use.
     fn ship(&self, spread: &Spread) -> ShipTrack {
         ShipTrack {
-            pose: Pose::new(Vector::zeros(), self.course),
-            speed: 0.5 * (self.slow + self.fast),
-            hull: Hull::new(0.0, 0.0),
-            position_std: 0.0,
             speed_spread: 0.5 * (self.fast - self.slow) + spread.speed,
             course_spread: self.half + spread.course,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
             domain: DomainKind::Colregs,
+            ..ShipTrack::exact(
+                Pose::new(Vector::zeros(), self.course),
+                0.5 * (self.slow + self.fast),
+                Hull::new(0.0, 0.0),
+            )
         }
     }
 }

@@ -42,46 +42,31 @@ fn the_constant_velocity_is_clear_and_any_less_alteration_is_not() {
     ] {
         let scenario = scenario(name);
         let found = constant_velocity(&scenario).expect("one");
-        assert!(
-            found.evaluation.verified(),
-            "{name}: {:?}",
-            found.evaluation.violations
-        );
+        let violations = &found.evaluation.violations;
+        assert!(found.evaluation.verified(), "{name}: {violations:?}");
         let segment = found.trajectory.segments()[0];
         let own = &scenario.own_ship;
         let turn = wrap(segment.start.heading - own.pose.heading);
         assert!(turn.abs() > 0.05, "{name}");
         // no velocity of a grid is better
-        let start = own.pose.position;
+        let (start, least) = (own.pose.position, found.evaluation.space_time_error);
+        let meets = |velocity| {
+            let mut sets = found.obstacles.iter();
+            sets.any(|o| o.in_velocity_obstacle(start, velocity, scenario.horizon))
+        };
         for k in 0..720 {
             for &speed in &own.speeds {
                 let heading = own.pose.heading + f64::from(k) * std::f64::consts::TAU / 720.0;
-                let velocity = crate::frame::direction(heading) * speed;
-                let horizon = scenario.horizon;
-                let meets = (found.obstacles.iter())
-                    .any(|o| o.in_velocity_obstacle(start, velocity, horizon));
+                let meets = meets(crate::frame::direction(heading) * speed);
                 let sets = baseline::Sets::of(&scenario);
-                let cost = || {
-                    baseline::baseline(&scenario, &sets, heading, speed)
-                        .evaluation
-                        .space_time_error
-                };
-                assert!(
-                    meets || cost() >= found.evaluation.space_time_error - 1e-6,
-                    "{name} {heading} {speed}"
-                );
+                let clear = || baseline::baseline(&scenario, &sets, heading, speed).evaluation;
+                let dearer = || clear().space_time_error >= least - 1e-6;
+                assert!(meets || dearer(), "{name} {heading} {speed}");
             }
         }
         let less = Side::of_turn(turn).map_or(0.0, Side::turn_sign) * 1e-6;
         let velocity = crate::frame::direction(segment.start.heading - less) * segment.speed;
-        assert!(
-            (found.obstacles.iter()).any(|o| o.in_velocity_obstacle(
-                start,
-                velocity,
-                scenario.horizon
-            )),
-            "{name}"
-        );
+        assert!(meets(velocity), "{name}");
     }
     let mut inside = scenario("colregs/head-on");
     let ship = inside.targets[0].clone();
@@ -99,20 +84,10 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
         methods(s).methods.iter().map(ToString::to_string).collect()
     };
     let ships = scenario("colregs/head-on");
-    assert_eq!(
-        names(&ships),
-        [
-            "space-time, A*",
-            "space-time, Dijkstra",
-            "space-time, A*, ellipsoids",
-            "space-time, Dijkstra, ellipsoids",
-            "path-time",
-            "path-time, ellipsoids",
-            "optimal control",
-            "hold course",
-            "constant velocity"
-        ]
-    );
+    let all = "space-time, A*; space-time, Dijkstra; space-time, A*, ellipsoids; \
+               space-time, Dijkstra, ellipsoids; path-time; path-time, ellipsoids; \
+               optimal control; hold course; constant velocity";
+    assert_eq!(names(&ships).join("; "), all);
     assert!(methods(&ships).inapplicable.is_empty());
     let mut off = ships.clone();
     off.own_ship.pose.position.y = 3.0;
@@ -151,17 +126,11 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
             let (found, trajectory) = (&motion.evaluation, &motion.trajectory);
             let (desired, q) = (&scenario.desired, scenario.time_weight);
             let (error, counted) = counted_error(trajectory, desired, q, 30.0);
-            assert_eq!(
-                (found.space_time_error, found.counted),
-                (error, counted),
-                "{name} {method}"
-            );
+            let judged = (found.space_time_error, found.counted);
+            assert_eq!(judged, (error, counted), "{name} {method}");
             assert!(error < 1e5, "{name} {method}: {error}");
-            let late = counted.until - desired.duration();
-            assert!(
-                counted.arrived || late <= 0.0,
-                "{name} {method}: {counted:?}"
-            );
+            let ends = counted.arrived || counted.until <= desired.duration();
+            assert!(ends, "{name} {method}: {counted:?}");
             if method == first(&OptimalControlPlanner) {
                 assert!(found.verified(), "{name}: {:?}", found.violations);
             }
@@ -180,25 +149,17 @@ fn a_contender_is_what_a_run_of_its_own_is() {
         search: SearchKind::Dijkstra,
         representation: Some(Representation::Ellipsoid),
     };
-    let entry = entries
-        .iter()
-        .find(|e| {
-            e.candidate
-                == Candidate {
-                    method,
-                    max_risk: 0.3,
-                }
-        })
-        .expect("there");
+    let max_risk = 0.3;
+    let wanted = Candidate { method, max_risk };
+    let entry = entries.iter().find(|e| e.candidate == wanted);
+    let entry = entry.expect("there");
     let mut alone = scenario.clone();
     alone.search = SearchKind::Dijkstra;
     alone.targets[0].representation = Representation::Ellipsoid;
     alone.max_risk = 0.3;
     let alone = pipeline::run(alone);
-    assert_eq!(
-        entry.trajectory(),
-        alone.planned.outcome.plan().map(|p| &p.trajectory)
-    );
+    let plan = alone.planned.outcome.plan();
+    assert_eq!(entry.trajectory(), plan.map(|p| &p.trajectory));
     assert!((entry.motion.as_ref()).is_some_and(|m| m.arrived && m.evaluation.verified()));
     // a higher accepted risk never increases the cost
     for pair in entries.chunks(2).take(6) {

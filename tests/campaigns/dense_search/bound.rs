@@ -63,10 +63,8 @@ impl Bound {
     /// Integral of the error still to come, m² s, from below. `index` is the time in steps.
     pub fn to_go(&self, pose: &Pose, index: usize) -> f64 {
         let offset = pose.position - self.leg.start;
-        let (along, across) = (
-            self.leg.direction.dot(&offset),
-            cross(self.leg.direction, offset),
-        );
+        let along = self.leg.direction.dot(&offset);
+        let across = cross(self.leg.direction, offset);
         let heading = wrap(pose.heading - heading_of(self.leg.direction));
         let toward = if across > 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 };
         let (inward, ahead) = (self.row(wrap(heading - toward)), self.row(heading));

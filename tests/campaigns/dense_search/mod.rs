@@ -272,10 +272,8 @@ impl Scene<'_> {
     /// radian of an arc or 5 s of a line.
     fn cost(&self, segment: &Segment) -> f64 {
         if segment.turn_rate == 0.0 {
-            let (a, b) = (
-                self.off(segment.start.position, segment.start_time),
-                self.off(segment.end().position, segment.end_time()),
-            );
+            let a = self.off(segment.start.position, segment.start_time);
+            let b = self.off(segment.end().position, segment.end_time());
             if a.2 && b.2 {
                 let squared = |a: f64, b: f64| (a * a + a * b + b * b) / 3.0;
                 return segment.duration * (squared(a.0, b.0) + self.kappa * squared(a.1, b.1));

@@ -68,10 +68,8 @@ impl Scene {
         self.line(format!("[[targets]]\nname = \"{index} {kind}\""));
         match kind {
             "sets" => {
-                let (initial, spread) = (
-                    self.polygon(place, 2.0 * length),
-                    self.one(&[0.05, 0.2, 1e-7]),
-                );
+                let initial = self.polygon(place, 2.0 * length);
+                let spread = self.one(&[0.05, 0.2, 1e-7]);
                 let velocities = self.polygon(velocity, spread * speed);
                 self.line(format!("initial_set = {{ vertices_m = {initial} }}\nvelocity_set = {{ vertices_mps = {velocities} }}"));
             }

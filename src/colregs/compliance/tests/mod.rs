@@ -6,63 +6,62 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
 use crate::frame::{Pose, Vector};
-use crate::target::{DomainKind, ShipTrack};
+use crate::target::ShipTrack;
+use crate::text::rows;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
 /// Metres, of both ships.
 pub const LENGTH: f64 = 50.0;
 
-/// Turns (radians, to port positive; arcs of 2.5 lengths) each followed by seconds of straight
-/// line, from the origin east.
-pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
-    let radius = 2.5 * LENGTH;
+/// Pieces from the origin east, one after another: seconds, m/s, rad/s. Empty ones are left out.
+fn joined(pieces: impl Iterator<Item = (f64, f64, f64)>) -> Trajectory {
     let mut segments: Vec<Segment> = Vec::new();
-    let mut push = |duration: f64, turn_rate: f64| {
-        let (start, start_time) = segments
-            .last()
-            .map_or((Pose::new(Vector::zeros(), 0.0), 0.0), |s: &Segment| {
-                (s.end(), s.end_time())
-            });
-        if duration > 0.0 {
-            segments.push(Segment {
-                start,
-                start_time,
-                duration,
-                speed,
-                turn_rate,
-            });
-        }
-    };
-    for (turn, straight) in legs {
-        push(turn.abs() * radius / speed, turn.signum() * speed / radius);
-        push(*straight, 0.0);
+    for (duration, speed, turn_rate) in pieces.filter(|(duration, ..)| *duration > 0.0) {
+        let last = segments.last();
+        let start = last.map_or(Pose::new(Vector::zeros(), 0.0), Segment::end);
+        let time = last.map_or(0.0, Segment::end_time);
+        segments.push(Segment::new(start, time, duration, speed, turn_rate));
     }
     Trajectory::new(segments).expect("a trajectory")
 }
 
-const HULL: Hull = Hull {
-    length: LENGTH,
-    beam: 10.0,
-};
+/// An arc of 2.5 lengths: radians to port.
+fn arc(turn: f64, speed: f64) -> (f64, f64, f64) {
+    let radius = 2.5 * LENGTH;
+    let rate = turn.signum() * speed / radius;
+    (turn.abs() * radius / speed, speed, rate)
+}
+
+/// Turns (radians, to port positive; arcs of 2.5 lengths) each followed by seconds of straight
+/// line, from the origin east.
+pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
+    let pieces = |(turn, straight): &(f64, f64)| [arc(*turn, speed), (*straight, speed, 0.0)];
+    joined(legs.iter().flat_map(pieces))
+}
+
+/// Legs in words, from the origin east: `20s` at 6 m/s, `20s@3` at 3 m/s, and `-8°`, a turn to
+/// starboard at 6 m/s.
+fn sailed(legs: &str) -> Trajectory {
+    let number = |word: &str| word.parse::<f64>().expect("a number");
+    joined(legs.split_whitespace().map(|word| {
+        let Some(degrees) = word.strip_suffix('°') else {
+            let (seconds, speed) = word.split_once('s').expect("seconds");
+            let speed = speed.strip_prefix('@').unwrap_or("6");
+            return (number(seconds), number(speed), 0.0);
+        };
+        arc(number(degrees).to_radians(), 6.0)
+    }))
+}
+
+const HULL: Hull = Hull::new(LENGTH, 10.0);
 
 pub fn standard() -> &'static Thresholds {
     Thresholds::standard()
 }
 
 fn track(pose: Pose, speed: f64) -> ShipTrack {
-    ShipTrack {
-        pose,
-        speed,
-        hull: HULL,
-        speed_spread: 0.0,
-        course_spread: 0.0,
-        turn_rate: 0.0,
-        position_std: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
-        domain: DomainKind::Hull,
-    }
+    ShipTrack::exact(pose, speed, HULL)
 }
 
 /// Own ship and a target that holds course and speed.
@@ -267,140 +266,45 @@ fn what_is_not_a_number_is_a_collision() {
     assert_eq!(c.monitors[0].verdict, MonitorVerdict::Violated);
 }
 
-/// Own ship's legs: seconds, speed in m/s, and the turn to port before them in degrees.
-fn conduct_of(legs: &[(f64, f64, f64)], target: [f64; 4]) -> ComplianceReport {
-    let mut segments: Vec<Segment> = Vec::new();
-    for &(seconds, speed, turn) in legs {
-        let rate = speed / (2.5 * LENGTH) * turn.signum();
-        let arc = turn.to_radians().abs() * 2.5 * LENGTH / speed;
-        for (duration, turn_rate) in [(arc, rate), (seconds, 0.0)] {
-            if duration > 0.0 {
-                let last = segments.last();
-                segments.push(Segment {
-                    start: last.map_or(Pose::new(Vector::zeros(), 0.0), Segment::end),
-                    start_time: last.map_or(0.0, Segment::end_time),
-                    duration,
-                    speed,
-                    turn_rate,
-                });
-            }
-        }
-    }
-    let own = Trajectory::new(segments).expect("a trajectory");
+fn judged(legs: &str, target: [f64; 4]) -> ComplianceReport {
     let [x, y, heading, speed] = target;
-    ComplianceReport::judge(&steady(&own, x, y, heading, speed), standard())
+    ComplianceReport::judge(&steady(&sailed(legs), x, y, heading, speed), standard())
 }
+
+/// Manoeuvres toward a target, and the rules and monitors that they violate.
+const SEAMANSHIP: &str = "
+    head-on in time | ahead | 20s -40° 300s |
+    head-on late | far ahead | 310s -40° 200s | R4
+    head-on small | ahead | 20s -15° 300s | R4
+    head-on to port | ahead | 20s 40° 300s | 14(a) 14(a) R4
+    head-on returns too soon | ahead | 20s -40° 60s 80° 150s | 14(a) 14(a)
+    gives way | starboard | 20s -40° 400s |
+    half speed for 200 s | starboard | 20s 200s@3 200s |
+    half speed for 20 s | starboard | 20s 20s@3 -10° 300s | R3
+    half speed from the beginning, for 29 s | starboard | 29s@3 -10° 300s | R3
+    stands on until 12 lengths | port | 170s -60° 300s |
+    stands on, turns early | port | 30s -60° 300s | 17(a)(i) R6
+    stands on, slows early | port | 30s 300s@3 | 17(a)(i)
+    stands on, late to port | port | 170s 60° 300s | 17(c)
+    overtaken, late | astern | 200s -60° 300s |
+    overtaken, turns early | astern | 30s -60° 300s | 17(a)(i) R6
+";
 
 /// What the judges let pass, and what they still see.
 #[test]
 fn poor_seamanship_is_caught_by_its_rule() {
-    // 400 s before the closest approach
-    let far_ahead = [4800.0, 0.0, PI, 6.0];
-    let ahead = [2880.0, 0.0, PI, 6.0];
-    let starboard = [1440.0, -1440.0, FRAC_PI_2, 6.0];
-    let port = [1440.0, 1440.0, -FRAC_PI_2, 6.0];
-    let astern = [-1080.0, 0.0, 0.0, 9.0];
-    let straight = |seconds: f64| (seconds, 6.0, 0.0);
-    type Trace<'a> = (&'a str, [f64; 4], Vec<(f64, f64, f64)>, &'a [&'a str]);
-    let cases: [Trace; 15] = [
-        (
-            "head-on in time",
-            ahead,
-            vec![straight(20.0), (300.0, 6.0, -40.0)],
-            &[],
-        ),
-        (
-            "head-on late",
-            far_ahead,
-            vec![straight(310.0), (200.0, 6.0, -40.0)],
-            &["R4"],
-        ),
-        (
-            "head-on small",
-            ahead,
-            vec![straight(20.0), (300.0, 6.0, -15.0)],
-            &["R4"],
-        ),
-        (
-            "head-on to port",
-            ahead,
-            vec![straight(20.0), (300.0, 6.0, 40.0)],
-            &["14(a)", "14(a)", "R4"],
-        ),
-        (
-            "head-on returns too soon",
-            ahead,
-            vec![straight(20.0), (60.0, 6.0, -40.0), (150.0, 6.0, 80.0)],
-            &["14(a)", "14(a)"],
-        ),
-        (
-            "gives way",
-            starboard,
-            vec![straight(20.0), (400.0, 6.0, -40.0)],
-            &[],
-        ),
-        (
-            "half speed for 200 s",
-            starboard,
-            vec![straight(20.0), (200.0, 3.0, 0.0), straight(200.0)],
-            &[],
-        ),
-        (
-            "half speed for 20 s",
-            starboard,
-            vec![straight(20.0), (20.0, 3.0, 0.0), (300.0, 6.0, -10.0)],
-            &["R3"],
-        ),
-        (
-            "half speed from the beginning, for 29 s",
-            starboard,
-            vec![(29.0, 3.0, 0.0), (300.0, 6.0, -10.0)],
-            &["R3"],
-        ),
-        (
-            "stands on until 12 lengths",
-            port,
-            vec![straight(170.0), (300.0, 6.0, -60.0)],
-            &[],
-        ),
-        (
-            "stands on, turns early",
-            port,
-            vec![straight(30.0), (300.0, 6.0, -60.0)],
-            &["17(a)(i)", "R6"],
-        ),
-        (
-            "stands on, slows early",
-            port,
-            vec![straight(30.0), (300.0, 3.0, 0.0)],
-            &["17(a)(i)"],
-        ),
-        (
-            "stands on, late to port",
-            port,
-            vec![straight(170.0), (300.0, 6.0, 60.0)],
-            &["17(c)"],
-        ),
-        (
-            "overtaken, late",
-            astern,
-            vec![straight(200.0), (300.0, 6.0, -60.0)],
-            &[],
-        ),
-        (
-            "overtaken, turns early",
-            astern,
-            vec![straight(30.0), (300.0, 6.0, -60.0)],
-            &["17(a)(i)", "R6"],
-        ),
-    ];
-    for (name, target, legs, broken) in cases {
-        let found = conduct_of(&legs, target);
-        assert_eq!(
-            found.broken().collect::<Vec<_>>(),
-            broken,
-            "{name}: {found:?}"
-        );
+    for [name, target, legs, broken] in rows(SEAMANSHIP) {
+        let target = match target {
+            // 400 s before the closest approach
+            "far ahead" => [4800.0, 0.0, PI, 6.0],
+            "ahead" => [2880.0, 0.0, PI, 6.0],
+            "starboard" => [1440.0, -1440.0, FRAC_PI_2, 6.0],
+            "port" => [1440.0, 1440.0, -FRAC_PI_2, 6.0],
+            _ => [-1080.0, 0.0, 0.0, 9.0],
+        };
+        let found = judged(legs, target);
+        let violated: Vec<&str> = found.broken().collect();
+        assert_eq!(violated.join(" "), broken, "{name}: {found:?}");
     }
 }
 
@@ -410,8 +314,8 @@ fn poor_seamanship_is_caught_by_its_rule() {
 fn delay_counts_from_ample_time() {
     // the closest approach would be after 360 s
     let promptness = |turn_at: f64| {
-        let legs = [(turn_at, 6.0, 0.0), (400.0, 6.0, -60.0)];
-        let found = conduct_of(&legs, [2160.0, -2160.0, FRAC_PI_2, 6.0]);
+        let legs = format!("{turn_at}s -60° 400s");
+        let found = judged(&legs, [2160.0, -2160.0, FRAC_PI_2, 6.0]);
         let rule_16 = found.scores.rule_16.expect("gives way");
         (
             rule_16 / found.scores.safety,
