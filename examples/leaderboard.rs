@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use searoom::colregs::{Thresholds, compliance::ComplianceReport};
 use searoom::pipeline::{self, Run};
-use searoom::planner::Outcome;
+use searoom::planner::{Outcome, SearchKind};
 use searoom::scenario::import::{Assumed, Assumption, Contents};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
@@ -91,11 +91,18 @@ random encounters, and [closed-loop.md](closed-loop.md) what is sailed.
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for (name, scenes) in suites {
-        for compliance in [Compliance::Shape, Compliance::Rules] {
+        let several = scenes.iter().any(|scene| scene.targets.len() > 1);
+        let thorough = several.then_some((Compliance::Shape, SearchKind::Thorough));
+        let quick = [Compliance::Shape, Compliance::Rules].map(|c| (c, SearchKind::AStar));
+        for how in quick.into_iter().chain(thorough) {
+            let search = match how.1 {
+                SearchKind::AStar => "",
+                _ => ", thorough search",
+            };
             println!(
-                "| {name} | `{}` | {} |",
-                compliance.word(),
-                row(&scenes, compliance, thresholds, runs)
+                "| {name} | `{}`{search} | {} |",
+                how.0.word(),
+                row(&scenes, how, thresholds, runs)
             );
         }
     }
@@ -133,7 +140,7 @@ fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Er
 /// Cells of one row after the first.
 fn row(
     scenes: &[Scenario],
-    compliance: Compliance,
+    (compliance, search): (Compliance, SearchKind),
     thresholds: &Thresholds,
     runs: usize,
 ) -> String {
@@ -142,6 +149,7 @@ fn row(
     for scene in scenes {
         let scene = Scenario {
             compliance,
+            search,
             deadline: DEADLINE,
             ..scene.clone()
         };

@@ -9,8 +9,13 @@ const FEWEST: usize = 8;
 
 /// `work` on every item, with its index; the results are in the order of the items.
 pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
-    let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = if items.len() < FEWEST { 1 } else { cores };
+    let threads = if items.len() < FEWEST {
+        1
+    } else {
+        thread::available_parallelism()
+            .map_or(1, NonZero::get)
+            .min(items.len())
+    };
     if threads == 1 {
         let indexed = items.iter().enumerate();
         return indexed.map(|(index, item)| work(index, item)).collect();

@@ -180,7 +180,7 @@ pub struct ImportArgs {
 #[derive(Debug, Args)]
 #[command(
     mut_arg("planner", |arg| arg.help(planners("Only this planner, beside the baselines"))),
-    mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
+    mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra, thorough")),
     mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
     mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
 )]
@@ -248,7 +248,7 @@ pub struct Asked {
         help = planners("Planner instead of the scenario's")
     )]
     pub planner: Option<&'static dyn Planner>,
-    /// Search instead of the scenario's: a-star, dijkstra
+    /// Search instead of the scenario's: a-star, dijkstra, thorough (several targets: slower, cheaper)
     #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
     pub search: Option<SearchKind>,
     /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and

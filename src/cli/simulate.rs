@@ -34,6 +34,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     let mut report = HtmlReport::new();
+    let several = scenes.len() > 1;
     for scene in scenes {
         let sailed = match &scene {
             Ok(scene) => {
@@ -84,9 +85,14 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let written = products.write_report(&report, "Searoom: simulations", lead);
     status = status.max(output.written(written));
     if args.written.json {
-        status = status.max(match <[SimulationDocument; 1]>::try_from(documents) {
-            Ok([document]) => output.document(&document),
-            Err(simulations) => output.document(&SimulationsDocument { simulations }),
+        status = status.max(match documents.pop() {
+            Some(document) if !several => output.document(&document),
+            last => {
+                documents.extend(last);
+                output.document(&SimulationsDocument {
+                    simulations: documents,
+                })
+            }
         });
     }
     Ok(status)

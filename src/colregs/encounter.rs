@@ -102,9 +102,9 @@ pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
 }
 
 /// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
-/// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
-/// the risk distance and the risk time of the thresholds. Searched from 0 to the horizon or the desired arrival,
-/// whichever is first. Own ship is on the desired trajectory, wherever it starts.
+/// 1.3): the distance shrinks, and two ships that hold course and speed will pass within the risk
+/// distance and the risk time of the thresholds. Searched from 0 to the horizon or the desired
+/// arrival, whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
 /// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
 /// approach. O(legs). A leg that is not finite has no risk: safety rests on the sets, not the role.
@@ -254,8 +254,8 @@ struct Closest {
 
 /// Least distance on an interval by golden section, to about 1e-9 of the interval; among equal
 /// values the first one. The distance of two convex sets in steady motion is convex in time,
-/// overlap included, and changes by at most `closing` (m/s). Where it is not less than the `known`
-/// one, only the ends are looked at.
+/// overlap included, and changes by at most `closing` (m/s). Where that bounds it from below by
+/// the `known` distance, nothing inside the interval is searched.
 fn least(
     [from, until]: [f64; 2],
     closing: f64,

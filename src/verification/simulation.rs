@@ -69,6 +69,18 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     let document: SimulationDocument = super::claim::parse(text)?;
     let sailed: Vec<Segment> = document.sailed.iter().map(segment).collect();
     let mut violations = Vec::new();
+    if !sailed.iter().all(Segment::is_valid) || sailed.is_empty() {
+        let what = "sailed: no motion of finite numbers and times that increase";
+        violations.push(Violation::new(what.to_owned(), 0.0));
+        // what was sailed is unknown
+        return Ok(SimulationVerification {
+            scenario: document.scenario,
+            contact: true,
+            safe: false,
+            least_clearance: f64::NAN,
+            violations,
+        });
+    }
     // what the motion leaves open on and after each segment, metres
     let share = if is_steered(&document) {
         MEAN_SHARE
@@ -89,12 +101,6 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
             );
             violations.push(Violation::new(what, pair[1].start_time));
         }
-    }
-    if !sailed.iter().all(Segment::is_valid) || sailed.is_empty() {
-        violations.push(Violation::new(
-            "sailed: no motion of finite numbers".to_owned(),
-            0.0,
-        ));
     }
     let covered = sailed.first().map_or(f64::NAN, |s| s.start_time.abs())
         + (sailed.last().map_or(f64::NAN, Segment::end_time) - document.duration_s).abs();

@@ -318,17 +318,19 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     let note = String::from_utf8(ended.stderr).expect("text");
     assert!(note.contains("no more scenarios are sailed"), "{note}");
     let sailed = String::from_utf8(ended.stdout).expect("text");
-    let found: serde_json::Value = serde_json::from_str(&sailed).expect("one document");
+    let found: serde_json::Value = serde_json::from_str(&sailed).expect("a list");
+    let found = &found["simulations"][0];
     assert_eq!(
         (&found["interrupted"], &found["arrived"]),
         (&true.into(), &false.into())
     );
     let time = found["duration_s"].as_f64().expect("a time");
     assert!(time > 0.0 && time < 800_000.0, "{time}");
-    let file = folder.write("sailed.json", sailed.clone());
+    let file = folder.write("sailed.json", found.to_string());
     let shown = stdout(&searoom(&["verify", &file]).success());
     assert!(shown.contains("verified: no contact"), "{shown}");
-    let altered = sailed.replace("\"interrupted\": true", "\"interrupted\": false");
+    let altered = found.to_string();
+    let altered = altered.replace("\"interrupted\":true", "\"interrupted\":false");
     let file = folder.write("altered.json", altered);
     searoom(&["verify", &file]).code(1);
 }
@@ -365,6 +367,7 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/targets/0/contact_t_s", 100.0.into()),
             ("/targets/0/track/0/north_m", 170.0.into()),
             ("/sailed/0/start/north_m", 20.0.into()),
+            ("/sailed/1/duration_s", (-27.4).into()),
             ("/duration_s", 900.0.into()),
             ("/replans/1/safe", false.into()),
             ("/replans/1/verdict", "NOT SAFE".into()),

@@ -247,36 +247,37 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
     }
     let targets = by_obstacle(proxies).count();
-    let attempt = |budget, incumbent| {
+    let within = |budget, incumbent| {
         let nominal = (&nominal_motion[..], &conflicts[..]);
-        attempted(&context, budget, nominal, incumbent, clock)
+        attempt(&context, budget, nominal, incumbent, clock)
     };
-    let mut attempted = attempt(SearchBudget::of(targets), f64::INFINITY);
-    if problem.search == SearchKind::Thorough && targets > 1 && !conflicts.is_empty() {
-        let incumbent = attempted.cost();
-        attempted = attempted.or_cheaper(attempt(&SearchBudget::THOROUGH, incumbent));
+    let mut best = within(SearchBudget::of(targets), f64::INFINITY);
+    let again = problem.search == SearchKind::Thorough && targets > 1 && !conflicts.is_empty();
+    if again && !best.timed_out {
+        let incumbent = best.cost();
+        best = best.or_cheaper(within(&SearchBudget::THOROUGH, incumbent));
     }
-    let outcome = match (attempted.plan, attempted.timed_out) {
+    let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
         (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
     };
     Planned {
-        stats: attempted.stats,
-        explored: attempted.explored,
+        stats: best.stats,
+        explored: best.explored,
         ..Planned::of(outcome)
     }
 }
 
 /// The cheapest candidate of a search within a budget.
-struct Attempted {
+struct Attempt {
     plan: Option<Plan>,
     timed_out: bool,
     stats: SearchStats,
     explored: ExploredGraph,
 }
 
-impl Attempted {
+impl Attempt {
     /// Cost of the plan, m²; infinite without one.
     fn cost(&self) -> f64 {
         self.plan.as_ref().map_or(f64::INFINITY, |plan| plan.cost)
@@ -285,7 +286,7 @@ impl Attempted {
     /// This one with the other's plan if that is cheaper.
     fn or_cheaper(mut self, other: Self) -> Self {
         if other.cost() < self.cost() {
-            self.plan = other.plan;
+            (self.plan, self.explored) = (other.plan, other.explored);
         }
         self.timed_out |= other.timed_out;
         self.stats.expanded += other.stats.expanded;
@@ -298,13 +299,13 @@ impl Attempted {
 /// Searches the graph, refines its plan and the manoeuvres around the conflicts of the nominal
 /// motion, and resolves conflicts that are far apart one after another. Nothing dearer than the
 /// `incumbent` (m²) need be found.
-fn attempted(
+fn attempt(
     context: &Context,
     budget: &SearchBudget,
     (nominal_motion, conflicts): (&[Segment], &[Conflict]),
     incumbent: f64,
     clock: Clock,
-) -> Attempted {
+) -> Attempt {
     let &Context {
         problem,
         route,
@@ -360,7 +361,7 @@ fn attempted(
         timed_out = clock.is_up();
     }
     let counts = search.counts();
-    Attempted {
+    Attempt {
         plan: selection.plan(),
         timed_out,
         stats: SearchStats {

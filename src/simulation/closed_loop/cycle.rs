@@ -47,11 +47,13 @@ impl Simulation {
             });
             target.motion = Motion::Ship(ship);
         }
-        if let Some(previous) = &self.active.document {
+        if start > 0.0 {
             scenario.time += start;
             scenario.desired = self.scenario.desired.remaining(start);
             scenario.own_ship.pose = self.pose_at(start);
             scenario.memory = Memory::default();
+        }
+        if let Some(previous) = &self.active.document {
             // the last plan is own ship's, so only a ship far off it is refused
             if remember(previous, &mut scenario).is_err() {
                 self.alarm("far off the plan", None);

@@ -103,6 +103,9 @@ impl MutualTarget {
         }
         simulation.observe_and_plan();
         simulation.advance(step);
+        if simulation.finished() {
+            return;
+        }
         let plan = &simulation.active;
         let pose = simulation
             .own

@@ -143,7 +143,7 @@ impl Vessel {
             } => {
                 let way = state.speed.max(STEERAGE_WAY);
                 let (gain, time) = (gain * way / self.length, time * self.length / way);
-                // poles of the turn: twice -1/time
+                // poles of the turn: -0.38/time and -2.62/time
                 let frequency = 1.0 / time;
                 let wanted = order.turn_rate
                     + time

@@ -35,12 +35,6 @@ pub fn methods(scenario: &Scenario) -> Methods {
         &[None]
     };
     let mut all = Method::of_planners(representations);
-    if scenario.targets.len() < 2 {
-        // finds the plan of A*
-        all.retain(
-            |m| !matches!(m, Method::Planner { search, .. } if *search == SearchKind::Thorough),
-        );
-    }
     all.extend([Method::HoldCourse, Method::ConstantVelocity]);
     let mut found = Methods {
         methods: Vec::new(),
@@ -64,9 +58,12 @@ fn has_choice(target: &Target) -> bool {
 }
 
 fn reason_against(method: Method, scenario: &Scenario) -> Option<String> {
-    let Method::Planner { .. } = method else {
+    let Method::Planner { search, .. } = method else {
         return None;
     };
+    if search == SearchKind::Thorough && scenario.targets.len() < 2 {
+        return Some("with one target it finds the plan of A*".to_owned());
+    }
     let faults = method.asked(scenario).unfit();
     let faults: Vec<String> = faults
         .iter()

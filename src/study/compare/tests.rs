@@ -88,7 +88,13 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
                space-time, Dijkstra, ellipsoids; path-time; path-time, ellipsoids; \
                optimal control; hold course; constant velocity";
     assert_eq!(names(&ships).join("; "), all);
-    assert!(methods(&ships).inapplicable.is_empty());
+    let with_one = methods(&ships).inapplicable;
+    assert!(
+        with_one
+            .iter()
+            .all(|m| m.method.to_string().contains("thorough"))
+    );
+    assert_eq!(with_one.len(), 2);
     let mut off = ships.clone();
     off.own_ship.pose.position.y = 3.0;
     assert!(!names(&off).iter().any(|n| n.starts_with("path-time")));

@@ -9,6 +9,7 @@ use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_contact};
+use crate::planner::space_time::refinement::rollout::SegmentOrigin;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
@@ -18,16 +19,16 @@ use crate::planner::space_time::selection::initial_guess::{
 use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
-/// Most answers: the cheapest one before insertions need not be the cheapest one after them.
+/// Largest number of answers: the cheapest one before insertions need not be the cheapest one after them.
 const MAX_ANSWERS: usize = 3;
 
 /// Refinement steps of a child.
 const STEPS: usize = 10;
 
-/// Most corners of a manoeuvre: with more, its segment variables do not fit.
+/// Largest number of corners of a manoeuvre: with more, its segment variables do not fit.
 const MAX_CORNERS: usize = 6;
 
-/// Most corners with turns at the slow speed too, and with lines at the normal speed.
+/// Largest numbers of corners with turns at the slow speed too, and with lines at the normal speed.
 const MOST_WITH_SLOW_TURNS: usize = 3;
 const MOST_WITH_ALL_SPEEDS: usize = 4;
 
@@ -37,6 +38,9 @@ const ON_ROUTE: f64 = 0.05;
 
 /// Turn out of the way of a target, radians.
 const TURN_OUT: f64 = 0.6;
+
+/// Metres. A manoeuvre does not return where its last corner is.
+const SHORTEST_M: f64 = 1.0;
 
 /// Turns below this are no corners, radians.
 const STRAIGHT: f64 = 0.03;
@@ -99,7 +103,7 @@ pub(crate) fn resolve(
         }
         let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
         if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
-            let children = children(context, &node, obstacle, &conflict);
+            let children = children(context, &node, obstacle, &conflict, clock);
             open.extend(children.into_iter().filter(|child| child.cost < limit));
         }
     }
@@ -107,7 +111,13 @@ pub(crate) fn resolve(
 }
 
 /// A child for each way of passing a target.
-fn children(context: &Context, node: &Node, obstacle: usize, conflict: &Conflict) -> Vec<Node> {
+fn children(
+    context: &Context,
+    node: &Node,
+    obstacle: usize,
+    conflict: &Conflict,
+    clock: Clock,
+) -> Vec<Node> {
     let mut considered = node.considered.clone();
     considered.push(obstacle);
     let proxies: Vec<Proxy> = context
@@ -125,6 +135,7 @@ fn children(context: &Context, node: &Node, obstacle: usize, conflict: &Conflict
     ways.push(along(node, conflict.astern, -1.0));
     ways.push(along(node, conflict.ahead, 1.0));
     ways.into_iter()
+        .take_while(|_| !clock.is_up())
         .filter_map(|corners| child(&context, node, &corners, &considered))
         .collect()
 }
@@ -208,10 +219,18 @@ fn child(context: &Context, node: &Node, corners: &[Corner], considered: &[usize
         .structure
         .roll_out(context.problem, context.route, &guess.lengths)?;
     let motion = rollout.motion();
-    let legs: Vec<Segment> = rollout.legs[..rollout.return_segments]
-        .iter()
-        .map(|leg| leg.segment)
-        .collect();
+    // turns of the route itself are no corners
+    let own = rollout.legs[..rollout.return_segments].iter().filter(|leg| {
+        !matches!(leg.owner, SegmentOrigin::SegmentVariable { index, .. } if index < rollout.runs)
+    });
+    let mut legs: Vec<Segment> = own.map(|leg| leg.segment).collect();
+    if legs.is_empty() {
+        legs.extend(
+            rollout.legs[..rollout.return_segments]
+                .last()
+                .map(|leg| leg.segment),
+        );
+    }
     Some(Node {
         corners: corners_of(&legs),
         to_goal: matches!(guess.structure.ending, Ending::Goal { .. }),
@@ -275,15 +294,19 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
         let [slow, normal, fast] = mixed(&speeds, length.max(0.0), first.time);
         builder.runs(&speeds, normal, fast, slow);
     };
+    // a corner may be ahead of where own ship is then, or behind it
+    let off = first.position - departure.position;
+    let along = sailed + departure.ahead().dot(&off);
     if corners.len() == 1 {
-        let off = departure
-            .ahead()
-            .dot(&(first.position - departure.position));
-        run(&mut builder, sailed + off);
+        run(&mut builder, along);
         return builder.build(Ending::Follow);
     }
     let (leg, end) = ending(context, node, corners, angle);
-    let mut points = corners.to_vec();
+    let last = corners[corners.len() - 1].position;
+    if end.is_some_and(|end| (end - last).norm() < SHORTEST_M) {
+        return None;
+    }
+    let mut points: Vec<Vector> = corners.iter().map(|corner| corner.position).collect();
     points.extend(end);
     let turns = points.len() - 1;
     if turns > MAX_CORNERS {
@@ -292,7 +315,7 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
     let mut heading = departure.heading;
     let mut angles = Vec::with_capacity(turns);
     for pair in points.windows(2) {
-        let next = heading_of(pair[1].position - pair[0].position);
+        let next = heading_of(pair[1] - pair[0]);
         angles.push(wrap(next - heading));
         heading = next;
     }
@@ -301,7 +324,7 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
         return None;
     }
     let tangent = |angle: f64| radius * (0.5 * angle.abs()).tan();
-    run(&mut builder, sailed - tangent(angles[0]));
+    run(&mut builder, along - tangent(angles[0]));
     for (i, &angle) in angles.iter().enumerate() {
         let side = Side::of_turn(angle).unwrap_or(Side::Starboard);
         let last = i + 1 == turns;
@@ -317,9 +340,9 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
         if last {
             break;
         }
-        let way = (points[i + 1].position - points[i].position).norm();
+        let way = (points[i + 1] - points[i]).norm();
         let length = (way - tangent(angle) - tangent(angles[i + 1])).max(0.0);
-        let time = (points[i + 1].time - points[i].time) * length / way;
+        let time = (corners[i + 1].time - corners[i].time) * length / way;
         let [slow, normal, fast] = mixed(&speeds, length, time);
         let line = |speed: f64| SegmentVariable::Line { speed };
         builder.push(line(speeds.slow), slow);
@@ -336,14 +359,14 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
     })
 }
 
-/// The leg to which a manoeuvre through corners returns, and the corner there; none if the last
-/// corner is that already. The end of the path for a manoeuvre that goes there.
+/// The leg to which a manoeuvre through corners returns, and where; nowhere if the last corner is
+/// there already. The end of the path for a manoeuvre that goes there.
 fn ending(
     context: &Context,
     node: &Node,
     corners: &[Corner],
     angle: f64,
-) -> (usize, Option<Corner>) {
+) -> (usize, Option<Vector>) {
     let problem = context.problem;
     let legs = problem.desired.legs();
     let [.., before, last] = corners else {
@@ -352,9 +375,7 @@ fn ending(
     let leg = legs.iter().position(|l| l.end_time() > last.time);
     let leg = leg.unwrap_or(legs.len() - 1);
     if node.to_goal {
-        let position = problem.desired.end();
-        let time = f64::INFINITY;
-        return (leg, Some(Corner { time, position }));
+        return (leg, Some(problem.desired.end()));
     }
     let line = &legs[leg];
     let offset = |p: Vector| cross(line.direction, p - line.start);
@@ -367,11 +388,7 @@ fn ending(
     }
     let back = offset(last.position).abs() / angle.tan();
     let along = line.direction.dot(&(last.position - line.start)) + back;
-    let end = Corner {
-        time: last.time + back / problem.own.max_speed(),
-        position: line.start + line.direction * along,
-    };
-    (leg, Some(end))
+    (leg, Some(line.start + line.direction * along))
 }
 
 /// Lengths at the slow, the normal and the fast speed that together take a time, as nearly as
@@ -380,9 +397,8 @@ fn mixed(speeds: &ManoeuvreSpeeds, length: f64, time: f64) -> [f64; 3] {
     let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
     let spare = time - length / normal;
     let other = if spare > 0.0 { slow } else { fast };
-    let share = (spare / (1.0 / other - 1.0 / normal)).min(length);
-    // negated on purpose: there may be no other speed
-    let share = if !(share > 0.0) { 0.0 } else { share };
+    // without another speed the share is a NaN or infinite, and becomes the length
+    let share = (spare / (1.0 / other - 1.0 / normal)).min(length).max(0.0);
     if spare > 0.0 {
         [share, length - share, 0.0]
     } else {
