@@ -116,10 +116,13 @@ impl Obstacle {
             return self.clone();
         }
         let later = self.sets().velocities.into_iter();
-        let later = later
+        let mut later: Vec<TimedVelocitySet> = later
             .filter(|set| set.until > time)
-            .map(|set| TimedVelocitySet::new(set.until - time, set.velocities));
-        let sets = Uncertainty::new(self.section(time), later.collect());
+            .map(|set| TimedVelocitySet::new(set.until - time, set.velocities))
+            .collect();
+        // two ends may round to one
+        later.dedup_by(|next, set| !(next.until > set.until));
+        let sets = Uncertainty::new(self.section(time), later);
         // the last set never ends, so one remains, and the ends increase
         Self::new(self.name(), sets).unwrap_or_else(|_| self.clone())
     }

@@ -7,6 +7,8 @@ use proptest::sample::select;
 use searoom::frame::{Vector, heading_of};
 use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
+use searoom::pipeline;
+use searoom::scenario::Scenario;
 use searoom::trajectory::Segment;
 
 use super::generators::{
@@ -362,4 +364,28 @@ fn what_remains_of_a_set_goes_on_from_its_section() {
             }
         }
     });
+}
+
+/// Between 3999.9999999999995 s and the horizon lies one rounding; less 853.1 s they are one number.
+#[test]
+fn what_remains_of_a_set_has_moved_also_where_its_changes_round_to_one_time() {
+    let scenario = "title = \"slow turn\"\nhorizon_s = 4000\n[own_ship]\n\
+                    position = { east_m = 0, north_m = 0 }\ncourse_deg = 90\nspeed_mps = 2\n\
+                    length_m = 100\nbeam_m = 25\nturning_radius_m = 600\n\
+                    safety_margin_m = 100\n[mission]\nwaypoints = [{ east_m = 0, north_m = 0 }, \
+                    { east_m = 4000, north_m = 0 }]\n[[targets]]\nname = \"t\"\n\
+                    position = { east_m = 4049.33, north_m = -159.6 }\ncourse_deg = 288.67\n\
+                    speed_mps = 1.2\nlength_m = 100\nbeam_m = 10\nspeed_spread_mps = 0.04\n\
+                    course_spread_deg = 3\nturn_rate_deg_per_s = 0.02\ndomain = \"hull\"\n";
+    let scenario = Scenario::parse(scenario).expect("a scenario");
+    let set = &pipeline::sets(&scenario)[0].hard;
+    let time = 853.128_591_496_340_7;
+    let rest = set.remainder(time);
+    for n in directions(8) {
+        let (was, is) = (
+            set.support(n, 1100.0).value,
+            rest.support(n, 1100.0 - time).value,
+        );
+        assert!((was - is).abs() < 1e-6, "{was} {is}");
+    }
 }
