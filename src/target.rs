@@ -221,7 +221,7 @@ impl ShipTrack {
                 points.push(direction(middle) * (fast / half.cos()));
             }
         }
-        // finite by the contract of the type; should a number overflow, every velocity is possible
+        // finite by construction; should a number overflow, every velocity is possible
         let all = ConvexPolygon::hull(&points).unwrap_or_else(|_| everything());
         match &self.kept_velocities {
             Some(kept) if self.turn_rate == 0.0 => all.outer_intersection(kept).unwrap_or(all),

@@ -44,7 +44,7 @@ impl Risk {
         self.time + offset.dot(&relative) / relative.norm_squared()
     }
 
-    /// The same risk seen at another time: own ship at a position on its first course, the target
+    /// This risk seen at another time: own ship at a position on its first course, the target
     /// as it is then.
     pub(crate) fn with_ships_at(&self, time: f64, own: Vector, target: SteadyShip) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Risk {
     }
 }
 
-/// What is known of one target from before the scenario's time.
+/// Memory of one target from before the scenario's time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TargetMemory {
     /// The role that own ship has had since some time, and both ships then.

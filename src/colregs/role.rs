@@ -54,7 +54,7 @@ pub enum Role {
     Rule19Forward,
     /// Rule 19(d)(ii): in restricted visibility, the target abeam or abaft the beam to starboard.
     Rule19Starboard,
-    /// The same to port.
+    /// Rule 19(d)(ii): as before, to port.
     Rule19Port,
     /// The target does not move: no role.
     Static,

@@ -38,7 +38,7 @@ pub struct RiskLimits {
     pub time: f64,
     /// Longest distance of the centres at the closest approach, in lengths.
     pub lengths: f64,
-    /// The same in metres, instead; of a scenario alone.
+    /// In metres instead; only a scenario sets it.
     pub distance: Option<f64>,
     /// Distance of the hulls, in lengths, at which a target that opens is past and clear.
     pub release_lengths: f64,

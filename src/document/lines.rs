@@ -64,7 +64,7 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// What the plan goes on with, and the targets that did not stay in their sets.
+/// Manoeuvres that the plan continues, and the targets that did not stay in their sets.
 fn memory_lines(
     plan: &PlanDocument,
     memory: &MemoryDocument,

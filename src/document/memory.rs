@@ -1,4 +1,4 @@
-//! What a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles, and the
+//! Memory that a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles, and the
 //! plan that own ship follows.
 
 use serde::{Deserialize, Serialize};
@@ -44,7 +44,7 @@ const MOST_VERTICES: usize = 40;
 /// Seconds of motion that are kept before the first role: two samples, which begin a role.
 const BEFORE_S: f64 = 2.0;
 
-/// What is known from before the plan. Times count from the plan, and are negative.
+/// Memory from before the plan. Times count from the plan, and are negative.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MemoryDocument {
     /// True where the plan is the remainder of the previous one.
@@ -66,7 +66,7 @@ pub struct MemoryDocument {
     pub targets: Vec<TargetMemoryDocument>,
 }
 
-/// What is known of one target from before the plan.
+/// Memory of one target from before the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetMemoryDocument {
     pub name: String,
@@ -240,11 +240,11 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
     }
 }
 
-/// What remains of the previous plan at the scenario's time.
+/// Remainder of the previous plan at the scenario's time.
 struct RemainingPlan {
     /// The whole plan. Its times count from the previous plan.
     planned: Vec<Segment>,
-    /// What remains of it. Its times count from the scenario.
+    /// The remainder. Its times count from the scenario.
     remainder: Vec<Segment>,
     /// Where it has own ship.
     now: Pose,
@@ -515,7 +515,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Option<ConvexPolygon> {
     ConvexPolygon::hull(&points).ok()
 }
 
-/// What the previous plan knows of a target.
+/// Memory of a target in the previous plan.
 fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMemory {
     let mut before = previous.memory.iter().flat_map(|memory| &memory.targets);
     let before = before.find(|target| target.name == name);

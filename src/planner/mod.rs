@@ -267,7 +267,7 @@ pub struct PlannedManoeuvre {
 }
 
 impl PlannedManoeuvre {
-    /// The same manoeuvre with a clock that starts `time` seconds later.
+    /// This manoeuvre with a clock that starts `time` seconds later.
     pub fn after(self, time: f64) -> Self {
         Self {
             begins: self.begins - time,

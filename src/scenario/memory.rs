@@ -1,11 +1,11 @@
-//! What is known from before a scenario's time: roles, own ship's motion, and the plan that it
+//! Memory from before a scenario's time: roles, own ship's motion, and the plan that it
 //! follows.
 
 use crate::colregs::TargetMemory;
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::trajectory::Segment;
 
-/// What is known from before the scenario's time. Every time counts from the scenario's time and is
+/// Memory from before the scenario's time. Every time counts from the scenario's time and is
 /// negative before it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Memory {

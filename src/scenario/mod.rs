@@ -87,7 +87,7 @@ pub struct Scenario {
     pub earth: Option<Georeference>,
     /// The land, if there is a map.
     pub land: Option<Land>,
-    /// What is known from before the present.
+    /// Memory from before the present.
     pub memory: Memory,
     /// How the scenario is sailed in the closed loop, without effect on plans.
     pub simulation: SimulationSettings,

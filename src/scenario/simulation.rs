@@ -26,16 +26,16 @@ pub struct SimulationSettings {
     pub vessel: VesselModel,
     /// Motion of the water.
     pub current: Current,
-    /// What own ship sees of the targets.
+    /// Sensor of own ship.
     pub sensor: Sensor,
     /// True motion of each target, in the scenario's order; constant where there is none.
     pub behaviours: Vec<Behaviour>,
-    /// What the reports of each target leave out, in the scenario's order; nothing where there is
+    /// Fields that the reports of each target leave out, in the scenario's order; none where there is
     /// none.
     pub not_reported: Vec<NotReported>,
 }
 
-/// What the AIS reports of a target leave out.
+/// Fields that the AIS reports of a target leave out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NotReported {
     /// The heading: the hull may lie at any angle to the course.
@@ -122,7 +122,7 @@ pub struct Noise {
     pub speed: f64,
 }
 
-/// What own ship sees of the targets.
+/// Sensor of own ship.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     /// Kind of reports.
@@ -528,7 +528,7 @@ fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
     pairs.into_iter().collect()
 }
 
-/// What the file has of a target for the simulation.
+/// Fields of a target in the file that only the simulation uses.
 pub(super) type SimulatedTarget = (Behaviour, NotReported);
 
 /// The keys of a target for the simulation, all of which may be absent.

@@ -178,7 +178,7 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
-    /// The same motion beginning at another place.
+    /// This motion, beginning at another place.
     pub(crate) fn from(&self, start: Vector) -> Self {
         let moved = start - self.legs[0].start;
         let legs = self.legs.iter().map(|leg| DesiredLeg {

@@ -80,7 +80,7 @@ pub fn random_scenes(scenes: usize, count: usize) -> Vec<Vec<KeepOut>> {
         .collect()
 }
 
-/// CyberShip II from rest on course, with the weights of the contract.
+/// CyberShip II from rest on course, with the default weights.
 pub fn task<'a>(
     desired: &'a DesiredTrajectory,
     keep_outs: &'a [KeepOut],

@@ -46,7 +46,7 @@ pub struct ComplianceReport {
     pub manoeuvre: Option<Manoeuvre>,
 }
 
-/// What a navigator looks at: own ship's alterations from the beginning of its role to the closest
+/// Figures that a navigator looks at: own ship's alterations from the beginning of its role to the closest
 /// approach of the hulls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manoeuvre {

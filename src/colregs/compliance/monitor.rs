@@ -62,7 +62,7 @@ struct Trace<'a> {
     factor: f64,
     /// Seconds from which on own ship need not hold its course because of another target.
     excused_from: f64,
-    /// Of the longer ship, metres.
+    /// Length of the longer ship, metres.
     length: f64,
     /// m/s.
     ordered_speed: f64,

@@ -45,7 +45,7 @@ impl EncounterSample {
         self.target.pose.position - self.own.pose.position
     }
 
-    /// The same sample with own ship at another speed, m/s.
+    /// This sample with own ship at another speed, m/s.
     pub fn at_speed(&self, speed: f64) -> Self {
         let own = SteadyShip { speed, ..self.own };
         Self { own, ..*self }

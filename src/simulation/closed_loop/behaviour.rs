@@ -116,7 +116,7 @@ impl TrueTarget {
         self.now.pose.position += self.now.velocity() * step;
     }
 
-    /// Of the courses and speeds within the spreads those that come nearest to own ship, if it
+    /// Among the courses and speeds within the spreads, those that come nearest to own ship, if it
     /// holds course and speed; the first of equals.
     fn nearest_approach(&self, own: &SteadyShip) -> (f64, f64) {
         let mut best = (f64::INFINITY, self.now.pose.heading, self.now.speed);

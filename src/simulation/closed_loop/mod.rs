@@ -42,7 +42,7 @@ const SHORT_STEP: f64 = 1e-6;
 /// from the data of its time, and own ship follows it from `delay` seconds later on. It begins
 /// where the last plan has own ship then. Contacts are tested in continuous time.
 ///
-/// The same scenario gives the same motion, unless the delay is measured.
+/// Equal scenarios give equal motions, unless the delay is measured.
 ///
 /// ```
 /// use searoom::scenario::Scenario;

@@ -11,7 +11,7 @@ use crate::document::{
 use crate::planner::cost::whole_space_time_error;
 
 impl Simulation {
-    /// What was sailed so far.
+    /// The result so far.
     ///
     /// Both judges use the true motions. The cost is that of the plans, over the sailed motion.
     /// O(targets × seconds sailed).

@@ -25,7 +25,7 @@ pub(super) struct VesselState {
     pub rudder: f64,
 }
 
-/// What the guidance orders.
+/// Orders of the guidance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Order {
     /// Radians.

@@ -1,12 +1,12 @@
 //! A lower bound of the cost to go, so that the dense search can leave out what cannot win.
 //!
 //! The error of a point is at least `sqrt(across² + kappa lag²)`, the form without its clamp
-//! (formulas section 7). Three facts bound its integral from below over steps of equal length:
+//! (docs/theory.md, section 7). Three facts bound its integral from below over steps of equal length:
 //! - *across* cannot shrink faster than the ship can turn toward the path and run there at full
 //!   speed;
 //! - *lag* cannot shrink faster than own ship can turn along the path and run there at full speed;
 //! - at every instant the ship is outside every set, so its error is at least the least error
-//!   outside. Her error changes at a bounded rate, so this also holds, less the rate, before and
+//!   outside. Its error changes at a bounded rate, so this also holds, less the rate, before and
 //!   after.
 //!
 //! The first two add up; of their sum and the third the larger counts, step by step.

@@ -1,4 +1,4 @@
-//! What the collision regulations ask of a manoeuvre beyond its first alteration, toward targets on
+//! Requirements of the collision regulations on a manoeuvre beyond its first alteration, toward targets on
 //! their nominal tracks.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
