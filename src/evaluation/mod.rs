@@ -172,15 +172,13 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let land_distance = land_distance(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
+    let (space_time_error, counted) =
+        cost::counted::error_to_end(segments, request.desired, request.time_weight);
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&land_distance, request)),
-        counted: cost::counted::to_end(segments, request.desired),
-        space_time_error: or_nan(cost::space_time_error(
-            segments,
-            request.desired,
-            request.time_weight,
-        )),
+        counted,
+        space_time_error: or_nan(space_time_error),
         arc_length_error: or_nan(cost::arc_length_error(
             segments,
             request.desired,

@@ -10,7 +10,7 @@ use super::remainder::{begins_another, better_remainder};
 use super::rules::{self, encountered, first_turn};
 use super::sets::TargetSets;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
-use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem};
+use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
@@ -28,6 +28,9 @@ const SCALE_HALVINGS: usize = 3;
 
 /// Bisection steps for the largest scale factor of one domain that a given plan is clear of.
 const RETAINED_HALVINGS: usize = 10;
+
+/// Metres by which reductions of domains may differ in answers that relax as much.
+const SAME_REDUCTION_M: f64 = 1.0;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
@@ -77,6 +80,31 @@ impl Attempt {
         self.planned.outcome.plan().map(|plan| &plan.trajectory)
     }
 
+    /// True where this answer relaxes less than another, or as much at a lower cost. Compares level,
+    /// number of entered sets, risk, largest reduction of a domain, and cost, in this order.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let (Some(plan), Some(others)) =
+            (self.planned.outcome.plan(), other.planned.outcome.plan())
+        else {
+            return self.planned.outcome.plan().is_some();
+        };
+        let entered = |of: &Self| of.released.iter().flatten().count();
+        let reduced = |of: &Self| of.reductions.iter().copied().fold(0.0, f64::max);
+        let discrete = (self.level, entered(self)).cmp(&(other.level, entered(other)));
+        if discrete.is_ne() {
+            return discrete.is_lt();
+        }
+        for (own, others, same) in [
+            (self.risk, other.risk, RISK_STEP),
+            (reduced(self), reduced(other), SAME_REDUCTION_M),
+        ] {
+            if (own - others).abs() > same {
+                return own < others;
+            }
+        }
+        plan.cost < others.cost
+    }
+
     fn is_infeasible(&self) -> bool {
         matches!(self.planned.outcome, Outcome::Infeasible(_))
     }
@@ -109,8 +137,31 @@ impl Relaxer<'_> {
         Self::at_least_risk,
     ];
 
-    /// The answer of the first level that has one; without any, that of the first level.
+    /// The answer to the request. The thorough search compares its answer with that of A*: a
+    /// cheaper plan at one level may lead to more relaxation at another.
     pub fn answer(&self) -> Attempt {
+        let scenario = self.scenario;
+        if scenario.search != SearchKind::Thorough || scenario.targets.len() < 2 {
+            return self.answer_of_one_search();
+        }
+        let quick = Relaxer {
+            scenario: &Scenario {
+                search: SearchKind::AStar,
+                ..scenario.clone()
+            },
+            ..*self
+        };
+        let quick = quick.answer_of_one_search();
+        let thorough = self.answer_of_one_search();
+        match thorough.planned.outcome {
+            _ if !quick.is_better_than(&thorough) => thorough,
+            Outcome::Deadline(_) => out_of_time(quick),
+            Outcome::Solved(_) | Outcome::Infeasible(_) => quick,
+        }
+    }
+
+    /// The answer of the first level that has one; without any, that of the first level.
+    fn answer_of_one_search(&self) -> Attempt {
         let with_domain = self.scenario.compliance.shapes();
         let scale = if with_domain { 1.0 } else { 0.0 };
         let mut first = self.attempt(

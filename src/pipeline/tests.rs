@@ -260,6 +260,22 @@ fn a_stop_at_the_start_of_a_round_trip_is_no_arrival() {
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
 }
 
+/// A target crosses near the start. The short way to the end would be clear of it and early.
+#[test]
+fn round_trips_are_sailed() {
+    for name in ["round-trip.toml", "near-round-trip.toml"] {
+        let run = run(fault(name));
+        let (judged, length) = (
+            run.evaluation.expect("a plan"),
+            run.scenario.desired.length(),
+        );
+        assert!(judged.verified() && judged.safe(), "{name}");
+        let (sailed, late) = (judged.length, judged.delay);
+        assert!(sailed > 0.9 * length, "{name}: {sailed} m of {length} m");
+        assert!(late > -60.0, "{name}: {late} s");
+    }
+}
+
 fn changes_of_speed(trajectory: &Trajectory) -> usize {
     let segments = trajectory.segments().windows(2);
     segments

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::line_error;
 use crate::frame::cross;
 use crate::numerics::{GAUSS_2, GAUSS_4};
+use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Mover, Nearest, Segment};
 
 /// Largest radius (metres) and smallest turn (radians) of the closed form. It loses digits on
@@ -50,6 +51,21 @@ pub fn space_time_error(desired: &DesiredTrajectory, segment: &Segment, time_wei
     integral(desired, segment, time_weight, SEARCH_SUBDIVISION) / desired.duration()
 }
 
+/// Part of `J` after a motion that ends early, m². Own ship lies where it is until the desired
+/// trajectory ends.
+pub fn error_after_end(desired: &DesiredTrajectory, last: &Segment, time_weight: f64) -> f64 {
+    let (end, left) = (last.end_time(), desired.duration() - last.end_time());
+    // on time, to rounding
+    if left <= tolerance::TIME_S {
+        return 0.0;
+    }
+    space_time_error(
+        desired,
+        &Segment::straight(last.end(), end, left, 0.0),
+        time_weight,
+    )
+}
+
 /// Space-time error `J` of a whole motion, m². Arcs are divided finely enough to see a leg that is
 /// nearest only briefly. Relative accuracy 1e-6.
 pub fn whole_space_time_error(
@@ -61,7 +77,8 @@ pub fn whole_space_time_error(
     let sum: f64 = parts
         .map(|segment| integral(desired, segment, time_weight, REPORT_SUBDIVISION))
         .sum();
-    sum / desired.duration()
+    let after = |last| error_after_end(desired, last, time_weight);
+    sum / desired.duration() + motion.last().map_or(0.0, after)
 }
 
 fn integral(

@@ -178,10 +178,22 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Space-time error of a motion at the accuracy of the searches, m².
-    pub(crate) fn error_of(&self, motion: &[Segment]) -> f64 {
+    /// Space-time error of a part of a motion at the accuracy of the searches, m².
+    pub(crate) fn error_of(&self, part: &[Segment]) -> f64 {
         let error = |s| cost::space_time_error(self.desired, s, self.time_weight);
-        motion.iter().map(error).sum()
+        part.iter().map(error).sum()
+    }
+
+    /// Space-time error of a motion to its end, m²: with the wait of a ship that arrives early.
+    pub(crate) fn error_to_end(&self, motion: &[Segment]) -> f64 {
+        let after = |last| cost::error_after_end(self.desired, last, self.time_weight);
+        self.error_of(motion) + motion.last().map_or(0.0, after)
+    }
+
+    /// True where a motion is long enough to have followed the path.
+    pub(crate) fn follows_path(&self, motion: &[Segment]) -> bool {
+        let sailed: f64 = motion.iter().map(Segment::length).sum();
+        sailed >= self.desired.least_way()
     }
 
     /// Duty of own ship toward all encountered targets.
@@ -223,12 +235,13 @@ pub struct Plan {
 
 impl Plan {
     /// Plan with its space-time error, which is integrated anew: searches use coarser quadrature.
-    /// `None` for an invalid trajectory.
+    /// `None` for an invalid trajectory, and for one too short to have followed the path.
     pub(crate) fn measured(
         problem: &Problem,
         motion: Vec<Segment>,
         graph_cost: Option<f64>,
     ) -> Option<Self> {
+        problem.follows_path(&motion).then_some(())?;
         Some(Self {
             cost: cost::whole_space_time_error(problem.desired, &motion, problem.time_weight),
             trajectory: Trajectory::new(motion).ok()?,

@@ -153,6 +153,16 @@ pub fn earliest(
     None
 }
 
+/// Error of lying at the end from `arrival` to the end of the desired trajectory, m² s.
+fn waiting(desired: &DesiredTrajectory, arrival: f64, time_weight: f64) -> f64 {
+    let left = (desired.duration() - arrival).max(0.0);
+    let pieces = 100;
+    let part = left / f64::from(pieces);
+    let at = |k: i32| arrival + (f64::from(k) + 0.5) * part;
+    let error = |t: f64| desired.nearest(desired.end(), t, time_weight).error;
+    (0..pieces).map(|k| error(at(k)) * part).sum()
+}
+
 /// The least space-time error on the grid, m²; `None` when the end is not reached before the
 /// horizon. What it finds is a plan, so nothing is the least that costs more. The error is
 /// integrated by Simpson's rule over each step.
@@ -192,7 +202,8 @@ pub fn least_error(
                 }
             }
         }
-        best = best.min(next[cells]);
+        let arrival = (k + 1) as f64 * step;
+        best = best.min(next[cells] + waiting(desired, arrival, time_weight));
         cost = next;
     }
     best.is_finite().then_some(best / desired.duration())

@@ -1,5 +1,5 @@
-//! End of the interval over which the space-time error is counted. It makes any two motions
-//! comparable: one that ends at the last waypoint, one that stays there, and one that passes by.
+//! Interval over which the space-time error is counted. It makes any two motions comparable: one
+//! that ends at the last waypoint, one that stays there, one that is early, and one that passes by.
 
 use crate::evaluation::distance::piece::Piece;
 use crate::evaluation::{cost, steered};
@@ -16,9 +16,10 @@ const HALVINGS: usize = 60;
 
 /// End of the interval over which the space-time error of a motion is counted.
 ///
-/// It is the last time at which the motion enters the disc of radius `within` around the last
-/// waypoint. If the motion never enters the disc, or starts in it and stays, it is the end of the
-/// desired trajectory, or of the motion if that is earlier.
+/// A motion arrives when it enters the disc of radius `within` around the last waypoint for the
+/// last time. The interval ends then, but not before the desired trajectory does: own ship lies
+/// where its motion ends. If the motion never enters the disc, or starts in it and stays, the
+/// interval ends with the desired trajectory, or with the motion if that is earlier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counted {
     /// Radius of the disc around the last waypoint, metres.
@@ -46,22 +47,37 @@ pub fn counted_error(
         }
         None => {
             let counted = counted(trajectory.segments(), desired, within);
-            let kept = until(trajectory.segments(), counted.until);
+            let mut kept = until(trajectory.segments(), counted.until);
+            kept.extend(wait_until(counted.until, &kept));
             (cost::space_time_error(&kept, desired, q), counted)
         }
     }
 }
 
-/// Counts to the end of segments, which arrive at the last waypoint itself.
-pub(crate) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Counted {
+/// Space-time error of segments to their end, which arrive at the last waypoint itself.
+pub(crate) fn error_to_end(
+    segments: &[Segment],
+    desired: &DesiredTrajectory,
+    q: f64,
+) -> (f64, Counted) {
     let off = |s: &Segment| (s.end().position - desired.end()).norm();
-    Counted {
+    let wait = wait_until(desired.duration(), segments);
+    let all: Vec<Segment> = segments.iter().copied().chain(wait).collect();
+    let counted = Counted {
         within: tolerance::ARRIVAL_M,
-        until: segments.last().map_or(f64::NAN, Segment::end_time),
+        until: all.last().map_or(f64::NAN, Segment::end_time),
         arrived: segments
             .last()
             .is_some_and(|s| off(s) <= tolerance::ARRIVAL_M),
-    }
+    };
+    (cost::space_time_error(&all, desired, q), counted)
+}
+
+/// Wait of own ship where its motion ends, until `time`. `None` where it ends on time or later.
+fn wait_until(time: f64, segments: &[Segment]) -> Option<Segment> {
+    let last = segments.last()?;
+    let left = time - last.end_time();
+    (left > tolerance::TIME_S).then(|| Segment::straight(last.end(), last.end_time(), left, 0.0))
 }
 
 /// [`counted_error`] of a motion under forces.
@@ -73,7 +89,14 @@ pub(crate) fn counted_error_of_cubics(
 ) -> (f64, Counted) {
     let counted = counted(pieces, desired, within);
     let kept = until(pieces, counted.until);
-    (steered::space_time_error(&kept, desired, q), counted)
+    let error = steered::space_time_error(&kept, desired, q);
+    let lies = pieces.last().map(|piece| {
+        let pose = piece.pose_at(piece.end_time());
+        Segment::straight(pose, piece.end_time(), 0.0, 0.0)
+    });
+    let wait = lies.and_then(|lies| wait_until(counted.until, &[lies]));
+    let after = wait.map_or(0.0, |wait| cost::space_time_error(&[wait], desired, q));
+    (error + after, counted)
 }
 
 /// Returns the pieces up to a time.
@@ -88,9 +111,9 @@ fn until<P: Piece>(pieces: &[P], time: f64) -> Vec<P> {
 fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> Counted {
     let end = pieces.last().map_or(f64::NAN, Piece::end_time);
     match last_entrance(pieces, desired.end(), within) {
-        Some(until) => Counted {
+        Some(entrance) => Counted {
             within,
-            until,
+            until: entrance.max(desired.duration()),
             arrived: true,
         },
         None => Counted {
@@ -258,6 +281,21 @@ mod tests {
         let [short, long] = [300.0, 3000.0].map(|time| error(wide, &[(time, 5.0, 0.0)]));
         assert!((short.0 - 40_000.0).abs() < 1e-6 && (long.0 - short.0).abs() < 1e-6);
         assert!(!long.1.arrived && long.1.until == 200.0);
+    }
+
+    /// 3 m/s too fast for 125 s, then at rest for 75 s, with `kappa = 1/2`.
+    #[test]
+    fn a_ship_that_arrives_early_waits_for_the_schedule() {
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let motions = both(Pose::new(Vector::zeros(), 0.0), &[(125.0, 8.0, 0.0)]);
+        let ahead = |rate: f64, duration: f64| 0.5 * rate * rate * duration.powi(3) / 3.0;
+        let exact = (ahead(3.0, 125.0) + ahead(5.0, 75.0)) / wish.duration();
+        let ended = error_to_end(motions[0].segments(), &wish, 25.0);
+        let all = motions.map(|motion| counted_error(&motion, &wish, 25.0, 30.0));
+        for (found, counted) in all.into_iter().chain([ended]) {
+            assert!((found - exact).abs() < 1e-6 * exact, "{found} {exact}");
+            assert!(counted.arrived && counted.until == 200.0, "{counted:?}");
+        }
     }
 
     /// A round trip starts at its end: it arrives when it comes back.

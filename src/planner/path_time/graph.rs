@@ -189,7 +189,7 @@ impl<'a> Graph<'a> {
         {
             return;
         }
-        let step = line
+        let mut step: f64 = line
             .windows(2)
             .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
             .sum();
@@ -201,6 +201,9 @@ impl<'a> Graph<'a> {
             met: Cell::new(None),
             tested: Cell::new(false),
         };
+        if self.has_arrived(&state) {
+            step += self.measure.after_arrival(self.nodes[to].time);
+        }
         out.push((state, step));
     }
 

@@ -6,7 +6,7 @@ use super::recovery::Recovery;
 use super::scene::Scene;
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
-use crate::planner::cost::space_time_error;
+use crate::planner::cost::{error_after_end, space_time_error};
 use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -60,6 +60,20 @@ impl<'a> Measure<'a> {
                 space_time_error(self.problem.desired, &segment, self.problem.time_weight)
             }
         }
+    }
+
+    /// Cost of lying at the end of the path from `time` to the end of the desired trajectory, m².
+    pub(crate) fn after_arrival(&self, time: f64) -> f64 {
+        let Problem {
+            desired,
+            objective: Objective::SpaceTimeError,
+            ..
+        } = self.problem
+        else {
+            return 0.0;
+        };
+        let end = Segment::straight(Pose::new(desired.end(), 0.0), time, 0.0, 0.0);
+        error_after_end(desired, &end, self.problem.time_weight)
     }
 
     /// Lower bound of the cost to the end, given the remaining metres and the current time.

@@ -34,7 +34,6 @@ use super::{
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
-use crate::planner::cost::space_time_error;
 use crate::search::{Counts, Fate, Search, Stop};
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{PathNetwork, Segment};
@@ -290,9 +289,8 @@ struct Found {
 /// Converts a profile into a plan with its cost at the given risk.
 fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Option<Plan> {
     let trajectory = found.profile.trajectory(scene, problem.own.pose)?;
-    let error = |s| space_time_error(problem.desired, s, problem.time_weight);
     let cost = match problem.objective {
-        Objective::SpaceTimeError => trajectory.segments().iter().map(error).sum(),
+        Objective::SpaceTimeError => problem.error_to_end(trajectory.segments()),
         Objective::Time => trajectory.end_time(),
         Objective::Length => trajectory.length(),
         Objective::LengthRisk { weight } => trajectory.length() + weight * risk,

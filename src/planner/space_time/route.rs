@@ -127,7 +127,7 @@ impl Route {
                 if clock.is_up() {
                     return Some(route);
                 }
-                let cost = problem.error_of(&route.follow(0.0, 0.0));
+                let cost = problem.error_to_end(&route.follow(0.0, 0.0));
                 let late = route.arrival(0.0, 0.0) > problem.horizon;
                 let unplain = route.joins_by_odd_turns() || !route.joins_at(desired, leg);
                 let price = match asks_for_plain(problem) && unplain {

@@ -91,8 +91,9 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
         if clock.is_up() {
             break;
         }
-        if let Some(motion) = append(leaving, beginning, |rest| planned(rest, clock)) {
-            return Plan::measured(problem, motion, None);
+        let motion = append(leaving, beginning, |rest| planned(rest, clock));
+        if let Some(plan) = motion.and_then(|motion| Plan::measured(problem, motion, None)) {
+            return Some(plan);
         }
     }
     if exits.is_empty() {
@@ -125,9 +126,10 @@ fn continue_to_end(
         if clock.is_up() && compared >= MIN_COMPARED && best.is_some() {
             break;
         }
-        let Some(found) = append(problem, beginning, |rest| {
+        let found = append(problem, beginning, |rest| {
             path_motion(rest, straight, clock)
-        }) else {
+        });
+        let Some(found) = found.filter(|motion| problem.follows_path(motion)) else {
             continue;
         };
         let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);

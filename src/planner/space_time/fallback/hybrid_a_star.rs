@@ -157,7 +157,10 @@ impl Lattice<'_> {
         let motion = state.motion(problem.own.turning_radius);
         let last = motion.last()?;
         (state.pose, state.time) = (last.end(), last.end_time());
-        let cost = problem.error_of(&motion);
+        let cost = match is_end {
+            true => problem.error_to_end(&motion),
+            false => problem.error_of(&motion),
+        };
         (state.time <= problem.horizon).then_some((state, cost))
     }
 }

@@ -32,6 +32,7 @@ use crate::planner::space_time::settings::{GRAPH_HOLDS_S, GRAPH_RETURN_ANGLES};
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
 use crate::trajectory::Segment;
+use crate::vessel::OwnShip;
 
 /// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
 const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
@@ -178,7 +179,10 @@ impl<'a> Graph<'a> {
         if time > self.problem.horizon {
             return;
         }
-        let cost = self.problem.error_of(&motion);
+        let cost = match kind {
+            NodeKind::End => self.problem.error_to_end(&motion),
+            _ => self.problem.error_of(&motion),
+        };
         let chain = from.chain + u8::from(matches!(kind, NodeKind::Vertex { .. }));
         let held = if kind == NodeKind::Held {
             from.held + 1
@@ -349,8 +353,8 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Edges back onto the legs ahead and straight to the last waypoint, all at the greatest speed:
-    /// own ship is late after a manoeuvre.
+    /// Edges back onto the legs ahead and straight to the last waypoint, at the greatest speed: own
+    /// ship is late after a manoeuvre. Where it would arrive early, a lower speed is tried, too.
     fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
         let (radius, speed) = (own.turning_radius, own.max_speed());
@@ -373,11 +377,14 @@ impl<'a> Graph<'a> {
             if let Some((turn, line)) = interceptor.path_to(desired.end())
                 && turn <= MAX_TURN
             {
-                let mut chain = Chain::new(from.pose, from.time, speed, radius);
-                chain.arc(turn * radius * side.turn_sign());
-                chain.line(line);
-                let ending = Ending::Goal { side, speed };
-                self.push(out, NodeKind::End, ending, chain.segments, 0, from);
+                let way = turn * radius + line;
+                for speed in goal_speeds(own, way, desired.duration() - from.time) {
+                    let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                    chain.arc(turn * radius * side.turn_sign());
+                    chain.line(line);
+                    let ending = Ending::Goal { side, speed };
+                    self.push(out, NodeKind::End, ending, chain.segments, 0, from);
+                }
             }
         }
     }
@@ -396,6 +403,17 @@ impl<'a> Graph<'a> {
             self.push(out, NodeKind::Held, Ending::Follow, chain.segments, 0, from);
         }
     }
+}
+
+/// The greatest speed, and where that arrives before `left` seconds are over, the greatest one that
+/// does not.
+fn goal_speeds(own: &OwnShip, way: f64, left: f64) -> impl Iterator<Item = f64> {
+    let is_early = |speed: f64| way < speed * left;
+    let on_time = own.moving_speeds().filter(|speed| !is_early(*speed));
+    let on_time = on_time.reduce(f64::max);
+    let (fast, slow) = (own.max_speed(), own.moving_speeds().reduce(f64::min));
+    let slower = on_time.or(slow).filter(|speed| *speed < fast);
+    [Some(fast), slower].into_iter().flatten()
 }
 
 impl Space for Graph<'_> {

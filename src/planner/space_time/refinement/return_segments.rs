@@ -1,9 +1,11 @@
 //! Return segments: the route followed after a manoeuvre, with the rates of its cost in the joining
 //! position and time.
 
+use crate::planner::cost::error_after_end;
 use crate::planner::space_time::refinement::approach::Approach;
 use crate::planner::space_time::refinement::rollout::Rollout;
 use crate::planner::space_time::refinement::trial::Context;
+use crate::tolerance;
 
 /// Cost of the route from a position and time, its rates per second and per metre, its second rate
 /// per second, and the schedule's seconds per metre there.
@@ -23,9 +25,26 @@ impl Context<'_> {
             .unwrap_or_else(|| self.general_return_segments(distance, time))
     }
 
+    /// Wait of a ship that arrives at the last waypoint early. `None` for one that does not.
+    pub(crate) fn wait_at_end(&self, rollout: &Rollout) -> Option<ReturnSegments> {
+        let (desired, q) = (self.problem.desired, self.problem.time_weight);
+        let last = &rollout.legs.last()?.segment;
+        let left = desired.duration() - last.end_time();
+        let error = desired.nearest(desired.end(), last.end_time(), q).error;
+        let rate = error / desired.duration();
+        (left > tolerance::TIME_S).then(|| ReturnSegments {
+            cost: error_after_end(desired, last, q),
+            by_time: -rate,
+            by_distance: 0.0,
+            curvature_along: 2.0 * rate / left,
+            slowness: 0.0,
+        })
+    }
+
     /// Cost of following the route from a position at a time, m².
     fn return_cost(&self, distance: f64, time: f64) -> f64 {
-        self.problem.error_of(&self.route.follow(distance, time))
+        self.problem
+            .error_to_end(&self.route.follow(distance, time))
     }
 
     /// Closed form on the last leg: own ship recovers the lag at the greatest or least speed, then

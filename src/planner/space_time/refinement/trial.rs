@@ -38,7 +38,7 @@ pub(crate) struct Trial {
     /// Least slack of all approaches, metres.
     pub least_slack: f64,
     pub approaches: Vec<Approach>,
-    /// Return segments, if any.
+    /// Return segments or the wait at the end, if any.
     pub return_segments: Option<ReturnSegments>,
     /// Rates of the joining position and time.
     pub joining: (Row, Row),
@@ -74,8 +74,10 @@ impl Context<'_> {
         }
         let weighed = points.iter().filter_map(|p| p.weighed.as_ref());
         let mut cost: f64 = weighed.map(|w| w.weight * w.nearest.error).sum();
-        let return_segments = (!matches!(structure.ending, Ending::Goal { .. }))
-            .then(|| self.return_segments(rollout.joined.0, rollout.joined.1));
+        let return_segments = match structure.ending {
+            Ending::Goal { .. } => self.wait_at_end(&rollout),
+            _ => Some(self.return_segments(rollout.joined.0, rollout.joined.1)),
+        };
         cost += return_segments.as_ref().map_or(0.0, |t| t.cost);
         let sails = rollout.legs.iter().map(|l| &l.segment);
         let land = land::near(self.problem.land_obstacle, sails, NEAR_M);

@@ -582,7 +582,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             .is_some_and(|pair| pair[0].duration < LEAST_S && pair[0].speed != pair[1].speed);
         let slow = matches!(first, FirstAlteration::Slow { .. });
         let price = |is: bool, price: f64| if is { price } else { 1.0 };
-        self.problem().error_of(motion) * price(slow, SPEED_PRICE) * price(short, SHORT_PRICE)
+        self.problem().error_to_end(motion) * price(slow, SPEED_PRICE) * price(short, SHORT_PRICE)
     }
 
     /// Pattern search: each parameter in turn, by steps that shrink.

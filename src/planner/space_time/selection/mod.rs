@@ -283,12 +283,13 @@ impl<'a> Selection<'a> {
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
-        let cost = problem.error_of(&motion);
+        let cost = problem.error_to_end(&motion);
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time
             && cost.is_finite()
+            && problem.follows_path(&motion)
             && first_met(self.context.proxies, &motion).is_none()
             && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
