@@ -287,7 +287,7 @@ pub struct Shared {
     /// Risk that the plan may accept instead of the scenario's: 0 to below 1
     #[arg(long, value_name = "R", value_parser = max_risk)]
     pub max_risk: Option<f64>,
-    /// Exit status 1 also where a plan breaks a rule
+    /// Exit status 1 also where a plan breaks a rule or gives the rules up
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
@@ -375,10 +375,10 @@ impl Written {
 }
 
 impl Shared {
-    /// Exit status of a run: with `--strict`, a broken rule is no plan.
+    /// Exit status of a run: with `--strict`, a plan that breaks rules or gives them up is none.
     pub fn status(&self, run: &Run, plan: &PlanDocument) -> ExitStatus {
         let broken = breaks(&plan.encounters).is_some_and(|broken| !broken.is_empty());
-        let strict = if self.strict && broken {
+        let strict = if self.strict && (broken || run.gives_up_rules()) {
             ExitStatus::NoPlan
         } else {
             ExitStatus::Good

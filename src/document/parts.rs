@@ -79,6 +79,8 @@ pub struct CostDocument {
     pub length_m: f64,
     pub delay_s: Option<f64>,
     #[serde(default)]
+    pub waypoint_distances_m: Vec<f64>,
+    #[serde(default)]
     pub first_turn: Option<TurnDocument>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,

@@ -291,6 +291,7 @@ pub(super) fn cost_of(
         duration_s: evaluation.duration,
         length_m: evaluation.length,
         delay_s: finite(evaluation.delay),
+        waypoint_distances_m: evaluation.waypoint_distances.clone(),
         first_turn: first_alteration(trajectory).map(turn),
         max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),

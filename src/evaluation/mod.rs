@@ -19,6 +19,8 @@ pub use cost::counted::{Counted, counted_error};
 pub(crate) use cost::stage_cost::{StageWeights, stage_costs};
 pub(crate) use distance::clearance::Body;
 pub(crate) use distance::turned_hull::TurnedHull;
+pub(crate) use distance::waypoints::ACCURACY_M as WAYPOINT_ACCURACY_M;
+use distance::waypoints::waypoint_distances;
 pub use request::{Freedom, Request};
 pub use safety::Safety;
 pub(crate) use sets::moving_ellipse::shape_rounding;
@@ -101,6 +103,9 @@ pub struct Evaluation {
     pub length: f64,
     /// Arrival time minus desired end, seconds; NaN where no arrival is required.
     pub delay: f64,
+    /// Least distance of the motion from each waypoint between the first and the last, metres, at
+    /// most 0.01 m too large.
+    pub waypoint_distances: Vec<f64>,
     /// Least clearance over all targets, metres; infinite without targets.
     pub min_clearance: f64,
     /// Like `min_clearance`, but over `arrival_hold` after the end of the motion, with own ship at
@@ -190,6 +195,7 @@ pub fn evaluate(request: &Request) -> Evaluation {
             Freedom::PathsToHorizon(_) => f64::NAN,
             Freedom::Limits | Freedom::Paths(_) | Freedom::Any => end - request.desired.duration(),
         },
+        waypoint_distances: waypoint_distances(segments, request.desired),
         min_clearance: or_nan(least_of(&passages, |p| p.min_clearance)),
         hold_clearance: or_nan(least_of(&passages, |p| p.hold_clearance)),
         arrival_hold: request.arrival_hold,

@@ -4,6 +4,7 @@ use super::{Evaluation, Request, Safety, Violation, land_distance, least_of, mee
 use crate::evaluation::cost::counted::counted_error_of_cubics;
 use crate::evaluation::cost::quadrature::smooth;
 use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::distance::waypoints::waypoint_distances;
 use crate::evaluation::motion::Report;
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
@@ -64,6 +65,7 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
         duration: nodes[nodes.len() - 1].time - nodes[0].time,
         length,
         delay: f64::NAN,
+        waypoint_distances: waypoint_distances(&pieces, request.desired),
         min_clearance: least_of(&passages, |p| p.min_clearance),
         hold_clearance: least_of(&passages, |p| p.hold_clearance),
         arrival_hold: request.arrival_hold,

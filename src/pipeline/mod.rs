@@ -100,6 +100,12 @@ impl Run {
         targets.any(|target| target.whole != target.sets.hard)
     }
 
+    /// True where no plan keeps to the rules, and one without them is given.
+    pub fn gives_up_rules(&self) -> bool {
+        let mut relaxations = self.relaxations.iter();
+        relaxations.any(|r| matches!(r, Relaxation::Compliance { .. }))
+    }
+
     /// True where the plan ends at the last waypoint. Motions under forces end at the horizon.
     pub fn arrives(&self) -> bool {
         let plan = self.planned.outcome.plan();

@@ -130,9 +130,8 @@ impl Run {
     /// The outcome in words, for reports.
     pub fn word(&self) -> String {
         let ended = Verdict::of(self).word();
-        let gives_up_rules = |r: &Relaxation| matches!(r, Relaxation::Compliance { .. });
         let word = outcome_word(ended, self.safety(), self.greatest_risk());
-        without_rules(word, self.relaxations.iter().any(gives_up_rules))
+        without_rules(word, self.gives_up_rules())
     }
 
     /// The title, the outcome, and for a plan whether it is verified and safe.

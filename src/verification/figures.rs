@@ -2,7 +2,9 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::mismatch;
-use crate::evaluation::{Evaluation, MovingSlabs, Steering, Violation, stage_costs};
+use crate::evaluation::{
+    Evaluation, MovingSlabs, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
+};
 use crate::frame::Vector;
 use crate::geometry::ConvexSet;
 use crate::target::{Motion, Target};
@@ -61,6 +63,19 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     };
     if let Some(so) = minimised {
         same("cost.objective", Some(cost.objective), so);
+    }
+    if let Some(said) = &cost.waypoint_distances_m {
+        let so = &evaluation.waypoint_distances;
+        let counts = [said, so].map(|distances| distances.len() as f64);
+        same(
+            "cost.waypoint_distances_m, length",
+            Some(counts[0]),
+            counts[1],
+        );
+        for (k, (said, so)) in said.iter().zip(so).enumerate() {
+            let what = format!("cost.waypoint_distances_m[{k}]");
+            same_to(&what, Some(*said), *so, WAYPOINT_ACCURACY_M);
+        }
     }
     let (said, so) = (cost.min_clearance_m, evaluation.min_clearance);
     same_to("cost.min_clearance_m", said, so, rounding);

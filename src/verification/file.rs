@@ -111,6 +111,9 @@ pub(super) struct CostFile {
     pub duration_s: f64,
     pub length_m: f64,
     pub delay_s: Option<f64>,
+    /// An older document may omit it.
+    #[serde(default)]
+    pub waypoint_distances_m: Option<Vec<f64>>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
     pub hold_clearance_m: Option<f64>,

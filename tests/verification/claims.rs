@@ -69,6 +69,8 @@ a margin to land that is not kept | /own_ship/land_margin_m = 70 | land
 land moved | /land/*/*/1 + 60 | land
 farther from land | /cost/min_land_distance_m + 1 | cost.min_land_distance_m
 nearer to land | /cost/min_land_distance_m * 0.5 | min_land_distance_m
+a waypoint passed nearer | /cost/waypoint_distances_m/0 * 0.9 | cost.waypoint_distances_m[0]
+no waypoint passed | /cost/waypoint_distances_m = [] | cost.waypoint_distances_m, length
 no land to be far from | /cost/min_land_distance_m = null | cost.min_land_distance_m
 "#;
 const FIGURE_9: &str = r#"

@@ -5,3 +5,4 @@ pub(crate) mod least;
 pub(crate) mod piece;
 pub(crate) mod turn;
 pub(crate) mod turned_hull;
+pub(crate) mod waypoints;

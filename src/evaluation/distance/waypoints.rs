@@ -1,0 +1,74 @@
+//! Distances at which a motion passes the waypoints between the first and the last.
+
+use super::piece::Piece;
+use crate::frame::Vector;
+use crate::trajectory::DesiredTrajectory;
+
+/// Accuracy of the distances, metres.
+pub(crate) const ACCURACY_M: f64 = 0.01;
+
+/// Least distance of a motion from each waypoint between the first and the last, metres, at most
+/// [`ACCURACY_M`] too large. NaN for a motion that is not finite. O(pieces) per waypoint, more for
+/// a circle about one.
+pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajectory) -> Vec<f64> {
+    let inner = desired.legs().iter().skip(1).map(|leg| leg.start);
+    inner.map(|place| least_distance(pieces, place)).collect()
+}
+
+/// Samples so densely that no point between two samples is nearer by more than the accuracy.
+fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
+    let mut least = f64::INFINITY;
+    for piece in pieces {
+        let (mut time, fastest) = (piece.start_time(), piece.bounds().speed);
+        loop {
+            let distance = (piece.pose_at(time).position - place).norm();
+            if !distance.is_finite() {
+                return f64::NAN;
+            }
+            least = least.min(distance);
+            // the motion is not nearer than `least` within this time, but for the accuracy
+            let step = (distance - least + ACCURACY_M) / fastest;
+            // negated on purpose: a NaN ends the search
+            if !(time < piece.end_time()) {
+                break;
+            }
+            time = (time + step).min(piece.end_time());
+        }
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::trajectory::fixtures::chain;
+
+    /// A line past a waypoint, a circle about one, and one that is not passed.
+    #[test]
+    fn distances_match_closed_form() {
+        let points = [
+            (0.0, 0.0),
+            (300.0, 40.0),
+            (600.0, 100.0),
+            (500.0, -900.0),
+            (0.0, 0.0),
+        ];
+        let points = points.map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0; 4]).expect("valid");
+        let lap = 2.0 * std::f64::consts::PI * 100.0 / 5.0;
+        let motion = chain(
+            Pose::new(Vector::zeros(), 0.0),
+            &[(120.0, 5.0, 0.0), (lap, 5.0, 0.05), (20.0, 0.0, 0.0)],
+        );
+        let exact = [40.0, 100.0, 900.0];
+        let found = waypoint_distances(&motion, &desired);
+        for (found, exact) in found.iter().zip(exact) {
+            assert!(
+                (0.0..=ACCURACY_M).contains(&(found - exact + 1e-9)),
+                "{found} {exact}"
+            );
+        }
+        assert_eq!(found.len(), 3);
+    }
+}
