@@ -336,7 +336,7 @@ fn memory_after(
     let mut sailed: Vec<Segment> = before.map(|s| shifted(segment(s), elapsed)).collect();
     for s in planned.iter().filter(|s| s.start_time < elapsed) {
         let s = shifted(s.between(s.start_time, elapsed), elapsed);
-        match sailed.last_mut().filter(|last| continues(last, &s)) {
+        match sailed.last_mut().filter(|last| last.is_continued_by(&s)) {
             Some(last) => last.duration += s.duration,
             None => sailed.push(s),
         }
@@ -425,15 +425,6 @@ fn aside(remainder: &[Segment], manoeuvre: &PlannedManoeuvre) -> f64 {
     turns.filter(before).map_or(f64::INFINITY, |turn| {
         turn.start_time - straight.map_or(0.0, |first| remainder[first].start_time)
     })
-}
-
-/// True for a segment that continues another one.
-fn continues(last: &Segment, next: &Segment) -> bool {
-    let gap = (last.end().position - next.start.position).norm();
-    gap <= tolerance::JOINT_M
-        && (last.end_time() - next.start_time).abs() <= tolerance::TIME_S
-        && wrap(last.end().heading - next.start.heading).abs() <= tolerance::JOINT_RAD
-        && (last.speed, last.turn_rate) == (next.speed, next.turn_rate)
 }
 
 /// Where a target is, as the previous plan assumed.

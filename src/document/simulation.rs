@@ -6,7 +6,7 @@ use super::encounter::ConductDocument;
 use super::memory::{StateDocument, steady};
 use super::parts::{PositionDocument, SegmentDocument, segment};
 use crate::colregs::SteadyShip;
-use crate::frame::Pose;
+use crate::vessel::Hull;
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
@@ -37,10 +37,11 @@ pub struct SimulationDocument {
 
 impl SimulationDocument {
     /// Own ship at a time in seconds; `None` where nothing was sailed. O(log segments).
-    pub fn own_at(&self, time: f64) -> Option<Pose> {
+    pub fn own_at(&self, time: f64) -> Option<SteadyShip> {
         let begun = self.sailed.partition_point(|s| s.start.t_s <= time);
         let last = segment(self.sailed.get(begun.saturating_sub(1))?);
-        Some(last.pose_at(time.clamp(last.start_time, last.end_time())))
+        let pose = last.pose_at(time.clamp(last.start_time, last.end_time()));
+        Some(SteadyShip::new(pose, last.speed))
     }
 }
 
@@ -51,6 +52,11 @@ impl SimulatedTargetDocument {
         let (from, mut ship) = steady(self.track.get(begun.saturating_sub(1))?, 0.0);
         ship.pose.position += ship.velocity() * (time - from);
         Some(ship)
+    }
+
+    /// The hull.
+    pub fn hull(&self) -> Hull {
+        Hull::new(self.length_m, self.beam_m)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A line or an arc at constant speed.
 
-use crate::frame::{Pose, Vector, direction};
+use crate::frame::{Pose, Vector, direction, wrap};
+use crate::tolerance;
 
 /// Motion at constant speed and turn rate: a straight line (turn rate 0), a circular arc, or a wait
 /// (speed 0). Exact at every time.
@@ -110,6 +111,15 @@ impl Segment {
     /// Signed radius of the arc in metres, positive to port; infinite on a line.
     pub fn radius(&self) -> f64 {
         self.speed / self.turn_rate
+    }
+
+    /// True for a segment that goes on from the end of this one in the same motion.
+    pub fn is_continued_by(&self, next: &Self) -> bool {
+        let end = self.end();
+        (end.position - next.start.position).norm() <= tolerance::JOINT_M
+            && (self.end_time() - next.start_time).abs() <= tolerance::TIME_S
+            && wrap(end.heading - next.start.heading).abs() <= tolerance::JOINT_RAD
+            && (self.speed, self.turn_rate) == (next.speed, next.turn_rate)
     }
 
     /// The part between two absolute times, clamped to the segment.

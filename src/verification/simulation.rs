@@ -7,7 +7,7 @@ use super::mismatch;
 use super::motion::segment;
 use crate::document::{SIMULATION_FORMAT, SimulationDocument, StateDocument};
 use crate::evaluation::{Body, MovingSlabs, Violation};
-use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::frame::Pose;
 use crate::geometry::ConvexPolygon;
 use crate::target::Uncertainty;
 use crate::trajectory::Segment;
@@ -112,7 +112,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
         let name = &target.name;
-        let hull = Hull::new(target.length_m, target.beam_m);
+        let hull = target.hull();
         let track = &target.track;
         if !(track.first().is_some_and(|state| state.at.t_s == 0.0)) {
             violations.push(mismatch(
@@ -122,7 +122,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
             ));
         }
         for pair in track.windows(2) {
-            let jump = (at(&pair[0], pair[1].at.t_s).position - pose(&pair[1]).position).norm();
+            let jump = (at(&pair[0], pair[1].at.t_s).position - pair[1].at.pose().position).norm();
             if !(pair[1].at.t_s > pair[0].at.t_s && jump <= DISTANCE_M) {
                 let what = format!("track of '{name}': a gap of {jump} m");
                 violations.push(Violation::new(what, pair[1].at.t_s));
@@ -291,7 +291,7 @@ fn least_distance(
             .get(index + 1)
             .map_or(f64::INFINITY, |next| next.at.t_s);
         let from = state.at.t_s;
-        let there = pose(state);
+        let there = state.at.pose();
         let velocity = ConvexPolygon::point(there.ahead() * state.speed_mps);
         let set = MovingSlabs::new(&Uncertainty::constant(hull.polygon(&there), velocity));
         for (s, gap) in sailed.iter().zip(gaps) {
@@ -313,16 +313,9 @@ fn least_distance(
     least
 }
 
-fn pose(state: &StateDocument) -> Pose {
-    Pose::new(
-        Vector::new(state.at.east_m, state.at.north_m),
-        heading_from_course_deg(state.at.course_deg),
-    )
-}
-
 /// Where a target is that has kept its course and speed since a state.
 fn at(state: &StateDocument, time: f64) -> Pose {
-    let then = pose(state);
+    let then = state.at.pose();
     let way = then.ahead() * (state.speed_mps * (time - state.at.t_s));
     Pose::new(then.position + way, then.heading)
 }

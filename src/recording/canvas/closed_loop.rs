@@ -2,14 +2,13 @@
 
 use super::{Bounds, Canvas, Palette, cursor_times};
 use crate::colregs::{self, SteadyShip};
-use crate::document::{self, PlanDocument, SimulationDocument};
-use crate::frame::Pose;
+use crate::document::{self, PlanDocument, SimulatedTargetDocument, SimulationDocument};
 use crate::geometry::ConvexPolygon;
 use crate::scenario::Scenario;
 use crate::target::{ShipTrack, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::Segment;
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::OwnShip;
 
 /// Most rows of what moves: one in ten seconds of an hour.
 const CURSOR_TIMES: f64 = 360.0;
@@ -21,8 +20,6 @@ pub struct ClosedLoop<'a> {
     pub canvas: Canvas<'a>,
     /// The plans in the order in which own ship follows them.
     pub plans: Vec<FollowedPlan>,
-    pub targets: Vec<TrueTarget>,
-    own: Vec<Segment>,
 }
 
 /// A plan that own ship follows from a time on.
@@ -41,15 +38,6 @@ pub struct AssumedTarget {
     hard: Uncertainty,
 }
 
-/// A target as it was.
-#[derive(Debug)]
-pub struct TrueTarget {
-    pub name: String,
-    pub hull: Hull,
-    /// It keeps each until the next.
-    states: Vec<(f64, SteadyShip)>,
-}
-
 impl<'a> ClosedLoop<'a> {
     /// `plans` are those that own ship followed, in their order.
     pub fn new(
@@ -59,18 +47,6 @@ impl<'a> ClosedLoop<'a> {
     ) -> Self {
         let end = simulation.duration_s.max(1.0);
         let times = cursor_times(end, CURSOR_TIMES);
-        let sailed = simulation.sailed.iter().map(document::segment);
-        let mut own: Vec<Segment> = sailed.collect();
-        if own.is_empty() {
-            own.push(Segment::straight(scenario.own_ship.pose, 0.0, 0.0, 0.0));
-        }
-        let targets = simulation.targets.iter().map(|target| TrueTarget {
-            name: target.name.clone(),
-            hull: Hull::new(target.length_m, target.beam_m),
-            states: (target.track.iter())
-                .map(|state| document::steady(state, 0.0))
-                .collect(),
-        });
         let followed = simulation.replans.iter().filter(|replan| replan.followed);
         let plans = followed
             .zip(plans)
@@ -80,8 +56,6 @@ impl<'a> ClosedLoop<'a> {
             simulation,
             canvas: Canvas::new(scenario, [], &[], end, Palette::Targets),
             plans: plans.filter(|plan| !plan.segments.is_empty()).collect(),
-            targets: targets.collect(),
-            own,
         };
         // the curves reach the reported values
         let samples = &mut closed_loop.canvas.samples;
@@ -104,16 +78,18 @@ impl<'a> ClosedLoop<'a> {
         for &time in times {
             let own = self.own_at(time).pose.position;
             points.push(own);
-            let targets = self.targets.iter().filter_map(|t| t.at(time));
+            let targets = self.simulation.targets.iter().filter_map(|t| t.at(time));
             let places = targets.map(|ship| ship.pose.position);
             points.extend(places.filter(|place| (place - own).norm() < near));
         }
         Bounds::around(points)
     }
 
-    /// Own ship.
+    /// Own ship; at rest at its start where nothing was sailed.
     pub fn own_at(&self, time: f64) -> SteadyShip {
-        on(&self.own, time)
+        let start = self.canvas.scenario.own_ship.pose;
+        let sailed = self.simulation.own_at(time);
+        sailed.unwrap_or_else(|| SteadyShip::new(start, 0.0))
     }
 
     /// The plan that own ship follows at a time; `None` before the first.
@@ -142,10 +118,10 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Metres between the hulls, negative in overlap.
-    pub fn clearance(&self, target: &TrueTarget, time: f64) -> Option<f64> {
+    pub fn clearance(&self, target: &SimulatedTargetDocument, time: f64) -> Option<f64> {
         let own = self.canvas.scenario.own_ship.hull;
         let own = own.polygon(&self.own_at(time).pose);
-        let other = target.hull.polygon(&target.at(time)?.pose);
+        let other = target.hull().polygon(&target.at(time)?.pose);
         Some(own.separation(&other))
     }
 }
@@ -188,19 +164,6 @@ impl AssumedTarget {
     /// The set that own ship's centre has to keep out of, from the outside.
     pub fn hard_at(&self, time: f64) -> ConvexPolygon {
         self.hard.outer_section(time)
-    }
-}
-
-impl TrueTarget {
-    /// The ship; `None` where nothing of it is known.
-    pub fn at(&self, time: f64) -> Option<SteadyShip> {
-        let begun = self.states.partition_point(|(from, _)| *from <= time);
-        let (from, ship) = self.states.get(begun.saturating_sub(1))?;
-        let position = ship.pose.position + ship.velocity() * (time - from);
-        Some(SteadyShip {
-            pose: Pose::new(position, ship.pose.heading),
-            ..*ship
-        })
     }
 }
 

@@ -111,7 +111,7 @@ pub fn of_simulation(model: &ClosedLoop) -> Logged<Recorder> {
         ("Distance off the plan (m)", OFF_PLAN),
         ("Time of planning (ms)", PLANNING),
     ];
-    let first = usize::from(model.targets.is_empty());
+    let first = usize::from(model.simulation.targets.is_empty());
     let plots = plot_views(to, canvas, &plots[first..])?;
     if let Some(range) = model.near_clearances() {
         to.set(

@@ -49,8 +49,12 @@ fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
 
 /// Logs the targets as the plan at the cursor assumes them: their hulls and their hard sets.
 fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
-    let names = model.targets.iter().map(|target| target.name.as_str());
-    let colors = (0..model.targets.len()).map(style::target);
+    let names = model
+        .simulation
+        .targets
+        .iter()
+        .map(|target| target.name.as_str());
+    let colors = (0..model.simulation.targets.len()).map(style::target);
     let sets = ships::set_style(style::CHART_TEXT, ships::HARD_RADIUS)
         .with_colors(colors)
         .with_labels(names.clone())
@@ -80,14 +84,14 @@ fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
 fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let canvas = &model.canvas;
     let colors: Vec<_> = std::iter::once(style::OWN_SHIP)
-        .chain((0..model.targets.len()).map(style::target))
+        .chain((0..model.simulation.targets.len()).map(style::target))
         .collect();
     let ships = |time: f64| {
         let own = Some((model.own_at(time), canvas.scenario.own_ship.hull));
         let targets = model
             .targets
             .iter()
-            .map(move |target| Some((target.at(time)?, target.hull)));
+            .map(move |target| Some((target.at(time)?, target.hull())));
         std::iter::once(own)
             .chain(targets)
             .collect::<Option<Vec<_>>>()
@@ -116,7 +120,11 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
             .with_positions(places)
             .columns(vec![colors.len(); rows])
     };
-    let names = model.targets.iter().map(|target| target.name.as_str());
+    let names = model
+        .simulation
+        .targets
+        .iter()
+        .map(|target| target.name.as_str());
     let names = Points2D::update_fields()
         .with_colors(colors.iter().copied())
         .with_radii([style::points(0.0)])
@@ -173,7 +181,7 @@ pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
         curves::log_plot(rec, path(&[entity]), times, Linear, series)
     };
     let mut series = Vec::new();
-    for (index, target) in model.targets.iter().enumerate() {
+    for (index, target) in model.simulation.targets.iter().enumerate() {
         let distances = canvas
             .samples
             .iter()

@@ -10,7 +10,6 @@ use crate::frame::{Pose, Vector, to_port};
 use crate::report::simulation::headline;
 use crate::scenario::Scenario;
 use crate::text::tenths;
-use crate::vessel::Hull;
 
 /// Stroke between the centres of the hulls at the closest approach.
 const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.6);
@@ -47,7 +46,7 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
     let interval = interval.unwrap_or(end / INSTANTS);
     let times = (0..=(end / interval) as usize).map(|k| k as f64 * interval);
     let times: Vec<f64> = times.collect();
-    let own = |time: &f64| simulation.own_at(*time).map(|pose| pose.position);
+    let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose.position);
     let targets = &simulation.targets;
     let mut others = Vec::new();
     for (index, target) in targets.iter().enumerate() {
@@ -77,8 +76,9 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
         targets: targets.iter().map(|target| target.name.as_str()).collect(),
         area: &|index, time| {
             let (target, ship) = (&targets[index], targets[index].at(time));
-            let hull = Hull::new(target.length_m, target.beam_m);
-            ship.map_or(Vec::new(), |s| hull.polygon(&s.pose).vertices().to_vec())
+            ship.map_or(Vec::new(), |s| {
+                target.hull().polygon(&s.pose).vertices().to_vec()
+            })
         },
         words: ["track of own ship", "hulls", "hull and track of "],
         dashed: false,
@@ -86,7 +86,7 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
     };
     let mut panel = traffic_chart("Sailed", scenario, traffic);
     for time in &times {
-        let Some(own) = simulation.own_at(*time) else {
+        let Some(own) = simulation.own_at(*time).map(|own| own.pose) else {
             continue;
         };
         let label = format!("{} s", seconds(*time));

@@ -13,9 +13,6 @@ use rand_chacha::ChaCha8Rng;
 /// m/s. A slower ship has no course over ground.
 const NO_WAY: f64 = 1e-3;
 
-/// Metres, seconds and radians: segments that meet so closely are one.
-const JOINT: f64 = 1e-9;
-
 /// Own ship, which follows its plan exactly or is steered.
 #[derive(Debug, Clone)]
 pub(super) struct Own {
@@ -129,17 +126,9 @@ pub(super) fn join(sailed: &mut Vec<Segment>, motion: &OwnMotion, time: f64) {
             start_time: part.start_time + time,
             ..part
         };
-        match sailed.last_mut().filter(|last| continues(last, &part)) {
+        match sailed.last_mut().filter(|last| last.is_continued_by(&part)) {
             Some(last) => last.duration = part.end_time() - last.start_time,
             None => sailed.push(part),
         }
     }
-}
-
-fn continues(last: &Segment, next: &Segment) -> bool {
-    let end = last.end();
-    (last.speed, last.turn_rate) == (next.speed, next.turn_rate)
-        && (end.position - next.start.position).norm() <= JOINT
-        && (end.heading - next.start.heading).abs() <= JOINT
-        && (last.end_time() - next.start_time).abs() <= JOINT
 }
