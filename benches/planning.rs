@@ -8,8 +8,11 @@ use searoom::obstacle::{LandObstacle, Obstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
-use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
+use encounter_generator::{EncounterKind, Placement, random_encounter, random_traffic};
+
+#[path = "../tests/campaigns/encounter_generator.rs"]
+mod encounter_generator;
 #[path = "../examples/shared/new_york.rs"]
 mod new_york;
 

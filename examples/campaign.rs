@@ -13,12 +13,12 @@ use std::panic::catch_unwind;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use campaigns::encounter_generator::Meeting;
 use campaigns::{
     Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
     path_time, replanning, simulation, wild,
 };
 use clap::{Args, Parser, Subcommand};
-use searoom::simulation::Meeting;
 
 #[derive(Parser)]
 #[command(about = "Runs a campaign over random scenes, prints its table, and checks its bounds")]
@@ -56,7 +56,7 @@ enum Campaign {
         /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
         #[arg(long)]
         far: bool,
-        /// What the targets do
+        /// Motion of the targets
         #[arg(long, value_enum, default_value = "constant")]
         targets: replanning::Behaviour,
         /// Own ship is up to this far off its plan when the next is made: its tracking margin, metres
@@ -76,13 +76,13 @@ enum Campaign {
         /// Meetings that begin 300 to 900 s before the closest approach, not 100 to 220 s
         #[arg(long)]
         far: bool,
-        /// What the targets do
+        /// Motion of the targets
         #[arg(long, value_enum, default_value = "constant")]
         behaviour: simulation::Truth,
         /// Random and extreme targets exceed their spreads by this factor
         #[arg(long, default_value_t = 1.0)]
         factor: f64,
-        /// What own ship sees
+        /// Own ship's sensor
         #[arg(long, value_enum, default_value = "exact")]
         seen: simulation::Seen,
         /// How own ship moves

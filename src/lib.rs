@@ -70,7 +70,7 @@
 //! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |
 //! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
-//! | [`simulation`] | random encounters; scenarios sailed in the closed loop |
+//! | [`simulation`] | scenarios sailed in the closed loop |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
 //! | [`document`] | published documents: the single description of a result |
 //! | [`report`] | tables, HTML pages and figures |
@@ -124,6 +124,10 @@
 //! ```
 
 #![warn(missing_docs)]
+
+// the random encounters of the tests name the crate as its users do
+#[cfg(test)]
+extern crate self as searoom;
 
 // first, because its macro is used in the modules below
 #[macro_use]

@@ -278,12 +278,6 @@ impl Target {
         }
     }
 
-    /// Polygon around the possible positions at `time >= 0` of a target with explicit sets, metres;
-    /// `None` for a tracked ship.
-    pub fn outer_set_at(&self, time: f64) -> Option<ConvexPolygon> {
-        self.sets().map(|sets| sets.outer_section(time))
-    }
-
     /// Metres between a hull at `pose` and the target's nominal hull at `time`, negative in overlap.
     /// For explicit sets: from the centre of the hull, as they include it.
     pub fn distance_from(&self, hull: &Hull, pose: &Pose, time: f64) -> f64 {

@@ -5,10 +5,11 @@ use searoom::frame::{
     Geographic, Georeference, KNOT_MPS, Pose, Vector, direction, heading_from_course_deg,
 };
 use searoom::scenario::Scenario;
-use searoom::simulation::{EncounterKind, Placement, random_encounter};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
+
+use super::encounter_generator::{EncounterKind, Placement, random_encounter};
 
 /// Speed in knots below which a vessel is at rest.
 const AT_REST_KN: f64 = 1.0;
@@ -63,7 +64,8 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
         });
     }
     // settings independent of the positions
-    let settings = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin)?.scenario;
+    let settings = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin);
+    let settings = settings.ok_or("no encounter")?.scenario;
     let under_way = (0..ships.len()).filter(|i| ships[*i].speed > 0.0);
     under_way.map(|own| scene(&settings, &ships, own)).collect()
 }

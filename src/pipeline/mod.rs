@@ -94,12 +94,6 @@ impl Run {
         self.targets.iter().any(|target| target.released.is_some())
     }
 
-    /// True where some part of a ship domain is retained.
-    pub fn uses_domains(&self) -> bool {
-        let mut targets = self.targets.iter();
-        targets.any(|target| target.whole != target.sets.hard)
-    }
-
     /// True where no plan keeps to the rules, and one without them is given.
     pub fn gives_up_rules(&self) -> bool {
         let mut relaxations = self.relaxations.iter();

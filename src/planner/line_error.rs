@@ -206,7 +206,7 @@ fn near(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> Vec
     legs.into_iter().map(|(_, from)| from).collect()
 }
 
-/// Nearest leg just after a time. Of equally near legs, the one that comes nearer.
+/// Nearest leg just after a time; among equally near legs, the one that comes nearer.
 fn nearest_at(legs: &[FromLeg], time: f64) -> Option<usize> {
     let values: Vec<f64> = legs.iter().map(|l| l.part(time).1.at(time)).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -116,7 +116,7 @@ const MISTAKES: &str = r#"
     [mission] | [mission]\nspeed_mps = 0 | mission.speed_mps
 "#;
 
-/// The same for a target; more faults may follow.
+/// Mistakes in a target and the field that is named; more faults may follow.
 const SHIP_MISTAKES: &str = r#"
     "ship" | " " | targets[0].name
     beam_m | speed_spread_mps = -0.1\nbeam_m | targets[0].speed_spread_mps

@@ -1,10 +1,10 @@
-//! Random encounters for tests, benches and documentation; scenarios sailed in the closed loop.
+//! Scenarios sailed in the closed loop.
 
 mod closed_loop;
+#[cfg(test)]
+#[path = "../../tests/campaigns/encounter_generator.rs"]
 mod encounter_generator;
 
 pub use closed_loop::Simulation;
-pub use encounter_generator::{
-    EncounterKind, GeneratorError, Meeting, Placement, RandomEncounter, random_encounter,
-    random_meeting, random_traffic,
-};
+#[cfg(test)]
+pub(crate) use encounter_generator::{EncounterKind, Placement, random_encounter, random_traffic};

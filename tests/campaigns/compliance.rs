@@ -6,8 +6,8 @@ use searoom::colregs::{
     compliance::{ComplianceReport, EncounterSamples},
 };
 use searoom::pipeline::{self, Run};
-use searoom::simulation::{EncounterKind, Meeting};
 
+use super::encounter_generator::{EncounterKind, Meeting};
 use super::statistics::{quantiles, share_cells};
 use super::{Report, Seeds, meetings};
 

@@ -131,8 +131,7 @@ pub fn straight(task: &Task<CyberShip2>) -> Profile {
     profile_along(task, &(0..=task.intervals).map(place).collect::<Vec<_>>())
 }
 
-/// Of the way that is meant to be made: how far a wave of a wandering way goes to either side, at
-/// most.
+/// Largest amplitude of a wave of a wandering way, as a fraction of the intended length.
 const WAVE: f64 = 0.18;
 
 /// A way that wanders to the sides in three waves, as far as a third of its length, at a pace that

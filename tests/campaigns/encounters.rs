@@ -14,14 +14,14 @@ use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::Outcome;
-use searoom::simulation::{
-    EncounterKind, Placement, RandomEncounter, random_encounter, random_traffic,
-};
 use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;
 use searoom::vessel::OwnShip;
 
 use super::behaviour::{Behaviour, Signal};
+use super::encounter_generator::{
+    EncounterKind, Placement, RandomEncounter, random_encounter, random_traffic,
+};
 use super::passing::crosses_ahead;
 use super::statistics::{quantile, spread};
 use super::{Report, Seeds};

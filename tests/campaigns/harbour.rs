@@ -10,11 +10,11 @@ use searoom::map::Map;
 use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Land, Scenario};
-use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
+use super::encounter_generator::{Placement, random_traffic};
 use super::statistics::spread;
 use super::{Report, Seeds};
 

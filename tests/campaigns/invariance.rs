@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
 use searoom::scenario::{Compliance, Scenario};
-use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
+use super::encounter_generator::{Placement, random_traffic};
 use super::{Report, Seeds};
 
 /// Cost in m². Smaller costs are equal if their difference is below a millionth of this.

@@ -9,6 +9,7 @@ pub mod control;
 pub mod control_scenes;
 pub mod dense_search;
 pub mod documents;
+pub mod encounter_generator;
 pub mod encounters;
 pub mod harbour;
 pub mod invariance;
@@ -25,7 +26,8 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use searoom::scenario::{Compliance, Scenario};
-use searoom::simulation::{EncounterKind, Meeting, Placement, random_meeting};
+
+use encounter_generator::{EncounterKind, Meeting, Placement, random_meeting};
 
 /// Seeds of the scenes of a campaign.
 pub type Seeds = std::ops::Range<u64>;

@@ -164,7 +164,7 @@ fn waiting(desired: &DesiredTrajectory, arrival: f64, time_weight: f64) -> f64 {
 }
 
 /// The least space-time error on the grid, m²; `None` when the end is not reached before the
-/// horizon. What it finds is a plan, so nothing is the least that costs more. The error is
+/// horizon. The result is the cost of a plan, so it is at least the minimum. The error is
 /// integrated by Simpson's rule over each step.
 pub fn least_error(
     path: &Path,

@@ -13,11 +13,11 @@ use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
 use searoom::scenario::{Memory, Scenario};
-use searoom::simulation::{EncounterKind, Meeting};
 use searoom::target::{Motion, ShipTrack};
 use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};
 use searoom::trajectory::Segment;
 
+use super::encounter_generator::{EncounterKind, Meeting};
 use super::statistics::{quantiles, share_cells};
 use super::{Report, Seeds, meetings};
 
@@ -31,7 +31,7 @@ const CONTENT: f64 = 0.98;
 /// Seconds after which a run ends.
 const LONGEST_S: f64 = 3000.0;
 
-/// What a target does.
+/// Motion of a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Behaviour {
     /// Keeps course and speed
@@ -79,7 +79,7 @@ pub struct How {
     pub memory: bool,
 }
 
-/// What one encounter came to.
+/// Result of one encounter.
 pub struct Sailed {
     pub seed: u64,
     /// Rules and monitors that the sailed motion breaks.

@@ -5,12 +5,13 @@ use searoom::frame::radians_from_deg;
 use searoom::scenario::{
     Behaviour, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
-use searoom::simulation::{EncounterKind, Meeting, Simulation};
+use searoom::simulation::Simulation;
 
+use super::encounter_generator::{EncounterKind, Meeting};
 use super::statistics::{failure_bound, quantiles, share_cells};
 use super::{Report, Seeds, meetings};
 
-/// What a target does.
+/// Motion of a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Truth {
     /// Keeps course and speed
@@ -19,11 +20,11 @@ pub enum Truth {
     Random,
     /// Another extreme course and speed within its spreads every 20 s
     Extremes,
-    /// Of its courses and speeds those that come nearest
+    /// The course and speed within its spreads that come nearest
     Pursuit,
     /// Turns 40 degrees to starboard 300 s before the closest approach
     GivesWay,
-    /// The same 120 s before
+    /// Turns 40 degrees to starboard 120 s before
     GivesWayLate,
     /// Turns 40 degrees to port 120 s before
     TurnsToPort,
@@ -31,7 +32,7 @@ pub enum Truth {
     Mutual,
 }
 
-/// What own ship sees.
+/// Own ship's sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Seen {
     /// The truth

@@ -1,5 +1,5 @@
-//! What once went wrong with files and options that nobody means, run as a user runs it. Each test
-//! is named after what holds now.
+//! Regressions with unusual files and options, run as a user runs them. Each test is named after
+//! the behaviour that holds now.
 
 use super::program::{Folder, HEAD_ON, document, json, rows, run, says, searoom, stderr, text};
 use predicates::prelude::PredicateBooleanExt;
@@ -159,7 +159,7 @@ fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
         .stdout(contains("verified"));
 }
 
-/// What replaces the intervals of figure 9, and what is said of it.
+/// A replacement of the intervals of figure 9, and the message.
 const INTERVALS: &str = r#"
 intervals = 1.5 | found 1.5; allowed: a whole number from 1 to 2000
 intervals = 50\ncontrol_weights = [0, 1, 1] | found 0; allowed: a number from 1e-24 to

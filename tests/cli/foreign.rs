@@ -128,8 +128,7 @@ fn foreign_files_are_compared_and_assessed() {
         .stderr(contains("22 situations; `searoom suite` runs them"));
 }
 
-/// What is imported is what is run: the same documents, but for the file, the clock and what was
-/// noted.
+/// An imported file and its original give equal documents, except for file name, clock and notes.
 #[test]
 fn imported_files_run_as_their_originals() {
     let folder = Folder::new();

@@ -78,8 +78,8 @@ fn rules_are_kept_by_the_space_time_planner_alone() {
         .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
 }
 
-/// What the path-time planner cannot plan, and what other planners cannot: the lines before the
-/// mission, its alternatives, and what is said. `TIME` is the table of the path-time planner.
+/// Requests that the path-time planner or another planner refuses: the lines before the mission, its
+/// alternatives, and the message. `TIME` is the table of the path-time planner.
 const UNFIT: &str = r#"
 TIME\nobjective = "length-risk" | | planner.risk_weight_m: found nothing
 TIME\nrisk_weight_m = 5 | | only the objective "length-risk"

@@ -1,4 +1,4 @@
-//! What a user does with results.
+//! Uses of results: verifying, comparing, reporting, recording and inspecting.
 
 use std::fs;
 
@@ -174,7 +174,7 @@ fn a_plan_on_a_path_says_why_it_has_no_time_of_no_return() {
     assert!(document(&plan).get("time_of_no_return_s").is_none());
 }
 
-/// What is no plan document is said to be none, and what it is.
+/// The message for another document says that it is no plan document, and which kind it is.
 #[test]
 fn other_documents_are_no_plans() {
     let folder = Folder::new();
@@ -315,7 +315,7 @@ mod recordings {
         assert!(whole["escape"]["held_until_s"].is_f64(), "{whole}");
     }
 
-    /// What `--no-return` adds to the document is in the recording, too.
+    /// The recording contains the key that `--no-return` adds to the document.
     #[test]
     fn the_time_of_no_return_is_recorded() {
         let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! What is said of a plan: verified, safe, and in which word, the same in every view.
+//! Every view of a plan agrees: whether it is verified and safe, and the word of its outcome.
 
 use std::fs;
 
@@ -173,8 +173,8 @@ fn a_document_that_is_wrong_about_its_safety_is_rejected() {
     }
 }
 
-/// What a document says in its texts is shown, not done: a terminal sees no control character and
-/// no line that is not ours.
+/// Texts of a document are shown, not obeyed: a terminal sees no control character and no line of
+/// their own.
 #[test]
 fn control_characters_of_others_are_shown_as_codes() {
     let said = stdout(&searoom(&["verify", "tests/faults/verify-spoof.json"]).code(1));
@@ -251,7 +251,7 @@ fn a_suite_skips_what_does_not_apply() {
         .stderr(contains("planner.compliance"));
 }
 
-/// What was given up stands in a suite's document as in that of the plan.
+/// A suite's document names the relaxations that the plan document names.
 #[test]
 fn a_suite_says_what_was_given_up() {
     let folder = Folder::new();

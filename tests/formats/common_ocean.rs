@@ -120,7 +120,7 @@ fn a_ship_that_appears_late_and_slows_is_in_her_sets() {
     assert!(target.changes().len() > 1);
     let clearance = 0.5 * 90.0_f64.hypot(15.0) + 0.5 * 100.0_f64.hypot(20.0) + 100.0;
     let depth = |time: f64, north: f64| {
-        let set = target.outer_set_at(time).expect("sets");
+        let set = target.sets().expect("sets").outer_section(time);
         -set.signed_distance(Vector::new(0.0, north))
     };
     for (time, north) in [

@@ -231,7 +231,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
 /// Clearance deficit in metres: by how much a target at a position is too near to the edge of its
 /// set.
 fn check(target: &Target, at: Vector, time: f64, clearance: f64) -> f64 {
-    let set = target.outer_set_at(time).expect("explicit sets");
+    let set = target.sets().expect("explicit sets").outer_section(time);
     set.signed_distance(at) + clearance
 }
 

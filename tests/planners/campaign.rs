@@ -1,7 +1,6 @@
 //! Each campaign with few scenes; `examples/campaign.rs` runs more.
 
-use searoom::simulation::Meeting;
-
+use crate::campaigns::encounter_generator::Meeting;
 use crate::campaigns::replanning::{self, Behaviour, How};
 use crate::campaigns::{
     compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time, wild,

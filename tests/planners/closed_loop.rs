@@ -3,9 +3,10 @@
 use searoom::document::SimulationDocument;
 use searoom::frame::{Pose, Vector};
 use searoom::scenario::{Behaviour, Fault, NotReported, Scenario, SimulationSettings, VesselModel};
-use searoom::simulation::{EncounterKind, Meeting, Simulation};
+use searoom::simulation::Simulation;
 use searoom::vessel::Hull;
 
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
 use crate::campaigns::simulation::{How, Seen, Ship, Truth, run, sail};
 use crate::campaigns::{self, replanning};
 

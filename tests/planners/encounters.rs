@@ -7,10 +7,12 @@ use searoom::frame::{Pose, Vector};
 use searoom::pipeline;
 use searoom::planner::{EdgeVerdict, NodeKind, SearchKind};
 use searoom::scenario::{Compliance, Scenario};
-use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
 
 use crate::campaigns::behaviour::Signal;
+use crate::campaigns::encounter_generator::{
+    EncounterKind, Placement, random_encounter, random_traffic,
+};
 use crate::campaigns::encounters::{claims_of, least_hull_distance, least_sampled, planned};
 use crate::campaigns::harbour::{QUAYS, across_the_island, harbour, scene};
 use crate::campaigns::invariance as moved;

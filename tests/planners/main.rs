@@ -8,6 +8,7 @@ mod closed_loop;
 mod conformance;
 mod control_solver;
 mod encounters;
+mod generator;
 mod land;
 mod long_routes;
 mod optimal_control;

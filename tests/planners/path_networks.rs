@@ -14,7 +14,7 @@ fn document(run: &Run) -> Value {
     serde_json::to_value(PlanDocument::of(run)).expect("JSON")
 }
 
-/// What is wrong with a document; empty where nothing is.
+/// Violations of a document; empty for a sound one.
 fn faults(document: &Value) -> String {
     match verify(&document.to_string()) {
         Ok(found) if found.verified() => String::new(),

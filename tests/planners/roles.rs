@@ -1,7 +1,8 @@
 //! Tests of encounter classification on scenes of a known kind anywhere in the plane.
 
 use searoom::pipeline::{TargetSets, sets};
-use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
+use crate::campaigns::encounter_generator::{EncounterKind, Placement, random_encounter};
 
 fn judged(kind: EncounterKind, seed: u64, placement: Placement) -> TargetSets {
     let drawn = random_encounter(kind, seed, placement).expect("a scene");

@@ -4,6 +4,8 @@ mod assessment;
 mod changing_ellipses;
 mod definitions;
 mod ellipsoid_velocity_obstacle;
+#[path = "../campaigns/encounter_generator.rs"]
+mod encounter_generator;
 mod generators;
 mod metamorphic;
 mod obstacles;

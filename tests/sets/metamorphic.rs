@@ -95,7 +95,7 @@ impl Map {
     }
 }
 
-/// What is asked of a set: a position, a time, a velocity, a horizon and a motion.
+/// A question about a set: a position, a time, a velocity, a horizon and a motion.
 type Question = (Vector, f64, Vector, f64, Segment);
 
 fn question() -> impl Strategy<Value = Question> {

@@ -10,9 +10,10 @@ use searoom::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, Relaxation, Run};
 use searoom::planner::{Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Scenario};
-use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 use searoom::target::{Motion, Representation};
 use searoom::tolerance;
+
+use crate::encounter_generator::{EncounterKind, Placement, random_encounter, random_traffic};
 
 /// Named change of a scenario.
 type Change = (&'static str, fn(&mut Scenario));

@@ -1,4 +1,4 @@
-//! What the check accepts as a plan document, and what it says of anything else.
+//! Plan documents that the check accepts, and its message for anything else.
 
 use searoom::document::PlanDocument;
 use searoom::pipeline;

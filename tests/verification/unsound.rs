@@ -158,8 +158,8 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
     );
 }
 
-/// Of several velocity sets each one after the first, too small alone: given outright, of a ship
-/// that may turn, and at a risk.
+/// Each velocity set after the first is too small alone: an explicit set, one of a ship that may
+/// turn, and one at a risk.
 #[test]
 fn each_later_velocity_set_that_is_too_small_is_found() {
     let mut at_risk = scenario("uncertainty/turning.toml");

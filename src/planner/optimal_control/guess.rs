@@ -24,10 +24,6 @@ pub enum Start {
     /// Desired trajectory, bent around the sets it meets; bit `k` gives the side for the `k`-th
     /// worst one.
     Sided(usize),
-    /// Solution on a coarser grid.
-    Refined,
-    /// Provided by the caller.
-    Given,
 }
 
 impl std::fmt::Display for Start {
@@ -36,8 +32,6 @@ impl std::fmt::Display for Start {
             Self::SpaceTime => f.write_str("space-time"),
             Self::Lateral(index) => write!(f, "lateral {}", index + 1),
             Self::Sided(sides) => write!(f, "sides {}", sides + 1),
-            Self::Refined => f.write_str("refined"),
-            Self::Given => f.write_str("given"),
         }
     }
 }

@@ -40,7 +40,7 @@ const SAME_OBJECTIVE: f64 = 1e-6;
 /// worst sets on either side in every combination.
 ///
 /// The cubics between the nodes are clear of every set. The ship model without smoothing meets the
-/// next node to [`tolerance::DEFECT`] of its units. The same problem gives the same plan with any
+/// next node to [`tolerance::DEFECT`] of its units. Equal problems give equal plans with any
 /// number of threads, unless the deadline is reached.
 pub fn plan(problem: &Problem, settings: &ControlSettings) -> Planned {
     match settings.vessel {

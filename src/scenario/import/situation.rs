@@ -119,9 +119,4 @@ impl Situation {
     pub fn declared(&self) -> &Declared {
         &self.declared
     }
-
-    /// Number of other ships and objects.
-    pub fn others(&self) -> usize {
-        self.others.len()
-    }
 }

@@ -216,11 +216,6 @@ impl Simulation {
         &self.scenario.simulation
     }
 
-    /// Seconds since the scenario's time.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
     /// True at the end of the plan that own ship follows, and at the end of the simulation.
     pub fn finished(&self) -> bool {
         let end = self.active.end().min(self.duration);

@@ -87,7 +87,7 @@ impl TargetSensor {
         }
     }
 
-    /// A measurement, unless it is lost. The same random numbers are drawn for every report.
+    /// A measurement, unless it is lost. Every report draws the same number of random values.
     fn measure(&mut self, time: f64, target: &SteadyShip) -> Option<Report> {
         let mut drawn = || normal(&mut self.rng);
         let off = Vector::new(drawn(), drawn());

@@ -4,9 +4,11 @@ use rayon::prelude::*;
 use searoom::obstacle::{LandObstacle, Obstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Problem, SearchKind, space_time};
-use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
 use super::{Answer, DenseSearch, recheck};
+use crate::campaigns::encounter_generator::{
+    EncounterKind, Placement, random_encounter, random_traffic,
+};
 use crate::campaigns::encounters::planned;
 use crate::campaigns::statistics::quantile;
 use crate::campaigns::{Report, Seeds};

@@ -1,11 +1,11 @@
-//! A search over (east, north, heading, time) that is small, slow and obviously right: what the
-//! space-time planner's cost is measured against.
+//! Small, slow reference search over (east, north, heading, time), against which the space-time
+//! planner's cost is measured.
 //!
 //! Own ship steps `STEP` seconds at a time at one of its speeds, straight on or on its smallest
 //! circle to either side. States stay continuous; of those that fall into one cell at one time only
 //! the most promising goes on. From every state that goes on the ship also tries to close: back
-//! to the desired path, recover the lag, steer to the end. What comes out is a trajectory of the
-//! same ship, clear of the same sets (sampled in time), so its cost is an upper bound of the
+//! to the desired path, recover the lag, steer to the end. The result is a trajectory of the same
+//! ship, clear of the same sets (sampled in time), so its cost is an upper bound of the
 //! optimum. It is not the optimum: turns come in multiples of a step and cells merge, which costs a
 //! few per cent. A planner that this search does not beat has a ratio of at most 1.
 //!
@@ -83,7 +83,7 @@ pub struct Found {
     pub trajectory: Trajectory,
 }
 
-/// What a search found and what it took.
+/// Result and effort of a search.
 #[derive(Debug, Clone)]
 pub struct Answer {
     /// The cheapest trajectory below the incumbent, if any.

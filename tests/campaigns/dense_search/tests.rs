@@ -1,10 +1,10 @@
 //! The search on its own: hand cases, and the bound against what was in fact still to come.
 
 use super::*;
+use crate::campaigns::encounter_generator::{EncounterKind, Placement, random_encounter};
 use searoom::obstacle::{LandObstacle, Obstacle};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
-use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
 fn scene(kind: EncounterKind, seed: u64, placement: Placement) -> Scenario {
     random_encounter(kind, seed, placement)

@@ -290,7 +290,7 @@ const SEAMANSHIP: &str = "
     overtaken, turns early | astern | 30s -60° 300s | 17(a)(i) R6
 ";
 
-/// What the judges let pass, and what they still see.
+/// The judges name the rules that each manoeuvre of the table breaks, and no others.
 #[test]
 fn poor_seamanship_is_caught_by_its_rule() {
     for [name, target, legs, broken] in rows(SEAMANSHIP) {
