@@ -7,10 +7,11 @@
 mod shared;
 
 use searoom::frame::Vector;
-use searoom::report::figure::{Figure, FigureError, PlotWindow, risk_panel};
+use searoom::geometry::Window;
+use searoom::report::figure::{Figure, FigureError, risk_panel};
 
 fn main() -> Result<(), FigureError> {
-    let window = PlotWindow::new(Vector::new(-20.0, -75.0), Vector::new(140.0, 75.0));
+    let window = Window::new(Vector::new(-20.0, -75.0), Vector::new(140.0, 75.0));
     let mut panels = Vec::new();
     for (kind, target) in [
         ("polytope", shared::figure_1()),

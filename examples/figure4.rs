@@ -8,11 +8,12 @@
 mod shared;
 
 use searoom::frame::Vector;
-use searoom::report::figure::{Figure, FigureError, PlotWindow, VelocityWindow, dcpa_panel};
+use searoom::geometry::Window;
+use searoom::report::figure::{Figure, FigureError, VelocityWindow, dcpa_panel};
 
 fn main() -> Result<(), FigureError> {
     let shown = VelocityWindow {
-        window: PlotWindow::new(Vector::new(-2.0, -2.0), Vector::new(3.0, 2.0)),
+        window: Window::new(Vector::new(-2.0, -2.0), Vector::new(3.0, 2.0)),
         own: None,
     };
     let from = Vector::new(50.0, 50.0);

@@ -45,6 +45,21 @@ impl Window {
         }
     }
 
+    /// Size, `high - low`.
+    pub fn size(&self) -> Vector {
+        self.high - self.low
+    }
+
+    /// Centre.
+    pub fn center(&self) -> Vector {
+        (self.low + self.high) / 2.0
+    }
+
+    /// True for a point inside; false for NaN.
+    pub fn contains(&self, p: Vector) -> bool {
+        p.x >= self.low.x && p.x <= self.high.x && p.y >= self.low.y && p.y <= self.high.y
+    }
+
     /// True where two boxes have a point in common. A NaN is near.
     pub fn meets(&self, other: &Self) -> bool {
         // negated so that a NaN is near

@@ -12,7 +12,8 @@ mod parry;
 mod polygon;
 mod simplify;
 
-pub(crate) use boxes::{Window, clipped};
+pub use boxes::Window;
+pub(crate) use boxes::clipped;
 pub use convex::{ConvexPolygon, GeometryError};
 pub use convex_set::ConvexSet;
 pub use disc::{DISC_SIDES, outer_disc};

@@ -1,9 +1,9 @@
 //! One simulation, prepared for the views.
 
-use super::{Bounds, Canvas, Palette, cursor_times};
+use super::{Canvas, Palette, cursor_times, with_sea};
 use crate::colregs::{self, SteadyShip};
 use crate::document::{self, PlanDocument, SimulatedTargetDocument, SimulationDocument};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, Window};
 use crate::scenario::Scenario;
 use crate::target::{ShipTrack, Uncertainty};
 use crate::tolerance;
@@ -69,7 +69,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// The desired trajectory, the plans, and every ship while it is near own ship.
-    fn bounds(&self, times: &[f64]) -> Bounds {
+    fn bounds(&self, times: &[f64]) -> Window {
         let desired = &self.canvas.scenario.desired;
         let near = 0.6 * desired.length();
         let mut points = desired.waypoints();
@@ -82,7 +82,7 @@ impl<'a> ClosedLoop<'a> {
             let places = targets.map(|ship| ship.pose.position);
             points.extend(places.filter(|place| (place - own).norm() < near));
         }
-        Bounds::around(points)
+        with_sea(&points)
     }
 
     /// Own ship; at rest at its start where nothing was sailed.

@@ -16,6 +16,7 @@ use rerun::{Color, TimeColumn};
 
 use super::TIMELINE;
 use crate::frame::Vector;
+use crate::geometry::Window;
 use crate::obstacle::Obstacle;
 use crate::pipeline::TargetSets;
 use crate::scenario::{Compliance, Scenario};
@@ -28,60 +29,6 @@ const CURSOR_TIMES: f64 = 120.0;
 
 /// Most samples of one curve.
 const CURVE_SAMPLES: f64 = 400.0;
-
-/// A box in the plane, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    pub low: Vector,
-    pub high: Vector,
-}
-
-impl Bounds {
-    fn of(points: impl IntoIterator<Item = Vector>) -> Self {
-        let mut bounds = Self {
-            low: Vector::repeat(f64::INFINITY),
-            high: Vector::repeat(f64::NEG_INFINITY),
-        };
-        for p in points {
-            bounds.low = bounds.low.inf(&p);
-            bounds.high = bounds.high.sup(&p);
-        }
-        bounds
-    }
-
-    /// Bounds that leave sea around the points.
-    fn around(points: impl IntoIterator<Item = Vector>) -> Self {
-        let bounds = Self::of(points);
-        let bounds = bounds.grown(0.06 * bounds.extent());
-        // a straight run is a line: leave sea on both sides of it
-        let short = 0.45 * bounds.extent();
-        let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
-        Self {
-            low: bounds.low - missing,
-            high: bounds.high + missing,
-        }
-    }
-
-    pub fn grown(self, by: f64) -> Self {
-        Self {
-            low: self.low.add_scalar(-by),
-            high: self.high.add_scalar(by),
-        }
-    }
-
-    pub fn size(&self) -> Vector {
-        self.high - self.low
-    }
-
-    pub fn center(&self) -> Vector {
-        (self.low + self.high) / 2.0
-    }
-
-    /// The longer side.
-    pub fn extent(&self) -> f64 {
-        self.size().max()
-    }
-}
 
 /// Things that colours distinguish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +51,7 @@ pub struct Canvas<'a> {
     /// Seconds: the times at which curves are sampled.
     pub samples: Vec<f64>,
     /// The part of the sea that is shown.
-    pub bounds: Bounds,
+    pub bounds: Window,
     /// Metres of height per second in the space-time volume.
     pub metres_per_second: f64,
     pub palette: Palette,
@@ -129,7 +76,7 @@ impl<'a> Canvas<'a> {
             cursor_times,
             samples,
             bounds,
-            metres_per_second: one_digit(0.65 * bounds.extent() / end),
+            metres_per_second: one_digit(0.65 * bounds.size().max() / end),
             palette,
         }
     }
@@ -209,7 +156,7 @@ fn steps(end: f64, step: f64) -> Vec<f64> {
 }
 
 /// The desired trajectory, the motions, and every target while it is near one of them.
-fn bounds(scenario: &Scenario, motions: &[ShownMotion], times: &[f64]) -> Bounds {
+fn bounds(scenario: &Scenario, motions: &[ShownMotion], times: &[f64]) -> Window {
     let desired = &scenario.desired;
     let near = 0.6 * desired.length();
     let mut points = desired.waypoints();
@@ -222,5 +169,15 @@ fn bounds(scenario: &Scenario, motions: &[ShownMotion], times: &[f64]) -> Bounds
             points.extend(targets.filter(|p| (p - own).norm() < near));
         }
     }
-    Bounds::around(points)
+    with_sea(&points)
+}
+
+/// The box around points, with sea on all sides.
+fn with_sea(points: &[Vector]) -> Window {
+    let tight = Window::around(points).unwrap_or_else(|| Window::at(Vector::zeros()));
+    let bounds = tight.grown(0.06 * tight.size().max());
+    // a straight run is a line: leave sea on both sides of it
+    let short = 0.45 * bounds.size().max();
+    let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
+    Window::new(bounds.low - missing, bounds.high + missing)
 }

@@ -3,10 +3,11 @@
 use rerun::{AsComponents, LineStrips2D, Points2D};
 
 use crate::frame::Vector;
+use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Bounds, Canvas, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
+    Canvas, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
@@ -48,7 +49,7 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs lines every round number of metres, and the north arrow.
 fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Bounds { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.extent());
+    let Window { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
     let spacing = grid_spacing(canvas);
     let mut lines = Lines::new();
     for east in multiples(low.x, high.x, spacing) {
@@ -59,7 +60,7 @@ fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
         let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
         lines.add(ends.map(flat), style::GRID, 0.5);
     }
-    let unit = canvas.bounds.extent() / 100.0;
+    let unit = canvas.bounds.size().max() / 100.0;
     let corner = Vector::new(canvas.bounds.low.x, canvas.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
@@ -75,7 +76,7 @@ fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Metres between two lines of the grid.
 pub fn grid_spacing(canvas: &Canvas) -> f64 {
-    round_down(canvas.bounds.extent() / 4.0)
+    round_down(canvas.bounds.size().max() / 4.0)
 }
 
 /// Multiples of `step` within the interval.
@@ -86,7 +87,7 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 
 /// Logs the desired trajectory, dashed.
 fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let dash = canvas.bounds.extent() / 120.0;
+    let dash = canvas.bounds.size().max() / 120.0;
     let mut lines = Lines::new();
     for leg in canvas.scenario.desired.legs() {
         let mut along = 0.0;

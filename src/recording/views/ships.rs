@@ -220,7 +220,7 @@ fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
 
 /// Where the name of a ship is, from its place.
 pub fn label_offset(canvas: &Canvas) -> Vector {
-    Vector::new(0.0, canvas.bounds.extent() / 22.0)
+    Vector::new(0.0, canvas.bounds.size().max() / 22.0)
 }
 
 /// About the vertical, counter-clockwise seen from above.

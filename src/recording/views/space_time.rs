@@ -6,8 +6,9 @@ use super::body::mesh;
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
 use super::ships::DrawnShip;
 use crate::frame::{Vector, to_port};
+use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Bounds, Canvas, Lines, ViewModel, style};
+use crate::recording::canvas::{Canvas, Lines, ViewModel, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, VOLUME, path};
 
@@ -51,7 +52,7 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs the sea at t = 0 as a grid, and the time axis with its ticks.
 fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Bounds { low, high } = canvas.bounds;
+    let Window { low, high } = canvas.bounds;
     let spacing = grid_spacing(canvas);
     let mut lines = Lines::new();
     let ground = |east: f64, north: f64| canvas.lifted(Vector::new(east, north), 0.0);
@@ -97,7 +98,7 @@ fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Where the time axis is: on the far side as seen by the eye, at the end where own ship starts.
 fn axis_corner(canvas: &Canvas) -> Vector {
-    let Bounds { low, high } = canvas.bounds;
+    let Window { low, high } = canvas.bounds;
     let ahead = canvas.ahead();
     let beside = to_port(ahead) - ahead;
     let corner = |along: f64, low: f64, high: f64| if along < 0.0 { low } else { high };
@@ -175,7 +176,7 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs the plane of the cursor, and the ships in it.
 pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
-    let Bounds { low, high } = canvas.bounds;
+    let Window { low, high } = canvas.bounds;
     let frame = [
         [low.x, low.y],
         [high.x, low.y],

@@ -4,7 +4,8 @@ use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::{curve, mark};
 use super::panel::AREA;
 use super::sections::{seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow, Stroke};
+use super::window::window_around;
+use super::{Figure, Panel, Stroke};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::OwnSituation;
@@ -39,7 +40,7 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
     let window = sections.window();
     let limit = FASTEST * situation.max_speed.max(situation.speed).max(1.0);
     let velocities = VelocityWindow {
-        window: PlotWindow::around([Vector::repeat(-limit), Vector::repeat(limit)], 0.0),
+        window: window_around([Vector::repeat(-limit), Vector::repeat(limit)], 0.0),
         own: Some(velocity),
     };
     let mut panels = vec![

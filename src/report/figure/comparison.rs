@@ -5,10 +5,12 @@ use super::outline::{area, curve, marks, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas, moments};
 use super::sections::PLAN;
-use super::{Figure, Panel, PlotWindow, Stroke};
+use super::window::window_around;
+use super::{Figure, Panel, Stroke};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
+use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Method};
@@ -119,7 +121,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let waypoints = scenario.desired.waypoints();
     let end = scenario.desired.duration();
     // a motion that continues to the horizon would shrink all others
-    let reach = PlotWindow::around(waypoints.iter().copied(), 0.35);
+    let reach = window_around(waypoints.iter().copied(), 0.35);
     let within = |p: &Vector| reach.contains(*p);
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
@@ -135,7 +137,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         }
     }
     let title = format!("{}: trajectories", scenario.title);
-    let mut panel = Panel::plan(title, PLAN, PlotWindow::around(shown, 0.06));
+    let mut panel = Panel::plan(title, PLAN, window_around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for boundary in &sets {
@@ -186,7 +188,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let near = points.filter(|p| p.y <= top);
     let end = near.map(|p| p.x).fold(1.0, f64::max);
     let high = Vector::new(end, if top > 0.0 { top } else { 1.0 });
-    let window = PlotWindow::new(Vector::zeros(), high);
+    let window = Window::new(Vector::zeros(), high);
     let title = format!("{}: distance from the nearest target", scenario.title);
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
@@ -223,7 +225,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     }
     let right = if right > 0.0 { right * 1.05 } else { 1.0 };
     let top = if top > 0.0 { top * 1.08 } else { 1.0 };
-    let window = PlotWindow::new(Vector::zeros(), Vector::new(right, top));
+    let window = Window::new(Vector::zeros(), Vector::new(right, top));
     let title = format!("{}: cost of safety", scenario.title);
     let axes = ["Accepted risk [-]", "Space-time error J [m²]"];
     let mut panel = Panel::free(title, axes, window);

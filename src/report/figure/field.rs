@@ -7,9 +7,10 @@ use kuva::render::plots::Plot;
 
 use super::outline::{Approaching, area, curve, mark, outer_velocities_within, sampled_boundary};
 use super::sections::PLAN;
-use super::{Panel, PlotWindow, Stroke};
+use super::{Panel, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
+use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// Number of bands of a risk field.
@@ -31,14 +32,14 @@ pub(super) const OWN: &str = "#d55e00";
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityWindow {
     /// Window in m/s.
-    pub window: PlotWindow,
+    pub window: Window,
     /// Own velocity in m/s, if it is marked.
     pub own: Option<Vector>,
 }
 
 /// Draws the largest risk of any target at `time` in seconds, in steps of 1/20, with the boundaries
 /// of the sections. The colour scale always covers risk 0 to 1.
-pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: PlotWindow) -> Panel {
+pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) -> Panel {
     let mut panel = Panel::plan(title.to_owned(), PLAN, window);
     panel.plots.push(scale(panel.window(), 1.0, "risk"));
     let bands = RISK_BANDS as f64;
@@ -125,8 +126,8 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
 }
 
 /// Colour bar from 0 to `top`, with the window filled in its first colour.
-fn scale(window: PlotWindow, top: f64, name: &str) -> Plot {
-    let PlotWindow { low, high } = window;
+fn scale(window: Window, top: f64, name: &str) -> Plot {
+    let Window { low, high } = window;
     let corners = ContourPlot::new()
         .with_grid(
             vec![vec![0.0, 0.0], vec![0.0, top]],

@@ -1,8 +1,10 @@
 //! Velocities and forces over time of a plan under forces.
 
 use super::outline::curve;
-use super::{Panel, PlotWindow, Stroke};
+use super::window::window_around;
+use super::{Panel, Stroke};
 use crate::frame::{Vector, clockwise_deg_per_s};
+use crate::geometry::Window;
 use crate::trajectory::{ForceNode, Steered};
 
 const SURGE: Stroke = Stroke::solid("#0072b2", 1.8);
@@ -60,10 +62,10 @@ fn over_time(
         .iter()
         .map(|(.., value)| points(*value))
         .collect();
-    let shown = PlotWindow::around(curves.iter().flatten().copied(), 0.0);
+    let shown = window_around(curves.iter().flatten().copied(), 0.0);
     let size = shown.size();
     let air = Vector::new(0.02 * size.x, 0.08 * size.y.max(LEAST_SPAN));
-    let window = PlotWindow::new(shown.low - air, shown.high + air);
+    let window = Window::new(shown.low - air, shown.high + air);
     let axis = format!("{title} [{unit}]");
     let mut panel = Panel::free(title.to_owned(), ["Time [s]", &axis], window);
     for ((label, stroke, _), points) in quantities.iter().zip(&curves) {

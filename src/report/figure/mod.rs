@@ -28,6 +28,5 @@ pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
 pub use simulation::simulation_figure;
 pub(super) use simulation::simulation_panel;
-pub use window::PlotWindow;
 
 pub use crate::study::compare::Stroke;

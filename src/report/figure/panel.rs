@@ -5,8 +5,10 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
-use super::{PlotWindow, Stroke};
+use super::Stroke;
+use super::window::with_ratio;
 use crate::frame::Vector;
+use crate::geometry::Window;
 
 /// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
@@ -34,7 +36,7 @@ const NOTE_SIZE: u32 = 11;
 pub struct Panel {
     title: String,
     axes: [String; 2],
-    window: PlotWindow,
+    window: Window,
     equal: bool,
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
@@ -44,16 +46,16 @@ pub struct Panel {
 impl Panel {
     /// Creates a panel with equal axes. The window is widened to fill the panel. `axes` include
     /// units.
-    pub(super) fn plan(title: String, axes: [&str; 2], window: PlotWindow) -> Self {
+    pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
-            window: window.with_ratio(AREA[0] / AREA[1]),
+            window: with_ratio(window, AREA[0] / AREA[1]),
             equal: true,
             ..Self::free(title, axes, window)
         }
     }
 
     /// Creates a panel whose axes have different units.
-    pub(super) fn free(title: String, axes: [&str; 2], window: PlotWindow) -> Self {
+    pub(super) fn free(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
             title,
             axes: axes.map(str::to_owned),
@@ -71,7 +73,7 @@ impl Panel {
     }
 
     /// Visible part of the plane.
-    pub fn window(&self) -> PlotWindow {
+    pub fn window(&self) -> Window {
         self.window
     }
 
@@ -132,7 +134,7 @@ impl Panel {
 
     /// Layout in a cell, with the pixels to the right of the area and below it.
     pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
-        let PlotWindow { low, high } = self.window;
+        let Window { low, high } = self.window;
         let [left, _, top] = MARGIN;
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
             .with_title(self.title.as_str())

@@ -2,9 +2,10 @@
 //! 6b.
 
 use super::outline::{area, curve};
-use super::{Panel, PlotWindow, Stroke};
+use super::{Panel, Stroke};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
+use crate::geometry::Window;
 use crate::obstacle::PathTime;
 use crate::planner::path_time::PathTimeDiagram;
 
@@ -51,7 +52,7 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     } else {
         horizon
     };
-    let window = PlotWindow::new(
+    let window = Window::new(
         Vector::zeros(),
         Vector::new(diagram.map_or(1.0, PathTimeDiagram::length), top),
     );

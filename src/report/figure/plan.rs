@@ -7,11 +7,12 @@ use super::forces::force_panels;
 use super::outline::{area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, PlotWindow, Stroke};
+use super::window::window_around;
+use super::{Figure, Panel, Stroke};
 use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
-use crate::geometry::{self, ConvexPolygon};
+use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
@@ -154,7 +155,7 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
     let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
         .copied()
         .collect();
-    let reach = PlotWindow::around(shown.iter().copied(), 0.3);
+    let reach = window_around(shown.iter().copied(), 0.3);
     // distant areas are clipped
     let within = |p: &Vector| reach.contains(*p);
     let mut areas: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
@@ -167,7 +168,7 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
             }
         }
     }
-    let mut panel = Panel::plan(title.to_owned(), PLAN, PlotWindow::around(shown, 0.06));
+    let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for (index, k, boundary) in &areas {
@@ -229,11 +230,7 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
 
 /// Filled land within a window, piece by piece. Each piece has an outline, to hide gaps between
 /// adjacent pieces.
-pub(super) fn land_areas(land: Option<&Land>, shown: PlotWindow) -> Vec<Plot> {
-    let window = geometry::Window {
-        low: shown.low,
-        high: shown.high,
-    };
+pub(super) fn land_areas(land: Option<&Land>, window: Window) -> Vec<Plot> {
     land.into_iter()
         .flat_map(|land| land.map.pieces_within(&window))
         .filter_map(|piece| ConvexPolygon::hull(&window.part_of(piece)).ok())

@@ -1,8 +1,10 @@
 //! Figures of target sets: the two sets, and sections over time.
 
 use super::outline::{area, curve, sampled_boundary};
-use super::{Panel, PlotWindow, Stroke};
+use super::window::window_around;
+use super::{Panel, Stroke};
 use crate::frame::Vector;
+use crate::geometry::Window;
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::obstacle::Obstacle;
 
@@ -31,7 +33,7 @@ const MARGIN: f64 = 0.1;
 /// Draws one set, `O_0` or `V`, with its unit in `axes`.
 pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
-    let window = PlotWindow::around(boundary.iter().copied(), 0.25);
+    let window = window_around(boundary.iter().copied(), 0.25);
     let mut panel = Panel::plan(title.to_owned(), axes, window);
     panel.plots.extend(
         ConvexPolygon::hull(&boundary)
@@ -58,7 +60,7 @@ pub(super) fn sections_beside(
     let last = times.iter().copied().fold(0.0, f64::max);
     let covered: Vec<Vec<Vector>> = targets.iter().flat_map(|t| covered(t, last)).collect();
     let shown = covered.iter().flatten().chain(others).copied();
-    let mut panel = Panel::plan(title.to_owned(), PLAN, PlotWindow::around(shown, MARGIN));
+    let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, MARGIN));
     for boundary in &covered {
         panel.plots.push(curve(boundary, true, COVERED));
     }
@@ -101,9 +103,9 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
             .collect()
     };
     let [west, east] = [side(0), side(1)];
-    let shown = PlotWindow::around(west.iter().chain(&east).copied(), 0.0);
+    let shown = window_around(west.iter().chain(&east).copied(), 0.0);
     let margin = Vector::new(MARGIN * shown.size().x, 0.0);
-    let window = PlotWindow::new(
+    let window = Window::new(
         shown.low - margin,
         shown.high + margin + Vector::new(0.0, 0.04 * end),
     );
