@@ -245,26 +245,6 @@ pub(super) mod tests {
         }
     }
 
-    #[test]
-    fn the_fixtures_have_their_roles_wherever_they_lie() {
-        let mut rng = ChaCha8Rng::seed_from_u64(17);
-        let own = ship(0.0, 0.0, 0.0, 6.0);
-        for (other, role, in_the_mirror) in fixtures() {
-            for _ in 0..1_000 {
-                let turn = rng.random_range(-PI..PI);
-                let far = Vector::new(rng.random_range(-1e6..1e6), rng.random_range(-1e6..1e6));
-                let moved = |s: &SteadyShip| {
-                    let p = direction(turn) * s.pose.position.x
-                        + crate::frame::to_port(direction(turn)) * s.pose.position.y;
-                    ship(p.x + far.x, p.y + far.y, s.pose.heading + turn, s.speed)
-                };
-                let mirror = mirrored(&other);
-                assert_eq!(raw_role(&moved(&own), &moved(&other)), Some(role));
-                assert_eq!(raw_role(&moved(&own), &moved(&mirror)), Some(in_the_mirror));
-            }
-        }
-    }
-
     /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from
     /// angles that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {

@@ -29,12 +29,12 @@ pub use encounter::{
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub(crate) use memory::state_document;
+#[cfg(feature = "recording")]
+pub(crate) use memory::track;
 pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
     TargetMemoryDocument, remember,
 };
-#[cfg(feature = "recording")]
-pub(crate) use memory::{steady, track};
 pub(crate) use parts::segment;
 pub use parts::*;
 pub use plan::control::{

@@ -89,6 +89,7 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let ships = |time: f64| {
         let own = Some((model.own_at(time), canvas.scenario.own_ship.hull));
         let targets = model
+            .simulation
             .targets
             .iter()
             .map(move |target| Some((target.at(time)?, target.hull())));
