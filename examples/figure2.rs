@@ -7,24 +7,9 @@
 
 mod shared;
 
-use searoom::report::figure::{Figure, FigureError, extent_panel, sections_panel, set_panel};
+use searoom::report::figure::FigureError;
 
 fn main() -> Result<(), FigureError> {
-    let target = shared::figure_2();
-    let times = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0];
-    let panels = vec![
-        set_panel(
-            "Obstacle set",
-            ["East [m]", "North [m]"],
-            &target.section(0.0),
-        ),
-        set_panel(
-            "Velocity set",
-            ["East velocity [m/s]", "North velocity [m/s]"],
-            &shared::figure_2_velocities(),
-        ),
-        sections_panel("Sections over time", std::slice::from_ref(&target), &times),
-        extent_panel("Space-time obstacle from the side", &target, &times, 100.0),
-    ];
-    shared::write(Figure::new(2, panels), "figure2.svg")
+    let figure = shared::sets_figure(&shared::figure_2(), &shared::figure_2_velocities());
+    shared::write(figure, "figure2.svg")
 }

@@ -7,7 +7,7 @@ use nalgebra::Matrix2;
 use searoom::frame::Vector;
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
-use searoom::report::figure::{Figure, FigureError};
+use searoom::report::figure::{Figure, FigureError, extent_panel, sections_panel, set_panel};
 
 fn polygon(vertices: [(f64, f64); 4]) -> ConvexPolygon {
     let vertices = vertices.map(|(east, north)| Vector::new(east, north));
@@ -53,6 +53,22 @@ pub fn figure_2() -> Obstacle {
 /// Velocity set of eq. (21), m/s.
 pub fn figure_2_velocities() -> ConvexSet {
     ConvexSet::Ellipse(*ellipsoid().velocity())
+}
+
+/// The two sets of an obstacle and its sections over time, in top view and side view.
+pub fn sets_figure(target: &Obstacle, velocities: &ConvexSet) -> Figure {
+    let times = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0];
+    let [place, speed] = [
+        ["East [m]", "North [m]"],
+        ["East velocity [m/s]", "North velocity [m/s]"],
+    ];
+    let panels = vec![
+        set_panel("Obstacle set", place, &target.section(0.0)),
+        set_panel("Velocity set", speed, velocities),
+        sections_panel("Sections over time", std::slice::from_ref(target), &times),
+        extent_panel("Space-time obstacle from the side", target, &times, 100.0),
+    ];
+    Figure::new(2, panels)
 }
 
 /// Writes to the file named by the first argument, or to `name` in the current folder.
