@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use campaigns::encounter_generator::Meeting;
 use campaigns::{
     Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
-    path_time, replanning, simulation, wild,
+    path_time, replanning, simulation, tidiness, wild,
 };
 use clap::{Args, Parser, Subcommand};
 
@@ -30,7 +30,13 @@ struct Options {
 #[derive(Subcommand)]
 enum Campaign {
     /// Encounters with one target, a fifth of each kind
-    Encounters(Scenes<10_000>),
+    Encounters {
+        #[command(flatten)]
+        scenes: Scenes<10_000>,
+        /// Turns and changes of speed at every level of compliance, with and without tidiness
+        #[arg(long)]
+        tidiness: bool,
+    },
     /// Scenes with 2, 4 and 10 targets, a third of each
     Traffic(Scenes<3_000>),
     /// Costs against a dense search over east, north, heading and time
@@ -145,7 +151,10 @@ impl<const COUNT: u64> Scenes<COUNT> {
 
 fn run(campaign: Campaign) -> Report {
     match campaign {
-        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(5)),
+        Campaign::Encounters { scenes, tidiness } => match tidiness {
+            true => tidiness::run(scenes.of_each(5)),
+            false => encounters::run(scenes.of_each(5)),
+        },
         Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
         Campaign::DenseSearch { scenes, targets: 1 } => dense_search::run(scenes.of_each(5)),
         Campaign::DenseSearch { scenes, targets } => {

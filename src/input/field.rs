@@ -243,6 +243,14 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// True or false.
+    pub(crate) fn truth(&self) -> Option<bool> {
+        match self.node.value {
+            Value::Bool(truth) => Some(truth),
+            _ => self.refuse("true, false"),
+        }
+    }
+
     /// The meaning of one of these words.
     pub(crate) fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let found = self.node.as_text();

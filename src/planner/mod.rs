@@ -39,6 +39,8 @@ pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
 pub struct PlannerSettings {
     /// Settings of the optimal-control planner.
     pub optimal_control: ControlSettings,
+    /// How tidy the plans of the space-time planner are; `None` for the least cost alone.
+    pub tidy: Option<Tidiness>,
 }
 
 impl PlannerSettings {
@@ -46,6 +48,36 @@ impl PlannerSettings {
     pub fn at_length(length: f64) -> Self {
         Self {
             optimal_control: ControlSettings::at_length(VesselKind::CyberShip2, length),
+            tidy: Some(Tidiness::at_length(length)),
+        }
+    }
+}
+
+/// Least times of a tidy plan: one that a crew would sail, with few turns and changes of speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tidiness {
+    /// Least time at a speed between two changes, seconds.
+    pub speed_time: f64,
+    /// Least duration of a line or an arc, seconds.
+    pub segment_time: f64,
+}
+
+impl Tidiness {
+    /// Least times for an own ship of the given length, metres: 30 s at a speed for 30 m and less,
+    /// 60 s for 100 m and more, and 3 s for a segment.
+    pub fn at_length(length: f64) -> Self {
+        let share = ((length - 30.0) / 70.0).clamp(0.0, 1.0);
+        Self {
+            speed_time: 30.0 + 30.0 * share,
+            segment_time: 3.0,
+        }
+    }
+
+    /// With times by another clock, `factor` of whose seconds are one second.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            speed_time: self.speed_time * factor,
+            segment_time: self.segment_time * factor,
         }
     }
 }
@@ -149,10 +181,12 @@ pub struct Problem<'a> {
     pub encountered: &'a [Encountered],
     /// Manoeuvre by the rules that own ship carries out at t = 0.
     pub under_way: Option<UnderWay>,
+    /// How tidy a plan is, at some cost; `None` for the least cost alone.
+    pub tidy: Option<Tidiness>,
 }
 
 impl<'a> Problem<'a> {
-    /// Least space-time error without land, rules and alternative paths. The time weight is the
+    /// Least space-time error without land, rules, alternative paths and tidiness. The time weight is the
     /// square of own speed; the budget is a minute.
     pub fn new(
         own: &'a OwnShip,
@@ -175,6 +209,7 @@ impl<'a> Problem<'a> {
             first_turn: None,
             encountered: &[],
             under_way: None,
+            tidy: None,
         }
     }
 

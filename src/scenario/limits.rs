@@ -42,6 +42,8 @@ pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0).in_unit("m/s");
 pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0).in_unit("m/s");
 /// Seconds: horizon, deadline.
 pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
+/// Seconds at a speed between two changes.
+pub(super) const SPEED_TIME: Range = Range::between(0.0, 86_400.0);
 /// Seconds before the closest approach.
 pub(super) const BEFORE_CPA: Range = Range::between(0.0, 86_400.0);
 /// Seconds on the clock of a file: also those of the year 2200 since 1970.

@@ -4,7 +4,7 @@ use super::{Compliance, limits};
 use crate::colregs::Thresholds;
 use crate::input::{Field, Range, Table};
 use crate::planner::{
-    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, planner_words,
+    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, Tidiness, planner_words,
 };
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
@@ -45,8 +45,12 @@ impl PlannerTable {
 /// Reads the table `[planner]` for an own ship of `length` metres.
 pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
     let optimal_control = control_settings(&mut table, length);
+    let tidy = tidiness(&mut table, length);
     let fields = PlannerTable {
-        settings: optimal_control.map(|optimal_control| PlannerSettings { optimal_control }),
+        settings: optimal_control.map(|optimal_control| PlannerSettings {
+            optimal_control,
+            tidy,
+        }),
         kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),
         search: table.choice("search", SearchKind::WORDS),
@@ -61,6 +65,22 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
     };
     table.finish();
     fields
+}
+
+/// How tidy plans are; `None` where the file asks for the least cost alone.
+fn tidiness(table: &mut Table, length: f64) -> Option<Tidiness> {
+    let is_tidy = table.take("tidy").and_then(|field| field.truth());
+    if is_tidy == Some(false) {
+        let because = "nothing: with tidy = false own ship may change its speed at any time";
+        table.forbid("min_speed_time_s", because);
+        return None;
+    }
+    let default = Tidiness::at_length(length);
+    let speed_time = table.number("min_speed_time_s", limits::SPEED_TIME);
+    Some(Tidiness {
+        speed_time: speed_time.unwrap_or(default.speed_time),
+        ..default
+    })
 }
 
 /// The objective; only the one that weighs risk has a weight, and needs it.

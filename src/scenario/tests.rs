@@ -62,6 +62,20 @@ fn what_is_left_out_takes_its_default() {
 }
 
 #[test]
+fn plans_are_tidy_unless_the_file_says_otherwise() {
+    let speed_time = |planner: &str, length: &str| {
+        let text = SCENARIO.replace("length_m = 30", &format!("length_m = {length}"));
+        let scenario = Scenario::parse(&format!("{text}[planner]\n{planner}")).expect("valid");
+        scenario.settings.tidy.map(|tidy| tidy.speed_time)
+    };
+    assert_eq!(speed_time("", "30"), Some(30.0));
+    assert_eq!(speed_time("tidy = true", "65"), Some(45.0));
+    assert_eq!(speed_time("", "300"), Some(60.0));
+    assert_eq!(speed_time("min_speed_time_s = 90", "30"), Some(90.0));
+    assert_eq!(speed_time("tidy = false", "30"), None);
+}
+
+#[test]
 fn knots_replace_lists_too() {
     let text = SCENARIO.replace("turning", "speeds_kn = [12, 0, 6, 6]\nturning")
         + "leg_speeds_kn = [10, 5]";
@@ -114,6 +128,9 @@ const MISTAKES: &str = r#"
     [mission] | [mission]\nleg_speeds_mps = [1] | mission.leg_speeds_mps
     [mission] | [mission]\nleg_speeds_mps = [1, 2]\nspeed_kn = 1 | mission.leg_speeds_mps
     [mission] | [mission]\nspeed_mps = 0 | mission.speed_mps
+    [mission] | [planner]\ntidy = "no"\n[mission] | planner.tidy
+    [mission] | [planner]\nmin_speed_time_s = -1\n[mission] | planner.min_speed_time_s
+    [mission] | [planner]\ntidy = false\nmin_speed_time_s = 9\n[mission] | planner.min_speed_time_s
 "#;
 
 /// Mistakes in a target and the field that is named; more faults may follow.

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
+use searoom::planner::PlannerSettings;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
@@ -135,6 +136,10 @@ impl Placing {
             desired: DesiredTrajectory::new(&waypoints, &speeds).expect("a path"),
             targets: scene.targets.iter().map(target).collect(),
             time_weight: scene.time_weight * speed * speed,
+            settings: PlannerSettings {
+                tidy: scene.settings.tidy.map(|tidy| tidy.scaled(self.time)),
+                ..scene.settings
+            },
             ..scene.clone()
         }
     }

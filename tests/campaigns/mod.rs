@@ -20,6 +20,7 @@ pub mod path_time;
 pub mod replanning;
 pub mod simulation;
 pub mod statistics;
+pub mod tidiness;
 pub mod wild;
 
 use std::collections::BTreeMap;

@@ -3,12 +3,18 @@
 use crate::campaigns::encounter_generator::Meeting;
 use crate::campaigns::replanning::{self, Behaviour, How};
 use crate::campaigns::{
-    compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time, wild,
+    compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time,
+    tidiness, wild,
 };
 
 #[test]
 fn plans_of_random_encounters_are_clear_of_whatever_the_target_may_do() {
     encounters::run(0..75).assert_met();
+}
+
+#[test]
+fn plans_have_few_turns_and_changes_of_speed_and_no_short_segment() {
+    tidiness::run(0..40).assert_met();
 }
 
 #[test]

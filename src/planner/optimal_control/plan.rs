@@ -248,6 +248,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
         let left = until.saturating_sub(self.started.elapsed());
         let planned = space_time::plan(&Problem {
             deadline: left,
+            tidy: None,
             ..self.problem.clone()
         });
         let plan = planned.outcome.plan()?;

@@ -210,6 +210,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         proxies,
         blocks: &blocks,
         chord: FINE_CHORD_RAD,
+        segment_time: 0.0,
     };
     let contact = first_contact(proxies, &nominal_motion);
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
@@ -254,7 +255,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let mut best = within(SearchBudget::of(targets), f64::INFINITY);
     let again = problem.search == SearchKind::Thorough && targets > 1 && !conflicts.is_empty();
     if again && !best.timed_out {
-        let incumbent = best.cost();
+        let incumbent = best.cost;
         best = best.or_cheaper(within(&SearchBudget::THOROUGH, incumbent));
     }
     let outcome = match (best.plan, best.timed_out) {
@@ -272,21 +273,18 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
 /// The cheapest candidate of a search within a budget.
 struct Attempt {
     plan: Option<Plan>,
+    /// Cost of the plan with the price of its alterations, m²; infinite without one.
+    cost: f64,
     timed_out: bool,
     stats: SearchStats,
     explored: ExploredGraph,
 }
 
 impl Attempt {
-    /// Cost of the plan, m²; infinite without one.
-    fn cost(&self) -> f64 {
-        self.plan.as_ref().map_or(f64::INFINITY, |plan| plan.cost)
-    }
-
     /// This one with the other's plan if that is cheaper.
     fn or_cheaper(mut self, other: Self) -> Self {
-        if other.cost() < self.cost() {
-            (self.plan, self.explored) = (other.plan, other.explored);
+        if other.cost < self.cost {
+            (self.plan, self.cost, self.explored) = (other.plan, other.cost, other.explored);
         }
         self.timed_out |= other.timed_out;
         self.stats.expanded += other.stats.expanded;
@@ -361,8 +359,10 @@ fn attempt(
         timed_out = clock.is_up();
     }
     let counts = search.counts();
+    let (plan, cost) = selection.plan();
     Attempt {
-        plan: selection.plan(),
+        plan,
+        cost,
         timed_out,
         stats: SearchStats {
             expanded: counts.expanded,

@@ -94,6 +94,8 @@ pub(crate) struct Route {
     speeds: Vec<f64>,
     /// Seconds: no change of speed for the schedule's sake is shorter.
     least_change: f64,
+    /// Seconds for which a speed is kept where the speed alternates.
+    speed_time: f64,
 }
 
 impl Route {
@@ -152,6 +154,14 @@ impl Route {
         best.map(|(_, route)| route)
     }
 
+    /// This route, on which own ship does not change its speed to be on schedule again.
+    pub(crate) fn without_recovery(&self) -> Self {
+        Self {
+            least_change: f64::INFINITY,
+            ..self.clone()
+        }
+    }
+
     /// True where own ship joins the path by a turn that is seen, but not readily apparent, or by a
     /// turn about.
     fn joins_by_odd_turns(&self) -> bool {
@@ -184,6 +194,7 @@ impl Route {
             } else {
                 0.0
             },
+            speed_time: problem.tidy.map_or(0.0, |tidy| tidy.speed_time),
         };
         let join = Pose::new(first.start + first.direction * along, heading(leg));
         let due = first.start_time + along / first.speed;
@@ -300,6 +311,11 @@ impl Route {
             self.pieces.push(piece);
         }
         Some(())
+    }
+
+    /// True where own ship changes its speed to be on schedule again.
+    pub(crate) fn recovers(&self) -> bool {
+        self.least_change < f64::INFINITY
     }
 
     /// Length, metres.
@@ -444,12 +460,16 @@ impl Route {
             );
         }
         if late < -ON_TIME_S {
-            if slowest == 0.0 {
+            let slower = match self.speed_time > 0.0 && !self.is_listed(slowness) {
+                true => self.slower(slowness).unwrap_or(slowest),
+                false => slowest,
+            };
+            if slower == 0.0 {
                 return (0.0, 0.0);
             }
-            let loss = 1.0 / slowest - slowness;
+            let loss = 1.0 / slower - slowness;
             return (
-                slowest,
+                slower,
                 if loss > 0.0 {
                     (-late / loss).min(left)
                 } else {
@@ -467,17 +487,38 @@ impl Route {
         if let Some(same) = moving.find(|u| (*u - speed).abs() <= 1e-9 * speed) {
             return (*same, left);
         }
+        if !self.recovers() {
+            return (self.nearest_speed(speed), left);
+        }
         // faster first: own ship then falls back to schedule within the same cycle
-        let cycle = left / (left / ALTERNATION_M).ceil().max(1.0);
         let faster = |u: &&f64| **u > speed && **u > 0.0;
         match self.speeds.iter().find(faster) {
             Some(&fast) => {
-                let slow = self.speeds.iter().rev().find(|u| **u < speed && **u > 0.0);
+                let slow = self.slower(slowness);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
+                let mut cycles = (left / ALTERNATION_M).ceil();
+                if let Some(slow) = slow.filter(|_| self.speed_time > 0.0) {
+                    let least = self.speed_time * (fast / share).max(slow / (1.0 - share));
+                    cycles = cycles.min((left / least).floor());
+                }
+                let cycle = left / cycles.max(1.0);
                 (fast, (cycle * share).max(LEAST_ALTERNATION_M))
             }
             None => (fastest, left),
         }
+    }
+
+    /// True where own ship can keep the schedule of a stretch, seconds per metre, by one speed.
+    fn is_listed(&self, slowness: f64) -> bool {
+        let speed = 1.0 / slowness;
+        let same = |u: &f64| *u > 0.0 && (u - speed).abs() <= 1e-9 * speed;
+        self.speeds.iter().any(same)
+    }
+
+    /// Greatest moving speed below that of the schedule.
+    fn slower(&self, slowness: f64) -> Option<f64> {
+        let mut slower = self.speeds.iter().rev().copied();
+        slower.find(|u| *u < 1.0 / slowness && *u > 0.0)
     }
 
     /// Seconds behind schedule, or none where to make them good takes too little time for a change

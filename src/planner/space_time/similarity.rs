@@ -14,7 +14,8 @@ use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{
-    EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, PlannedManoeuvre, Problem, UnderWay,
+    EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, PlannedManoeuvre, Problem,
+    Tidiness, UnderWay,
 };
 use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
@@ -103,6 +104,7 @@ pub(crate) struct NormalisedProblem {
     under_way: Option<UnderWay>,
     horizon: f64,
     time_weight: f64,
+    tidy: Option<Tidiness>,
 }
 
 impl Similarity {
@@ -258,6 +260,10 @@ impl Similarity {
             }),
             horizon: rounded(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
             time_weight: rounded(problem.time_weight / (speed * speed)),
+            tidy: problem.tidy.map(|tidy| Tidiness {
+                speed_time: rounded(tidy.speed_time / self.time),
+                segment_time: rounded(tidy.segment_time / self.time),
+            }),
         })
     }
 
@@ -430,6 +436,7 @@ impl NormalisedProblem {
             under_way: self.under_way,
             horizon: self.horizon,
             time_weight: self.time_weight,
+            tidy: self.tidy,
             ..*of
         }
     }

@@ -46,7 +46,10 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         let obstacles: Vec<Obstacle> = (pipeline::sets(&drawn.scenario).into_iter())
             .map(|sets| sets.with_domain)
             .collect();
-        let problem = problem(&drawn.scenario, &obstacles, LandObstacle::none());
+        let problem = Problem {
+            tidy: None,
+            ..problem(&drawn.scenario, &obstacles, LandObstacle::none())
+        };
         let cost = |search| {
             let planned = space_time::plan(&Problem { search, ..problem });
             planned.outcome.plan().map(|plan| plan.cost)
@@ -94,7 +97,8 @@ pub fn run(seeds: Seeds) -> Report {
     let compared: Vec<_> = scenes
         .par_iter()
         .map(|&(kind, seed)| {
-            let drawn = random_encounter(kind, seed, Placement::Origin).expect("drawn");
+            let mut drawn = random_encounter(kind, seed, Placement::Origin).expect("drawn");
+            drawn.scenario.settings.tidy = None;
             let record = planned(seed, drawn);
             let scenario = &record.drawn.scenario;
             let problem = problem(scenario, &record.obstacles, LandObstacle::none());

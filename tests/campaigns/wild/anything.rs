@@ -290,6 +290,14 @@ impl Scene {
             let weight = self.one(&[0.0, 0.05, 1e4]);
             self.line(format!("time_weight_m2_per_s2 = {weight:?}"));
         }
+        if self.rng.random_bool(0.2) {
+            let tidy = self.one(&[
+                "tidy = false",
+                "min_speed_time_s = 0",
+                "min_speed_time_s = 300",
+            ]);
+            self.line(tidy.to_owned());
+        }
     }
 
     fn place(&self, [east, north]: &[f64; 2]) -> String {

@@ -219,6 +219,11 @@ impl Refinement {
         self.handicap * self.best_cost()
     }
 
+    /// Factor on its costs when it is ranked among others.
+    pub(crate) fn handicap(&self) -> f64 {
+        self.handicap
+    }
+
     /// True where the manoeuvre is or was nearly clear.
     pub(crate) fn is_nearly_clear(&self) -> bool {
         self.best.is_some() || self.model.violation < RESTORABLE_M
@@ -264,7 +269,7 @@ impl Refinement {
                 size: n,
                 hessian: &identity,
                 gradient: &[0.0; MAX_VARIABLES],
-                low: &self.lengths.map(|l| -l),
+                low: &self.least_steps(context, &self.lengths, f64::INFINITY),
                 high: &[LARGEST_RADIUS_M; MAX_VARIABLES],
                 rows: &self.model.rows,
                 price: None,
@@ -319,6 +324,18 @@ impl Refinement {
         }
     }
 
+    /// Least change of each length in a trust region: down to zero, or to the least time of a
+    /// segment variable.
+    fn least_steps(&self, context: &Context, lengths: &Row, radius: f64) -> Row {
+        let mut low = lengths.map(|length| -length);
+        if context.segment_time > 0.0 {
+            for (low, variable) in low.iter_mut().zip(&self.structure.variables) {
+                *low = (*low + context.segment_time * variable.speed()).min(0.0);
+            }
+        }
+        low.map(|low| low.max(-radius))
+    }
+
     /// Second-order correction: the least change, in the norm of the Hessian, that moves a full
     /// step out of the sets it curves into. Without it, steps along a face are cut to nothing.
     fn corrected(
@@ -334,7 +351,7 @@ impl Refinement {
             size: self.structure.free(),
             hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
-            low: &trial_lengths.map(|l| (-self.radius).max(-l)),
+            low: &self.least_steps(context, trial_lengths, self.radius),
             high: &[self.radius; MAX_VARIABLES],
             rows: &context.rows(&self.structure, trial),
             price: None,
@@ -350,10 +367,10 @@ impl Refinement {
 
     fn advance(&mut self, context: &Context) -> bool {
         let n = self.structure.free();
-        let (mut low, mut high) = ([0.0; MAX_VARIABLES], [0.0; MAX_VARIABLES]);
+        let low = self.least_steps(context, &self.lengths, self.radius);
+        let mut high = [0.0; MAX_VARIABLES];
         let longest = LONGEST_ARC * context.problem.own.turning_radius;
         for i in 0..n {
-            low[i] = (-self.radius).max(-self.lengths[i]);
             high[i] = self.radius;
             if matches!(self.structure.variables[i], SegmentVariable::Arc { .. }) {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));

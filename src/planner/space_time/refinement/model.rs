@@ -89,7 +89,8 @@ impl Context<'_> {
             });
         }
         for k in 0..all - free {
-            let bound = ROOM_M.min(rollout.solved[k]) - rollout.solved[k];
+            let least = self.segment_time * structure.ending.speed();
+            let bound = ROOM_M.min(rollout.solved[k]).max(least) - rollout.solved[k];
             rows.push(Constraint {
                 coefficients: rollout.solved_rates[k],
                 bound,
@@ -257,6 +258,7 @@ pub(crate) mod tests {
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];
         let context = Context {
+            segment_time: 0.0,
             problem: &problem,
             route: &route,
             proxies: &proxies,

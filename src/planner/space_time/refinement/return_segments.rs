@@ -57,7 +57,7 @@ impl Context<'_> {
         let stretch = self
             .route
             .stretch(last, desired)
-            .filter(|s| s.distance <= distance)?;
+            .filter(|s| s.distance <= distance && self.route.recovers())?;
         let own = self.problem.own;
         own.speeds
             .iter()

@@ -36,6 +36,15 @@ impl SegmentVariable {
             Self::Run { speed } | Self::Arc { speed, .. } | Self::Line { speed } => speed,
         }
     }
+
+    /// This segment variable at another speed.
+    pub(crate) fn at_speed(self, speed: f64) -> Self {
+        match self {
+            Self::Run { .. } => Self::Run { speed },
+            Self::Arc { side, .. } => Self::Arc { side, speed },
+            Self::Line { .. } => Self::Line { speed },
+        }
+    }
 }
 
 /// Ending of a manoeuvre.
@@ -50,6 +59,23 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
+    /// Speed of the dependent segment variables, m/s; 0 without any.
+    pub(crate) fn speed(self) -> f64 {
+        match self {
+            Self::Follow => 0.0,
+            Self::Return { speed, .. } | Self::Goal { speed, .. } => speed,
+        }
+    }
+
+    /// This ending at another speed.
+    pub(crate) fn at_speed(self, speed: f64) -> Self {
+        match self {
+            Self::Follow => Self::Follow,
+            Self::Return { leg, .. } => Self::Return { leg, speed },
+            Self::Goal { side, .. } => Self::Goal { side, speed },
+        }
+    }
+
     /// Number of dependent segment variables.
     fn dependents(self) -> usize {
         if self == Self::Follow { 0 } else { 2 }

@@ -24,6 +24,8 @@ pub(crate) struct Context<'a> {
     pub blocks: &'a [Proxy<'a>],
     /// Longest arc per chord in the search for approaches, radians.
     pub chord: f64,
+    /// Least time of a segment variable, seconds.
+    pub segment_time: f64,
 }
 
 /// Evaluated trial point.

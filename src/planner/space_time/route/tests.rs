@@ -20,6 +20,7 @@ fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
         let route = Route {
             pieces: vec![piece],
             least_change: 0.0,
+            speed_time: 0.0,
             speeds: vec![0.0, 2.0, 4.0],
         };
         let (speed, length) = route.speed_and_length(&piece, 0.0, piece.length, 0.0);

@@ -4,6 +4,7 @@
 pub(crate) mod budget;
 pub(crate) mod conflict_search;
 pub(crate) mod initial_guess;
+mod tidy;
 pub(crate) mod warm_start;
 
 use crate::frame::Side;
@@ -20,6 +21,7 @@ use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
     Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
 };
+use crate::planner::space_time::selection::tidy::Prices;
 use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: useful in every conflict.
@@ -84,6 +86,7 @@ const FINE_FROM: usize = 6;
 #[derive(Debug, Clone)]
 struct Candidate {
     motion: Vec<Segment>,
+    /// Cost with the price of its alterations, m².
     cost: f64,
 }
 
@@ -96,6 +99,7 @@ pub(crate) struct Selection<'a> {
     refined: Vec<Refinement>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
+    prices: Prices,
 }
 
 impl<'a> Selection<'a> {
@@ -107,6 +111,7 @@ impl<'a> Selection<'a> {
             refined: Vec::new(),
             best: None,
             graph_cost: None,
+            prices: Prices::of(context.problem, context.route),
         }
     }
 
@@ -163,6 +168,7 @@ impl<'a> Selection<'a> {
                 );
             }
         }
+        let tidy = problem.tidy.map(|tidy| (tidy, guesses.clone()));
         let mut running: Vec<Refinement> = guesses
             .into_iter()
             .take_while(|_| !clock.is_up())
@@ -198,15 +204,19 @@ impl<'a> Selection<'a> {
             }
         }
         running.append(&mut self.refined);
-        let tidy = self.insert_and_prune(&mut running, clock);
-        self.collect(tidy.iter().chain(ranked(&running)));
+        if let Some((tidy, guesses)) = tidy {
+            self.add_tidy(&tidy, &running, &guesses, clock);
+        } else {
+            let pruned = self.insert_and_prune(&mut running, clock);
+            self.collect(pruned.iter().chain(ranked(&running)));
+        }
         clock.is_up()
     }
 
     /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
     /// them. In the end prunes short segments where that costs almost nothing.
     fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
-        let leaders = leaders(running, self.search_budget.leaders);
+        let leaders = leaders(running, self.search_budget.leaders, LEADER_MARGIN);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
@@ -255,17 +265,8 @@ impl<'a> Selection<'a> {
         )
     }
 
-    /// Refinement with at most `most` steps, and fewer after the deadline.
     fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
-        let mut refinement = Refinement::fitting(&self.context, guess)?;
-        for _ in 0..most {
-            if refinement.is_finished() || clock.is_up() {
-                return Some(refinement);
-            }
-            refinement.step(&self.context);
-        }
-        refinement.finish(&self.context);
-        Some(refinement)
+        refined(&self.context, guess, most, clock)
     }
 
     /// Tests the refinements' results in the given order until one passes.
@@ -283,7 +284,7 @@ impl<'a> Selection<'a> {
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
-        let cost = problem.error_to_end(&motion);
+        let cost = problem.error_to_end(&motion) * self.prices.factor(&motion);
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
@@ -298,11 +299,36 @@ impl<'a> Selection<'a> {
         clear
     }
 
-    /// Cheapest clear motion.
-    pub(crate) fn plan(self) -> Option<Plan> {
-        let best = self.best?;
-        Plan::measured(self.context.problem, best.motion, self.graph_cost)
+    /// Cheapest clear motion, and its cost with the price of its alterations, m²; infinite without
+    /// one.
+    pub(crate) fn plan(self) -> (Option<Plan>, f64) {
+        let factor = (self.best.as_ref()).map_or(1.0, |best| self.prices.factor(&best.motion));
+        let plan = self
+            .best
+            .and_then(|best| Plan::measured(self.context.problem, best.motion, self.graph_cost));
+        let cost = plan
+            .as_ref()
+            .map_or(f64::INFINITY, |plan| plan.cost * factor);
+        (plan, cost)
     }
+}
+
+/// Refinement with at most `most` steps, and fewer after the deadline.
+fn refined(
+    context: &Context,
+    guess: InitialGuess,
+    most: usize,
+    clock: Clock,
+) -> Option<Refinement> {
+    let mut refinement = Refinement::fitting(context, guess)?;
+    for _ in 0..most {
+        if refinement.is_finished() || clock.is_up() {
+            return Some(refinement);
+        }
+        refinement.step(context);
+    }
+    refinement.finish(context);
+    Some(refinement)
 }
 
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
@@ -310,16 +336,16 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
     running.iter().min_by(costs)
 }
 
-/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`.
-/// Insertions can gain more than the best manoeuvre's lead.
-fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`, and none
+/// dearer than the cheapest by more than a fraction: insertions can gain more than its lead.
+fn leaders(running: &[Refinement], most: usize, margin: f64) -> Vec<(InitialGuess, f64)> {
     let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
         let alike = found.iter().any(|f| rank <= (1.0 + SAME_COST) * f.1);
         // negated on purpose: a NaN is too expensive
-        if found.len() == most || !(rank <= (1.0 + LEADER_MARGIN) * least) {
+        if found.len() == most || !(rank <= (1.0 + margin) * least && rank.is_finite()) {
             break;
         }
         if !alike {

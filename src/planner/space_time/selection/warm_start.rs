@@ -52,11 +52,12 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
             proxies,
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
+            segment_time: 0.0,
         };
         let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], clock);
-        Some((selection.plan(), timed_out))
+        Some((selection.plan().0, timed_out))
     });
     let outcome = match found {
         Some((plan, true)) => Outcome::Deadline(plan),
@@ -198,6 +199,7 @@ mod tests {
             let problem = Problem {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(60),
+                tidy: None,
                 ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
             };
             if let Some(found) = plan(&problem).outcome.plan() {
