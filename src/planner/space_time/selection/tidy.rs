@@ -41,6 +41,10 @@ const DROPPED: f64 = 0.5;
 const LEADERS: usize = 2;
 const LEADER_MARGIN: f64 = 0.5;
 
+/// Priced cost of a tidy manoeuvre over that of a refinement, below which it is not simplified: six
+/// alterations, and a little.
+const ENOUGH: f64 = 1.35;
+
 /// Steps of a refinement after simplifying, and of those that race.
 const STEPS: usize = 12;
 const RACING_STEPS: usize = 10;
@@ -164,7 +168,10 @@ impl Selection<'_> {
             pool.add_refined(refinement);
         }
         let speeds = ManoeuvreSpeeds::of(self.context.problem);
-        for (guess, _) in leaders(running, LEADERS, LEADER_MARGIN) {
+        for (guess, rank) in leaders(running, LEADERS, LEADER_MARGIN) {
+            if pool.has_tidy_below(ENOUGH * rank) {
+                break;
+            }
             for pattern in Speeds::all(&speeds) {
                 let context = match pattern.stays_late(&speeds) {
                     true => &pool.late,
@@ -175,7 +182,7 @@ impl Selection<'_> {
                 refined.iter().for_each(|r| pool.add_refined(r));
             }
         }
-        if !pool.best_is_tidy() && !clock.is_up() {
+        if !pool.has_tidy_below(f64::INFINITY) && !clock.is_up() {
             let context = pool.on_time;
             let mut racing: Vec<Refinement> = Vec::new();
             for guess in guesses {
@@ -233,9 +240,10 @@ impl Pool<'_> {
         }
     }
 
-    fn best_is_tidy(&self) -> bool {
+    /// True where the candidate that ranks first is tidy and its priced cost at most this, m².
+    fn has_tidy_below(&self, most: f64) -> bool {
         let best = self.motions.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        best.is_some_and(|(_, motion)| self.prices.is_tidy(motion))
+        best.is_some_and(|(rank, motion)| *rank <= most && self.prices.is_tidy(motion))
     }
 
     fn cheapest_first(mut self) -> Vec<(f64, Vec<Segment>)> {
