@@ -14,7 +14,7 @@ fn plans_of_random_encounters_are_clear_of_whatever_the_target_may_do() {
 
 #[test]
 fn plans_have_few_turns_and_changes_of_speed_and_no_short_segment() {
-    tidiness::run(0..40).assert_met();
+    tidiness::run(0..60).assert_met();
 }
 
 #[test]
