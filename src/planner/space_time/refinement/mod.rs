@@ -368,12 +368,12 @@ impl Refinement {
     fn advance(&mut self, context: &Context) -> bool {
         let n = self.structure.free();
         let low = self.least_steps(context, &self.lengths, self.radius);
-        let mut high = [0.0; MAX_VARIABLES];
+        let mut high = [self.radius; MAX_VARIABLES];
         let longest = LONGEST_ARC * context.problem.own.turning_radius;
-        for i in 0..n {
-            high[i] = self.radius;
-            if matches!(self.structure.variables[i], SegmentVariable::Arc { .. }) {
-                high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
+        let variables = self.structure.variables.iter().zip(&self.lengths);
+        for (high, (variable, length)) in high.iter_mut().zip(variables) {
+            if matches!(variable, SegmentVariable::Arc { .. }) {
+                *high = high.min((longest - length).max(0.0));
             }
         }
         let mut rows = Vec::with_capacity(self.model.rows.len());
