@@ -141,7 +141,7 @@ pub fn problem<'a>(
         first_turn: None,
         encountered: &[],
         under_way: None,
-        tidy: scenario.settings.tidy,
+        tidy: scenario.tidiness(),
     }
 }
 

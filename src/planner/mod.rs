@@ -39,8 +39,11 @@ pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
 pub struct PlannerSettings {
     /// Settings of the optimal-control planner.
     pub optimal_control: ControlSettings,
-    /// How tidy the plans of the space-time planner are; `None` for the least cost alone.
-    pub tidy: Option<Tidiness>,
+    /// Whether plans of the space-time planner are tidy; `None` where only those under the rules of
+    /// the road are.
+    pub tidy: Option<bool>,
+    /// How tidy they are.
+    pub tidiness: Tidiness,
 }
 
 impl PlannerSettings {
@@ -48,7 +51,8 @@ impl PlannerSettings {
     pub fn at_length(length: f64) -> Self {
         Self {
             optimal_control: ControlSettings::at_length(VesselKind::CyberShip2, length),
-            tidy: Some(Tidiness::at_length(length)),
+            tidy: None,
+            tidiness: Tidiness::at_length(length),
         }
     }
 }

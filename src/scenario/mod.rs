@@ -27,7 +27,7 @@ use std::sync::Arc;
 use crate::colregs::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
-use crate::planner::{Objective, Planner, PlannerSettings, SearchKind};
+use crate::planner::{Objective, Planner, PlannerSettings, SearchKind, Tidiness};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -94,6 +94,14 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// How tidy plans are; `None` for the least cost alone. Plans are tidy where the file asks for
+    /// it, and under the rules unless it asks otherwise.
+    pub fn tidiness(&self) -> Option<Tidiness> {
+        let by_default = self.compliance == Compliance::Rules;
+        let is_tidy = self.settings.tidy.unwrap_or(by_default);
+        is_tidy.then_some(self.settings.tidiness)
+    }
+
     /// Reads and checks a scenario file (docs/scenario.md). The error holds every fault of the
     /// file.
     pub fn read(file: &Path) -> Result<Self, ScenarioError> {

@@ -45,11 +45,12 @@ impl PlannerTable {
 /// Reads the table `[planner]` for an own ship of `length` metres.
 pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
     let optimal_control = control_settings(&mut table, length);
-    let tidy = tidiness(&mut table, length);
+    let (tidy, tidiness) = tidiness(&mut table, length);
     let fields = PlannerTable {
         settings: optimal_control.map(|optimal_control| PlannerSettings {
             optimal_control,
             tidy,
+            tidiness,
         }),
         kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),
@@ -67,20 +68,21 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
     fields
 }
 
-/// How tidy plans are; `None` where the file asks for the least cost alone.
-fn tidiness(table: &mut Table, length: f64) -> Option<Tidiness> {
-    let is_tidy = table.take("tidy").and_then(|field| field.truth());
-    if is_tidy == Some(false) {
+/// Whether plans are tidy, and how.
+fn tidiness(table: &mut Table, length: f64) -> (Option<bool>, Tidiness) {
+    let tidy = table.take("tidy").and_then(|field| field.truth());
+    let default = Tidiness::at_length(length);
+    if tidy == Some(false) {
         let because = "nothing: with tidy = false own ship may change its speed at any time";
         table.forbid("min_speed_time_s", because);
-        return None;
+        return (tidy, default);
     }
-    let default = Tidiness::at_length(length);
     let speed_time = table.number("min_speed_time_s", limits::SPEED_TIME);
-    Some(Tidiness {
+    let tidiness = Tidiness {
         speed_time: speed_time.unwrap_or(default.speed_time),
         ..default
-    })
+    };
+    (tidy, tidiness)
 }
 
 /// The objective; only the one that weighs risk has a weight, and needs it.

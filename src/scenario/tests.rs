@@ -62,17 +62,22 @@ fn what_is_left_out_takes_its_default() {
 }
 
 #[test]
-fn plans_are_tidy_unless_the_file_says_otherwise() {
+fn plans_are_tidy_under_the_rules_or_where_the_file_asks_for_it() {
     let speed_time = |planner: &str, length: &str| {
         let text = SCENARIO.replace("length_m = 30", &format!("length_m = {length}"));
         let scenario = Scenario::parse(&format!("{text}[planner]\n{planner}")).expect("valid");
-        scenario.settings.tidy.map(|tidy| tidy.speed_time)
+        scenario.tidiness().map(|tidy| tidy.speed_time)
     };
-    assert_eq!(speed_time("", "30"), Some(30.0));
-    assert_eq!(speed_time("tidy = true", "65"), Some(45.0));
-    assert_eq!(speed_time("", "300"), Some(60.0));
-    assert_eq!(speed_time("min_speed_time_s = 90", "30"), Some(90.0));
-    assert_eq!(speed_time("tidy = false", "30"), None);
+    for (planner, length, expected) in [
+        ("compliance = \"rules\"", "30", Some(30.0)),
+        ("compliance = \"shape\"", "30", None),
+        ("compliance = \"none\"\ntidy = true", "65", Some(45.0)),
+        ("compliance = \"rules\"", "300", Some(60.0)),
+        ("tidy = true\nmin_speed_time_s = 90", "30", Some(90.0)),
+        ("compliance = \"rules\"\ntidy = false", "30", None),
+    ] {
+        assert_eq!(speed_time(planner, length), expected, "{planner}");
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ const REDUCED: f64 = 0.06;
 const ANOTHER_ROLE: f64 = 0.02;
 
 /// Upper bounds in m² of the median cost of each kind, 1.5 times the measured values.
-const MEDIAN_COST: [f64; 5] = [6_500.0, 18_500.0, 15_500.0, 20_000.0, 33_500.0];
+const MEDIAN_COST: [f64; 5] = [6_000.0, 11_000.0, 10_000.0, 13_000.0, 13_000.0];
 
 /// Record of one planned and evaluated encounter.
 pub struct Record {

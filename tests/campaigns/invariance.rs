@@ -137,7 +137,7 @@ impl Placing {
             targets: scene.targets.iter().map(target).collect(),
             time_weight: scene.time_weight * speed * speed,
             settings: PlannerSettings {
-                tidy: scene.settings.tidy.map(|tidy| tidy.scaled(self.time)),
+                tidiness: scene.settings.tidiness.scaled(self.time),
                 ..scene.settings
             },
             ..scene.clone()

@@ -2,10 +2,11 @@
 
 use searoom::pipeline;
 use searoom::scenario::{Compliance, Scenario};
-use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
 use searoom::tolerance;
 use searoom::trajectory::{Segment, Trajectory};
 
+use super::encounter_generator::{EncounterKind, Placement, random_encounter};
 use super::statistics::{quantile, quantiles};
 use super::{Report, Seeds};
 
@@ -50,7 +51,8 @@ fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut 
             let mut scenario = drawn.scenario;
             scenario.compliance = compliance;
             let mut bare = scenario.clone();
-            bare.settings.tidy = None;
+            scenario.settings.tidy = Some(true);
+            bare.settings.tidy = Some(false);
             Some([Planned::of(scenario)?, Planned::of(bare)?])
         })
         .collect();

@@ -98,7 +98,7 @@ pub fn run(seeds: Seeds) -> Report {
         .par_iter()
         .map(|&(kind, seed)| {
             let mut drawn = random_encounter(kind, seed, Placement::Origin).expect("drawn");
-            drawn.scenario.settings.tidy = None;
+            drawn.scenario.settings.tidy = Some(false);
             let record = planned(seed, drawn);
             let scenario = &record.drawn.scenario;
             let problem = problem(scenario, &record.obstacles, LandObstacle::none());

@@ -293,6 +293,7 @@ impl Scene {
         if self.rng.random_bool(0.2) {
             let tidy = self.one(&[
                 "tidy = false",
+                "tidy = true",
                 "min_speed_time_s = 0",
                 "min_speed_time_s = 300",
             ]);
