@@ -73,16 +73,10 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     let unit = "m from the last waypoint";
     found.limit("arrival", unit, short, tolerance::ARRIVAL_M);
     let sailed: f64 = segments.iter().map(Segment::length).sum();
-    let needed = match request.freedom {
-        // the judge of paths has followed them; an alternative may be short
-        Freedom::Paths(_) => desired.least_way().min(tolerance::ARRIVAL_M),
-        _ => desired.least_way() * (1.0 - tolerance::LIMIT),
-    };
     // Negated on purpose: a NaN length is no motion.
-    if !(sailed >= needed) {
-        let length = desired.length();
+    if !(sailed > tolerance::ARRIVAL_M) && desired.comes_by(own.pose.position) {
         found.add(format!(
-            "arrival: {sailed:.3} m sailed of a path of {length:.3} m, at least {needed:.3} m needed: the path comes by its end earlier"
+            "arrival: {sailed} m sailed, with the path still ahead"
         ));
     }
     found.limit("arrival time", "s", end, horizon + tolerance::TIME_S);

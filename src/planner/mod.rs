@@ -229,12 +229,6 @@ impl<'a> Problem<'a> {
         self.error_of(motion) + motion.last().map_or(0.0, after)
     }
 
-    /// True where a motion is long enough to have followed the path.
-    pub(crate) fn follows_path(&self, motion: &[Segment]) -> bool {
-        let sailed: f64 = motion.iter().map(Segment::length).sum();
-        sailed >= self.desired.least_way()
-    }
-
     /// Duty of own ship toward all encountered targets.
     pub(crate) fn duty(&self) -> Duty {
         Duty::of(self.encountered.iter().map(|e| e.role))
@@ -274,13 +268,12 @@ pub struct Plan {
 
 impl Plan {
     /// Plan with its space-time error, which is integrated anew: searches use coarser quadrature.
-    /// `None` for an invalid trajectory, and for one too short to have followed the path.
+    /// `None` for an invalid trajectory.
     pub(crate) fn measured(
         problem: &Problem,
         motion: Vec<Segment>,
         graph_cost: Option<f64>,
     ) -> Option<Self> {
-        problem.follows_path(&motion).then_some(())?;
         Some(Self {
             cost: cost::whole_space_time_error(problem.desired, &motion, problem.time_weight),
             trajectory: Trajectory::new(motion).ok()?,

@@ -155,15 +155,6 @@ impl DesiredTrajectory {
         })
     }
 
-    /// Least length of a motion that has followed the path, metres. It is half of the path if that
-    /// comes by its end earlier, as a round trip does; otherwise 0, and the cost alone decides.
-    pub fn least_way(&self) -> f64 {
-        match self.comes_by(self.end()) {
-            true => 0.5 * self.length(),
-            false => 0.0,
-        }
-    }
-
     /// Desired position at `time`; the end points before the start and after the end.
     pub fn position_at(&self, time: f64) -> Vector {
         let index = self

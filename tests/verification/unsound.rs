@@ -56,7 +56,7 @@ fn unsound_documents_are_rejected() {
         ("tiny-slab", "set of 'log': too small for the velocity set"),
         ("lopsided", "too small for the velocities at the accepted"),
         ("teleport", "position at the joint of segments 3 and 4"),
-        ("null-plan", "0.000 m sailed of a path of"),
+        ("null-plan", "0 m sailed, with the path still ahead"),
     ] {
         let document: Value = serde_json::from_str(&fault(&format!("{name}.json"))).expect("JSON");
         assert!(said(&document, expected), "{name}");

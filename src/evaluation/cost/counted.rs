@@ -19,7 +19,7 @@ const HALVINGS: usize = 60;
 /// A motion arrives when it enters the disc of radius `within` around the last waypoint for the
 /// last time. The interval ends then, but not before the desired trajectory does: own ship lies
 /// where its motion ends. If the motion never enters the disc, or starts in it and stays, the
-/// interval ends with the desired trajectory, or with the motion if that is earlier.
+/// interval ends with the desired trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counted {
     /// Radius of the disc around the last waypoint, metres.
@@ -109,7 +109,6 @@ fn until<P: Piece>(pieces: &[P], time: f64) -> Vec<P> {
 }
 
 fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> Counted {
-    let end = pieces.last().map_or(f64::NAN, Piece::end_time);
     match last_entrance(pieces, desired.end(), within) {
         Some(entrance) => Counted {
             within,
@@ -118,7 +117,7 @@ fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> 
         },
         None => Counted {
             within,
-            until: desired.duration().min(end),
+            until: desired.duration(),
             arrived: false,
         },
     }

@@ -17,6 +17,10 @@ const ON_TIME_S: f64 = 1e-6;
 /// Joining points ahead of the nearest point of the path, in turning radii.
 const JOINS: [f64; 10] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0];
 
+/// Turning radii. A sharper corner is passed on the mean course: rounding it would leave out too
+/// much of its legs.
+const LONGEST_TANGENT_RADII: f64 = 3.0;
+
 /// Turning radii. A waypoint nearer than this to the last one, without room for its corner, is
 /// skipped.
 const SKIPPED_RADII: f64 = 4.0;
@@ -206,7 +210,9 @@ impl Route {
             let turn = wrap(heading(next) - heading(next - 1));
             let tangent = radius * (turn.abs() / 2.0).tan();
             let share = if next + 1 == legs.len() { 1.0 } else { 0.5 };
-            let fits = tangent <= before.length - at.2 && tangent <= after.length * share;
+            let fits = tangent <= before.length - at.2
+                && tangent <= after.length * share
+                && tangent <= LONGEST_TANGENT_RADII * radius;
             let (entry, exit, offset) = if turn.abs() < tolerance::JOINT_RAD {
                 let pose = Pose::new(after.start, heading(next));
                 (pose, pose, 0.0)
@@ -562,10 +568,14 @@ fn asks_for_plain(problem: &Problem) -> bool {
 fn joins(problem: &Problem) -> Vec<(usize, f64)> {
     let (own, desired) = (problem.own, problem.desired);
     let here = own.pose.position;
+    // where the path comes by twice, own ship goes on along the leg that is due
+    let due = desired.nearest(here, 0.0, problem.time_weight).distance;
     let geometric = desired.nearest(here, 0.0, 0.0).distance;
-    let mut places: Vec<f64> = JOINS
-        .iter()
-        .map(|k| (geometric + k * own.turning_radius).min(desired.length()))
+    let mut from = vec![due, geometric];
+    from.dedup_by(|a, b| (*a - *b).abs() <= own.turning_radius);
+    let mut places: Vec<f64> = from
+        .into_iter()
+        .flat_map(|from| JOINS.map(|k| (from + k * own.turning_radius).min(desired.length())))
         .collect();
     places.dedup();
     places

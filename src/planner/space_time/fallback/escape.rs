@@ -129,7 +129,7 @@ fn continue_to_end(
         let found = append(problem, beginning, |rest| {
             path_motion(rest, straight, clock)
         });
-        let Some(found) = found.filter(|motion| problem.follows_path(motion)) else {
+        let Some(found) = found else {
             continue;
         };
         let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);

@@ -290,7 +290,6 @@ impl<'a> Selection<'a> {
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time
             && cost.is_finite()
-            && problem.follows_path(&motion)
             && first_met(self.context.proxies, &motion).is_none()
             && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
