@@ -91,7 +91,8 @@ fn one(file: &Path) -> anyhow::Result<Checked> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
-        read_text(file, PLAN_MEBIBYTES, "a plan document")?
+        // the message already includes its source
+        read_text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
     };
     let checked = if is_simulation(&text) {
         verify_simulation(&text).map(Checked::Simulation)

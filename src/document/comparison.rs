@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
 use super::plan::{cost_of, finite, minimised, objective, position, stats, timing};
-use crate::evaluation::{Safety, outcome_word};
-use crate::pipeline::Verdict;
+use crate::evaluation::{Safety, outcome_word, without_rules};
+use crate::pipeline::{Run, Verdict};
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Inapplicable};
 use crate::trajectory::largest_alteration;
@@ -135,7 +135,10 @@ impl EntryDocument {
             max_risk,
             objective: run.map(|run| objective(&run.scenario).to_owned()),
             outcome: outcome.to_owned(),
-            verdict: outcome_word(outcome, entry.safety(), largest_risk),
+            verdict: without_rules(
+                outcome_word(outcome, entry.safety(), largest_risk),
+                run.is_some_and(Run::gives_up_rules),
+            ),
             reason: match (run, motion) {
                 (Some(run), _) => run.reason(),
                 (None, Some(_)) => None,

@@ -60,7 +60,11 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
         let (expanded, generated) = (stats.expanded, stats.generated);
         let checked = stats.edges_checked;
         let graph = format!("{expanded} expanded, {generated} generated, {checked} edges checked");
-        let by_rules = plan.compliance == "rules" && generated == 0;
+        let gives_up = |r: &RelaxationDocument| r.kind == "compliance";
+        let by_rules = plan.compliance == "rules"
+            && generated == 0
+            && plan.cost.is_some()
+            && !plan.relaxations.iter().any(gives_up);
         let manoeuvre = "a manoeuvre by the rules, found without the graph".to_owned();
         add("search", if by_rules { manoeuvre } else { graph });
     }

@@ -187,7 +187,10 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
         (_, Some(_)) => shape(error.inner().to_string()),
         (Some(object), None) => {
             let keys: Vec<&str> = object.keys().take(KEYS).map(String::as_str).collect();
-            let found = format!("none in a document with the keys {}", keys.join(", "));
+            let found = match keys.is_empty() {
+                true => "none in an empty document".to_owned(),
+                false => format!("none in a document with the keys {}", keys.join(", ")),
+            };
             fault("format", found, FORMAT)
         }
         (None, None) => shape("found no JSON object; allowed: a plan document".to_owned()),
