@@ -66,19 +66,26 @@ pub fn error_after_end(desired: &DesiredTrajectory, last: &Segment, time_weight:
     )
 }
 
-/// Space-time error `J` of a whole motion, m². Arcs are divided finely enough to see a leg that is
-/// nearest only briefly. Relative accuracy 1e-6.
+/// Space-time error `J` of a whole motion, m², with the wait of a ship that arrives early.
+/// Otherwise as [`sailed_space_time_error`].
 pub fn whole_space_time_error(
     desired: &DesiredTrajectory,
     motion: &[Segment],
     time_weight: f64,
 ) -> f64 {
-    let parts = motion.iter();
-    let sum: f64 = parts
-        .map(|segment| integral(desired, segment, time_weight, REPORT_SUBDIVISION))
-        .sum();
     let after = |last| error_after_end(desired, last, time_weight);
-    sum / desired.duration() + motion.last().map_or(0.0, after)
+    sailed_space_time_error(desired, motion, time_weight) + motion.last().map_or(0.0, after)
+}
+
+/// Space-time error of a motion until it ends, m². Arcs are divided finely enough to see a leg that
+/// is nearest only briefly. Relative accuracy 1e-6.
+pub fn sailed_space_time_error(
+    desired: &DesiredTrajectory,
+    motion: &[Segment],
+    time_weight: f64,
+) -> f64 {
+    let error = |segment| integral(desired, segment, time_weight, REPORT_SUBDIVISION);
+    motion.iter().map(error).sum::<f64>() / desired.duration()
 }
 
 fn integral(

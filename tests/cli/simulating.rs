@@ -150,6 +150,9 @@ fn a_shorter_time_ends_the_simulation_before_arrival() {
     let found = json(&format!("simulate {HEAD_ON_FILE} --json --duration-s 45"));
     assert_eq!(found["duration_s"], 45.0);
     assert_eq!(found["arrived"], false);
+    // nothing is counted for the time after the simulation
+    let cost = found["conduct"]["cost_m2"].as_f64().expect("a cost");
+    assert!(cost < 1000.0, "{cost}");
     assert_eq!(found["replans"].as_array().map(Vec::len), Some(3));
 }
 

@@ -7,9 +7,13 @@ use crate::trajectory::DesiredTrajectory;
 /// Accuracy of the distances, metres.
 pub(crate) const ACCURACY_M: f64 = 0.01;
 
+/// Largest number of samples of a piece. A long circle about a waypoint would need more, and is
+/// sampled less densely.
+const MOST_SAMPLES: f64 = 1e4;
+
 /// Least distance of a motion from each waypoint between the first and the last, metres, at most
-/// [`ACCURACY_M`] too large. NaN for a motion that is not finite. O(pieces) per waypoint, more for
-/// a circle about one.
+/// [`ACCURACY_M`] too large, or the way between two of [`MOST_SAMPLES`] samples of a piece. NaN for
+/// a motion that is not finite. O(pieces) per waypoint, more for a circle about one.
 pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajectory) -> Vec<f64> {
     let inner = desired.legs().iter().skip(1).map(|leg| leg.start);
     inner.map(|place| least_distance(pieces, place)).collect()
@@ -20,6 +24,7 @@ fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
     let mut least = f64::INFINITY;
     for piece in pieces {
         let (mut time, fastest) = (piece.start_time(), piece.bounds().speed);
+        let shortest = (piece.end_time() - time) / MOST_SAMPLES;
         loop {
             let distance = (piece.pose_at(time).position - place).norm();
             if !distance.is_finite() {
@@ -32,7 +37,9 @@ fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
             if !(time < piece.end_time()) {
                 break;
             }
-            time = (time + step).min(piece.end_time());
+            // a step below a rounding would not end
+            let next = (time + step.max(shortest)).max(time.next_up());
+            time = next.min(piece.end_time());
         }
     }
     least
@@ -70,5 +77,22 @@ mod tests {
             );
         }
         assert_eq!(found.len(), 3);
+    }
+
+    /// An unsound document: 1e300 m/s, and a turn of a year on the spot of a waypoint.
+    #[test]
+    fn the_number_of_samples_is_bounded() {
+        let points = [(0.0, 0.0), (0.0, 100.0), (900.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0; 2]).expect("valid");
+        for (duration, speed, turn_rate) in
+            [(1e-3, 1e300, 0.0), (3e7, 50.0, 0.5), (1e9, 1e18, 1e16)]
+        {
+            let motion = chain(
+                Pose::new(Vector::zeros(), 0.0),
+                &[(duration, speed, turn_rate)],
+            );
+            let found = waypoint_distances(&motion, &desired)[0];
+            assert!(found.is_nan() || found <= 100.0, "{found}");
+        }
     }
 }

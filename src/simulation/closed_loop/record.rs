@@ -8,7 +8,7 @@ use crate::document::{
     SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument, finite,
     segment_document, state_document,
 };
-use crate::planner::cost::whole_space_time_error;
+use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
 
 impl Simulation {
     /// The result so far.
@@ -49,6 +49,14 @@ impl Simulation {
         let without_plan = self.replans.iter().filter(|r| r.cost_m2.is_none()).count();
         let late = self.replans.iter().any(|r| !r.followed);
         let within_tracking_margin = self.farthest_off.0 <= self.tracking_margin();
+        let arrived = self.time >= self.active.end() - super::INSTANT
+            && self.active.document.is_some()
+            && self.off_plan() <= self.tracking_margin();
+        // a ship that is still under way does not wait where the simulation ends
+        let error = match arrived {
+            true => whole_space_time_error,
+            false => sailed_space_time_error,
+        };
         SimulationDocument {
             format: SIMULATION_FORMAT.to_owned(),
             build: env!("CARGO_PKG_VERSION").to_owned(),
@@ -56,9 +64,7 @@ impl Simulation {
             settings: self.settings_document(),
             safe: !contact && unsafe_plans == 0 && !late && within_tracking_margin,
             contact,
-            arrived: self.time >= self.active.end() - super::INSTANT
-                && self.active.document.is_some()
-                && self.off_plan() <= self.tracking_margin(),
+            arrived,
             interrupted: !self.finished(),
             duration_s: self.time,
             targets: (self.targets.iter().enumerate())
@@ -67,7 +73,7 @@ impl Simulation {
                 })
                 .collect(),
             conduct: SailedDocument {
-                cost_m2: whole_space_time_error(
+                cost_m2: error(
                     &self.scenario.desired,
                     &self.sailed,
                     self.scenario.time_weight,
