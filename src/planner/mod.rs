@@ -93,8 +93,8 @@ pub enum SearchKind {
     AStar,
     /// Dijkstra's algorithm: best first by cost.
     Dijkstra,
-    /// A*, and among several targets a second attempt with many more candidates. Never dearer
-    /// than A* alone for the same sets in one attempt; some ten times as slow.
+    /// A*, and among several targets larger budgets of the graph and of the conflict search. Two
+    /// or three times as slow.
     Thorough,
 }
 

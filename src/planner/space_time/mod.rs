@@ -48,7 +48,6 @@ use route::Route;
 use rules::groups;
 use selection::Selection;
 use selection::budget::SearchBudget;
-use selection::conflict_search;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
@@ -248,16 +247,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
     }
     let targets = by_obstacle(proxies).count();
-    let within = |budget, incumbent| {
-        let nominal = (&nominal_motion[..], &conflicts[..]);
-        attempt(&context, budget, nominal, incumbent, clock)
-    };
-    let mut best = within(SearchBudget::of(targets), f64::INFINITY);
-    let again = problem.search == SearchKind::Thorough && targets > 1 && !conflicts.is_empty();
-    if again && !best.timed_out {
-        let incumbent = best.cost;
-        best = best.or_cheaper(within(&SearchBudget::THOROUGH, incumbent));
-    }
+    let budget = SearchBudget::of(targets, problem.search);
+    let best = attempt(&context, budget, (&nominal_motion, &conflicts), clock);
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
@@ -273,35 +264,17 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
 /// The cheapest candidate of a search within a budget.
 struct Attempt {
     plan: Option<Plan>,
-    /// Cost of the plan with the price of its alterations, m²; infinite without one.
-    cost: f64,
     timed_out: bool,
     stats: SearchStats,
     explored: ExploredGraph,
 }
 
-impl Attempt {
-    /// This one with the other's plan if that is cheaper.
-    fn or_cheaper(mut self, other: Self) -> Self {
-        if other.cost < self.cost {
-            (self.plan, self.cost, self.explored) = (other.plan, other.cost, other.explored);
-        }
-        self.timed_out |= other.timed_out;
-        self.stats.expanded += other.stats.expanded;
-        self.stats.generated += other.stats.generated;
-        self.stats.edges_checked += other.stats.edges_checked;
-        self
-    }
-}
-
 /// Searches the graph, refines its plan and the manoeuvres around the conflicts of the nominal
-/// motion, and resolves conflicts that are far apart one after another. Nothing dearer than the
-/// `incumbent` (m²) need be found.
+/// motion, and resolves conflicts that are far apart one after another.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,
     (nominal_motion, conflicts): (&[Segment], &[Conflict]),
-    incumbent: f64,
     clock: Clock,
 ) -> Attempt {
     let &Context {
@@ -338,17 +311,7 @@ fn attempt(
             }
         }
     }
-    if budget.conflict_nodes > 0 {
-        for guess in conflict_search::resolve(
-            context,
-            nominal_motion,
-            (budget.conflict_nodes, incumbent),
-            clock,
-        ) {
-            selection.add_refined(guess);
-        }
-    }
-    timed_out |= selection.refine(conflicts, clock);
+    timed_out |= selection.refine(nominal_motion, conflicts, clock);
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
     if !timed_out
         && sequential::are_several(conflicts)
@@ -359,10 +322,8 @@ fn attempt(
         timed_out = clock.is_up();
     }
     let counts = search.counts();
-    let (plan, cost) = selection.plan();
     Attempt {
-        plan,
-        cost,
+        plan: selection.plan(),
         timed_out,
         stats: SearchStats {
             expanded: counts.expanded,

@@ -79,6 +79,10 @@ const MIN_INSERTION_GAIN: f64 = 0.01;
 /// Relative cost that pruning may add.
 const PRUNING_COST: f64 = 2e-3;
 
+/// `(round, survivors)`: from that round on, only this many refinements continue, those of the
+/// least expected cost. The best one usually shows early.
+const SURVIVORS: [(usize, usize); 5] = [(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)];
+
 /// Number of rounds after which arcs are divided into fine chords.
 const FINE_FROM: usize = 6;
 
@@ -96,7 +100,6 @@ pub(crate) struct Selection<'a> {
     context: Context<'a>,
     search_budget: &'a SearchBudget,
     guesses: Vec<InitialGuess>,
-    refined: Vec<Refinement>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
     prices: Prices,
@@ -108,7 +111,6 @@ impl<'a> Selection<'a> {
             context,
             search_budget,
             guesses: Vec::new(),
-            refined: Vec::new(),
             best: None,
             graph_cost: None,
             prices: Prices::of(context.problem, context.route),
@@ -120,15 +122,6 @@ impl<'a> Selection<'a> {
         self.guesses.push(guess);
     }
 
-    /// Adds a manoeuvre that is refined already.
-    pub(crate) fn add_refined(&mut self, guess: InitialGuess) {
-        let refined = Refinement::fitting(&self.context, guess);
-        if let Some(motion) = refined.as_ref().and_then(|r| r.best_motion(&self.context)) {
-            self.add_candidate(motion);
-        }
-        self.refined.extend(refined);
-    }
-
     /// Adds a tested plan of the graph, given by the states after the root.
     pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) {
         let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
@@ -137,8 +130,15 @@ impl<'a> Selection<'a> {
         self.add_candidate(motion);
     }
 
-    /// Refines the graph's plan and the predefined manoeuvres; true when the deadline was reached.
-    pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
+    /// Refines the graph's plan and the predefined manoeuvres around the conflicts of the nominal
+    /// motion, and searches for cheaper ones among several targets; true when the deadline was
+    /// reached.
+    pub(crate) fn refine(
+        &mut self,
+        nominal_motion: &[Segment],
+        conflicts: &[Conflict],
+        clock: Clock,
+    ) -> bool {
         let mut context = self.context;
         context.chord = COARSE_CHORD_RAD;
         let (problem, route) = (context.problem, context.route);
@@ -159,7 +159,6 @@ impl<'a> Selection<'a> {
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
-            let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for side in Side::BOTH {
                 guesses.extend(
                     manoeuvres
@@ -181,7 +180,7 @@ impl<'a> Selection<'a> {
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round, self.search_budget.survivors);
+            race(&mut running, round);
             if round == FINE_FROM {
                 context.chord = FINE_CHORD_RAD;
                 for refinement in running.iter_mut().filter(|r| !r.is_stopped()) {
@@ -203,7 +202,13 @@ impl<'a> Selection<'a> {
                 refinement.finish(&context);
             }
         }
-        running.append(&mut self.refined);
+        if self.search_budget.conflict_nodes > 0 {
+            let least = best_of(&running).map_or(f64::INFINITY, Refinement::best_cost);
+            let within = (self.search_budget.conflict_nodes, least);
+            let found = conflict_search::resolve(&self.context, nominal_motion, within, clock);
+            let refined = |guess| Refinement::fitting(&self.context, guess);
+            running.extend(found.into_iter().filter_map(refined));
+        }
         if let Some((tidy, guesses)) = tidy {
             self.add_tidy(&tidy, &running, &guesses, clock);
         } else {
@@ -298,17 +303,10 @@ impl<'a> Selection<'a> {
         clear
     }
 
-    /// Cheapest clear motion, and its cost with the price of its alterations, m²; infinite without
-    /// one.
-    pub(crate) fn plan(self) -> (Option<Plan>, f64) {
-        let factor = (self.best.as_ref()).map_or(1.0, |best| self.prices.factor(&best.motion));
-        let plan = self
-            .best
-            .and_then(|best| Plan::measured(self.context.problem, best.motion, self.graph_cost));
-        let cost = plan
-            .as_ref()
-            .map_or(f64::INFINITY, |plan| plan.cost * factor);
-        (plan, cost)
+    /// Cheapest clear motion.
+    pub(crate) fn plan(self) -> Option<Plan> {
+        let best = self.best?;
+        Plan::measured(self.context.problem, best.motion, self.graph_cost)
     }
 }
 
@@ -364,8 +362,8 @@ fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
 /// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
 /// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
 /// inside a set has no price.
-fn race(running: &mut [Refinement], rounds: usize, survivors: &[(usize, usize)]) {
-    let survivors = survivors.iter().rev().find(|(from, _)| *from <= rounds);
+fn race(running: &mut [Refinement], rounds: usize) {
+    let survivors = SURVIVORS.iter().rev().find(|(from, _)| *from <= rounds);
     let survivors = survivors.map_or(running.len(), |p| p.1);
     let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_stopped()).collect();
     if going.is_empty() {

@@ -191,7 +191,7 @@ impl Selection<'_> {
                 racing.extend(simple.filter_map(|guess| Refinement::fitting(&context, guess)));
             }
             for round in 0..RACING_STEPS {
-                race(&mut racing, round, self.search_budget.survivors);
+                race(&mut racing, round);
                 for refinement in racing.iter_mut().filter(|r| !r.is_finished()) {
                     if !clock.is_up() {
                         refinement.step(&context);

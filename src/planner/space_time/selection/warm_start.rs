@@ -56,8 +56,8 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
         };
         let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
-        let timed_out = selection.refine(&[], clock);
-        Some((selection.plan().0, timed_out))
+        let timed_out = selection.refine(&[], &[], clock);
+        Some((selection.plan(), timed_out))
     });
     let outcome = match found {
         Some((plan, true)) => Outcome::Deadline(plan),
