@@ -31,13 +31,13 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 ExitStatus::NoPlan
             }
             Some(Ok(Ok(verification))) => {
+                documents.push(match &verification {
+                    Checked::Plan(plan) => VerifiedPlanDocument::of(name, plan),
+                    Checked::Simulation(sailed) => {
+                        VerifiedPlanDocument::of_simulation(name, sailed)
+                    }
+                });
                 let shown = if args.json {
-                    documents.push(match &verification {
-                        Checked::Plan(plan) => VerifiedPlanDocument::of(name, plan),
-                        Checked::Simulation(sailed) => {
-                            VerifiedPlanDocument::of_simulation(name, sailed)
-                        }
-                    });
                     ExitStatus::Good
                 } else {
                     output.result(&match &verification {
@@ -65,10 +65,15 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
         };
         status = status.max(reached);
     }
-    if args.json {
-        status = status.max(output.document(&VerificationDocument::of(documents)));
-    }
-    status
+    let checked = VerificationDocument::of(documents);
+    let shown = if args.json {
+        output.document(&checked)
+    } else if checked.plans.len() > 1 {
+        output.result(&format!("\n{checked}"))
+    } else {
+        ExitStatus::Good
+    };
+    status.max(shown)
 }
 
 /// A document that was checked.

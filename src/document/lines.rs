@@ -192,12 +192,12 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
             add("", format!("violates {rule} at {time:.0} s: {what}"));
         }
         for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
-            // avoids a negative zero
+            // avoids a negative zero; rounded up, as a violation is more than nothing
             let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
             let short = match monitor.unit.as_str() {
-                "m" => format!("{short:.1} m"),
-                "deg" => format!("{short:.0}°"),
-                unit => format!("{short:.0} {unit}"),
+                "m" => format!("{:.1} m", 0.1 * (10.0 * short).ceil()),
+                "deg" => format!("{:.0}°", short.ceil()),
+                unit => format!("{:.0} {unit}", short.ceil()),
             };
             let time = monitor.t_s.unwrap_or(f64::NAN);
             let name = &monitor.monitor;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::encounter::EncounterDocument;
 use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
 use super::plan::PlanDocument;
-use crate::evaluation::outcome_word;
+use crate::evaluation::{NOT_BY_THE_RULES, outcome_word};
 use crate::pipeline::Verdict;
 
 /// Outcome of a file that is not a scenario.
@@ -55,6 +55,7 @@ pub struct SuiteSummaryDocument {
     pub scenarios: usize,
     pub solved: usize,
     pub relaxed: usize,
+    pub not_by_the_rules: usize,
     pub infeasible: usize,
     pub deadline: usize,
     pub not_applicable: usize,
@@ -74,6 +75,10 @@ impl SuiteDocument {
             scenarios: runs.len(),
             solved: ended(Verdict::Solved.word()),
             relaxed: ended(Verdict::Relaxed.word()),
+            not_by_the_rules: runs
+                .iter()
+                .filter(|run| run.verdict == NOT_BY_THE_RULES)
+                .count(),
             infeasible: ended(Verdict::Infeasible.word()),
             deadline: ended(Verdict::Deadline.word()),
             not_applicable: ended(NOT_APPLICABLE),
@@ -99,7 +104,11 @@ impl std::fmt::Display for SuiteSummaryDocument {
             self.scenarios, self.solved
         )?;
         for (count, name) in [
-            (self.relaxed.saturating_sub(self.not_safe), "relaxed"),
+            (
+                (self.relaxed).saturating_sub(self.not_safe + self.not_by_the_rules),
+                "relaxed",
+            ),
+            (self.not_by_the_rules, NOT_BY_THE_RULES),
             (self.not_safe, "not safe"),
             (self.infeasible, "infeasible"),
             (self.deadline, "out of time"),

@@ -69,6 +69,13 @@ impl VerificationDocument {
     }
 }
 
+impl std::fmt::Display for VerificationDocument {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (documents, verified, safe) = (self.plans.len(), self.verified, self.safe);
+        write!(f, "{documents} documents: {verified} verified, {safe} safe")
+    }
+}
+
 impl VerifiedPlanDocument {
     /// Builds the entry of a checked document.
     pub fn of(file: String, checked: &Verification) -> Self {

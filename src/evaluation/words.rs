@@ -23,11 +23,14 @@ pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String 
     }
 }
 
+/// The displayed word of a safe plan that gives up the rules.
+pub const NOT_BY_THE_RULES: &str = "not by the rules";
+
 /// The displayed word of a plan that may have given up the rules. Only `"relaxed"` says so little
 /// that it is replaced.
 pub fn without_rules(word: String, gives_up_rules: bool) -> String {
     if gives_up_rules && word == "relaxed" {
-        "not by the rules".to_owned()
+        NOT_BY_THE_RULES.to_owned()
     } else {
         word
     }

@@ -39,7 +39,7 @@ pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let mut grid = Grid {
         header: columns(
             "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
-             clearance\n[m], risk, largest\nturn, nodes\nexpanded, time\n[ms], verified, safe, breaks",
+             clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks",
         ),
         numbers: 2..12,
         rows: entries.iter().map(row).collect(),

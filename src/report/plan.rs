@@ -1,5 +1,8 @@
 //! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
+use std::ffi::OsStr;
+use std::path::Path;
+
 use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
     EncounterDocument, PlanDocument, SuiteRunDocument, TimingDocument, breaks, headline, met,
@@ -24,14 +27,28 @@ pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     Grid {
         header: columns(
             "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], clearance\n[m], \
-             risk, breaks, nodes\nexpanded, time\n[ms], verified, safe",
+             risk, breaks, nodes, time\n[ms], verified, safe",
         ),
         numbers: 5..12,
-        rows: runs.iter().map(suite_row).collect(),
+        rows: (runs.iter().map(|run| suite_row(run, row_name(run, runs)))).collect(),
     }
 }
 
-fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
+/// The file's name, or its path where another file has the same name. The title where the file
+/// holds several scenarios.
+fn row_name(run: &SuiteRunDocument, runs: &[SuiteRunDocument]) -> String {
+    let name = |file: &str| Path::new(file).file_name().map(OsStr::to_owned);
+    let alike = |other: &&SuiteRunDocument| name(&other.file) == name(&run.file);
+    let mut others = runs.iter().filter(alike).filter(|r| !std::ptr::eq(*r, run));
+    match (others.next(), &run.scenario) {
+        (None, _) => name(&run.file).map(|name| name.to_string_lossy().into_owned()),
+        (Some(other), Some(title)) if other.file == run.file => Some(title.clone()),
+        _ => None,
+    }
+    .unwrap_or_else(|| run.file.clone())
+}
+
+fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
     let cost = run.cost.as_ref();
     let met = met(&run.encounters);
     let planned = cost.is_some();
@@ -45,11 +62,7 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
     };
     let roles = per_target(&|e| e.role.clone());
     vec![
-        // a file without a scenario has no other name
-        plain(match &run.error {
-            None if run.search_stats.is_some() => run.scenario.as_deref().unwrap_or_default(),
-            _ => &run.file,
-        }),
+        plain(name),
         verdict(&run.verdict),
         or_dash(roles.or_else(|| run.search_stats.map(|_| "none".to_owned()))),
         or_dash(cost.map(turn)),
@@ -140,12 +153,37 @@ mod tests {
         busy.encounters = vec![busy.encounters[0].clone(); 5];
         let table = suite_table(std::slice::from_ref(&busy), false);
         assert_eq!(table.matches("port, astern").count(), LISTED, "{table}");
-        assert!(table.contains("+ 2 more") && table.contains("Give-way"));
+        assert!(table.contains("+ 2 more") && table.contains("a.toml"));
         assert!(!table.contains('\u{1b}'));
         assert!(suite_table(&[planned()], true).contains('\u{1b}'));
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
         let both = suite_table(&[failed, busy], false);
-        assert!(both.find("x.toml") < both.find("Give-way"));
+        assert!(both.find("x.toml") < both.find("a.toml"));
+    }
+
+    #[test]
+    fn a_row_has_the_shortest_name_that_tells_it_from_the_others() {
+        let of = |file: &str, title: &str| SuiteRunDocument {
+            file: file.to_owned(),
+            scenario: Some(title.to_owned()),
+            ..planned()
+        };
+        let runs = [
+            of("dnv/one.toml", "HO"),
+            of("imazu/all.json", "imazu-01"),
+            of("imazu/all.json", "imazu-02"),
+            of("a/same.toml", "HO"),
+            of("b/same.toml", "HO"),
+        ];
+        let names = runs.each_ref().map(|run| row_name(run, &runs));
+        let wanted = [
+            "one.toml",
+            "imazu-01",
+            "imazu-02",
+            "a/same.toml",
+            "b/same.toml",
+        ];
+        assert_eq!(names, wanted);
     }
 
     #[test]

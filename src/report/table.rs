@@ -56,8 +56,9 @@ impl Grid {
         } else {
             table.force_no_tty();
         }
-        for index in self.numbers.clone() {
-            if let Some(column) = table.column_mut(index) {
+        for (index, column) in table.column_iter_mut().enumerate() {
+            column.set_padding((0, 1));
+            if self.numbers.contains(&index) {
                 column.set_cell_alignment(CellAlignment::Right);
             }
         }
