@@ -152,6 +152,9 @@ impl Relaxer<'_> {
             ..*self
         };
         let quick = quick.answer_of_one_search();
+        if matches!(quick.planned.outcome, Outcome::Deadline(_)) {
+            return quick;
+        }
         let thorough = self.answer_of_one_search();
         match thorough.planned.outcome {
             _ if !quick.is_better_than(&thorough) => thorough,

@@ -4,8 +4,7 @@ use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
 use crate::evaluation::sets::space_time_set::{Face, MovingSet};
 use crate::frame::{Pose, Vector, to_port};
-use crate::geometry::{Between, shortest_between};
-use crate::tolerance;
+use crate::geometry::shortest_between;
 use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
@@ -186,21 +185,15 @@ impl Body {
         let on_set =
             |n: Vector| farthest(n, set.vertices.iter().map(|v| v.at(time) - pose.position));
         let on_hull = |n: Vector| farthest(n, corners.iter().map(|c| c.position - pose.position));
-        match shortest_between(on_set, on_hull, across) {
-            // A supporting line proves the gap `best.value`. A distance that is shorter by more
-            // than rounding is wrong.
-            Some(Between {
-                shortest,
-                resolution,
-            }) if shortest.norm() >= best.value - resolution.max(tolerance::TOUCH_M) => {
-                best.value = best.value.max(shortest.norm());
-                if let Some(normal) = shortest.try_normalize(0.0) {
-                    best.lower = best.lower.max(beyond(&set.face(normal)).lower);
-                }
-                best
-            }
-            _ => Probe::new(f64::NAN, f64::NAN),
+        let Some(shortest) = shortest_between(on_set, on_hull, across) else {
+            return Probe::new(f64::NAN, f64::NAN);
+        };
+        // a supporting line proves `best.value`; for a very narrow set parry may find less
+        best.value = best.value.max(shortest.norm());
+        if let Some(normal) = shortest.try_normalize(0.0) {
+            best.lower = best.lower.max(beyond(&set.face(normal)).lower);
         }
+        best
     }
 
     fn corners(&self, pose: &Pose, moving: &Moving) -> [Corner; 4] {
@@ -396,6 +389,23 @@ mod tests {
         let found = least_distance(&[s], Body::hull(&hull), &set);
         assert!(found.certified && found.probes < 300, "{found:?}");
         assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);
+    }
+
+    /// Parry takes a triangle of this width for touching whatever is beside it.
+    #[test]
+    fn a_very_narrow_set_is_no_nearer_than_a_line_proves() {
+        let corners = [(0.0, 0.0), (2e-10, 0.0), (-6.85, 0.637)].map(|(x, y)| Vector::new(x, y));
+        let narrow = ConvexPolygon::from_ccw(corners.to_vec());
+        let set = MovingSet::new(&narrow, &ConvexPolygon::point(Vector::zeros()));
+        let side = narrow.vertices()[narrow.vertices().len() - 1] - narrow.vertices()[0];
+        let (along, across) = (side.normalize(), to_port(side.normalize()));
+        for k in 1..200 {
+            let off = 1e-3 * f64::from(k) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            let at = narrow.vertices()[0] + along * (0.5 * side.norm()) + across * off;
+            let still = Segment::straight(Pose::new(at, 0.3), 0.0, 1.0, 0.0);
+            let found = least_distance(&[still], Body::POINT, &set).value;
+            assert!((found - off.abs()).abs() < 1e-6, "{found} {off}");
+        }
     }
 
     #[test]

@@ -176,7 +176,8 @@ impl<'a> Graph<'a> {
         let (pose, time) = motion
             .last()
             .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
-        if time > self.problem.horizon {
+        // the search ends after this expansion
+        if time > self.problem.horizon || self.clock.is_up() {
             return;
         }
         let cost = match kind {

@@ -136,7 +136,7 @@ fn children(
     ways.push(along(node, conflict.ahead, 1.0));
     ways.into_iter()
         .take_while(|_| !clock.is_up())
-        .filter_map(|corners| child(&context, node, &corners, &considered))
+        .filter_map(|corners| child(&context, node, &corners, &considered, clock))
         .collect()
 }
 
@@ -202,13 +202,19 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
 }
 
 /// Refines a manoeuvre with these corners.
-fn child(context: &Context, node: &Node, corners: &[Corner], considered: &[usize]) -> Option<Node> {
+fn child(
+    context: &Context,
+    node: &Node,
+    corners: &[Corner],
+    considered: &[usize],
+    clock: Clock,
+) -> Option<Node> {
     let angles = MANOEUVRE_RETURN_ANGLES.into_iter();
     let mut refinement = angles
         .filter_map(|angle| guess(context, node, corners, angle))
         .find_map(|guess| Refinement::fitting(context, guess))?;
     for _ in 0..STEPS {
-        if refinement.is_finished() {
+        if refinement.is_finished() || clock.is_up() {
             break;
         }
         refinement.step(context);
