@@ -7,7 +7,7 @@ use searoom::document::{VerificationDocument, VerifiedPlanDocument};
 use searoom::input::read_text;
 use searoom::report::{simulation_verification_text, verification_text};
 use searoom::verification::{
-    SimulationVerification, Verification, is_simulation, verify as check, verify_simulation,
+    SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
 };
 
 use super::args::VerifyArgs;
@@ -30,26 +30,28 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 output.error(&error);
                 ExitStatus::NoPlan
             }
-            Some(Ok(Ok(verification))) => {
-                documents.push(match &verification {
-                    Checked::Plan(plan) => VerifiedPlanDocument::of(name, plan),
-                    Checked::Simulation(sailed) => {
-                        VerifiedPlanDocument::of_simulation(name, sailed)
+            Some(Ok(Ok(all))) => {
+                let mut reached = ExitStatus::Good;
+                for checked in all {
+                    let (document, text) = match &checked {
+                        Checked::Plan(plan) => (
+                            VerifiedPlanDocument::of(name.clone(), plan),
+                            verification_text(plan, output.colour),
+                        ),
+                        Checked::Simulation(sailed) => (
+                            VerifiedPlanDocument::of_simulation(name.clone(), sailed),
+                            simulation_verification_text(sailed),
+                        ),
+                    };
+                    if !document.verified {
+                        reached = reached.max(ExitStatus::NoPlan);
                     }
-                });
-                let shown = if args.json {
-                    ExitStatus::Good
-                } else {
-                    output.result(&match &verification {
-                        Checked::Plan(plan) => verification_text(plan, output.colour),
-                        Checked::Simulation(sailed) => simulation_verification_text(sailed),
-                    })
-                };
-                shown.max(if verification.is_verified() {
-                    ExitStatus::Good
-                } else {
-                    ExitStatus::NoPlan
-                })
+                    documents.push(document);
+                    if !args.json {
+                        reached = reached.max(output.result(&text));
+                    }
+                }
+                reached
             }
             Some(Ok(Err(error))) => {
                 let error = format!("{error:#}");
@@ -77,22 +79,13 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
 }
 
 /// A document that was checked.
-#[expect(clippy::large_enum_variant, reason = "one per file")]
+#[expect(clippy::large_enum_variant, reason = "few per file")]
 enum Checked {
     Plan(Verification),
     Simulation(SimulationVerification),
 }
 
-impl Checked {
-    fn is_verified(&self) -> bool {
-        match self {
-            Self::Plan(plan) => plan.verified(),
-            Self::Simulation(sailed) => sailed.violations.is_empty(),
-        }
-    }
-}
-
-fn one(file: &Path) -> anyhow::Result<Checked> {
+fn one(file: &Path) -> anyhow::Result<Vec<Checked>> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
@@ -100,9 +93,9 @@ fn one(file: &Path) -> anyhow::Result<Checked> {
         read_text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
     };
     let checked = if is_simulation(&text) {
-        verify_simulation(&text).map(Checked::Simulation)
+        verify_simulations(&text).map(|all| all.into_iter().map(Checked::Simulation).collect())
     } else {
-        check(&text).map(Checked::Plan)
+        check(&text).map(|plan| vec![Checked::Plan(plan)])
     };
     // the message already includes its field
     checked.map_err(|error| anyhow!("{error}"))

@@ -40,7 +40,7 @@ const KEYS: usize = 5;
 pub struct ClaimError(String);
 
 impl ClaimError {
-    fn at(path: &str, reason: impl std::fmt::Display) -> Self {
+    pub(super) fn at(path: &str, reason: impl std::fmt::Display) -> Self {
         match path {
             // the whole document
             "." | "?" => Self(reason.to_string()),

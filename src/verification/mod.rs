@@ -30,7 +30,7 @@ mod sets;
 mod simulation;
 
 pub use claim::ClaimError;
-pub use simulation::{SimulationVerification, is_simulation, verify_simulation};
+pub use simulation::{SimulationVerification, is_simulation, verify_simulations};
 
 use claim::{Claim, ClaimedMotion};
 

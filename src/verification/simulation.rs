@@ -1,11 +1,12 @@
 //! Checks a simulation document alone: contacts and least distances from the motions in it.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::claim::ClaimError;
 use super::mismatch;
 use super::motion::segment;
-use crate::document::{SIMULATION_FORMAT, SimulationDocument, StateDocument};
+use crate::document::{SIMULATION_FORMAT, SimulationDocument, SimulationsDocument, StateDocument};
 use crate::evaluation::{Body, MovingSlabs, Violation};
 use crate::frame::Pose;
 use crate::geometry::ConvexPolygon;
@@ -51,38 +52,56 @@ impl SimulationVerification {
     }
 }
 
-/// True for the text of a simulation document.
+/// True for the text of a simulation document, or of a list of them.
 pub fn is_simulation(text: &str) -> bool {
     #[derive(Deserialize)]
-    struct Format {
-        format: String,
+    struct Kind {
+        format: Option<String>,
+        simulations: Option<IgnoredAny>,
     }
-    serde_json::from_str::<Format>(text).is_ok_and(|found| found.format == SIMULATION_FORMAT)
+    serde_json::from_str::<Kind>(text).is_ok_and(|found| {
+        found.simulations.is_some() || found.format.as_deref() == Some(SIMULATION_FORMAT)
+    })
 }
 
-/// Checks the text of a simulation document: that own ship's motion and the targets' tracks are
-/// without a gap, and that contacts and least distances are those of the motions.
+/// Checks the text of a simulation document, or of each in a list: that own ship's motion and the
+/// targets' tracks are without a gap, and that contacts and least distances are those of the
+/// motions.
 ///
 /// A ship that was steered is given by a segment per step. The gap after a segment bounds by how
 /// much a distance on it may differ. Plans are documents of their own. O(segments × targets).
-pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimError> {
-    let document: SimulationDocument = super::claim::parse(text)?;
+pub fn verify_simulations(text: &str) -> Result<Vec<SimulationVerification>, ClaimError> {
+    #[derive(Deserialize)]
+    struct Kind {
+        simulations: Option<IgnoredAny>,
+    }
+    let documents = match super::claim::parse::<Kind>(text)?.simulations {
+        Some(_) => super::claim::parse::<SimulationsDocument>(text)?.simulations,
+        None => vec![super::claim::parse(text)?],
+    };
+    if documents.is_empty() {
+        return Err(ClaimError::at("simulations", "an empty list"));
+    }
+    Ok(documents.iter().map(verified).collect())
+}
+
+fn verified(document: &SimulationDocument) -> SimulationVerification {
     let sailed: Vec<Segment> = document.sailed.iter().map(segment).collect();
     let mut violations = Vec::new();
     if !sailed.iter().all(Segment::is_valid) || sailed.is_empty() {
         let what = "sailed: no motion of finite numbers and times that increase";
         violations.push(Violation::new(what.to_owned(), 0.0));
         // what was sailed is unknown
-        return Ok(SimulationVerification {
-            scenario: document.scenario,
+        return SimulationVerification {
+            scenario: document.scenario.clone(),
             contact: true,
             safe: false,
             least_clearance: f64::NAN,
             violations,
-        });
+        };
     }
     // what the motion leaves open on and after each segment, metres
-    let share = if is_steered(&document) {
+    let share = if is_steered(document) {
         MEAN_SHARE
     } else {
         0.0
@@ -94,7 +113,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
         gaps[index] += jump;
         let late = (pair[0].end_time() - pair[1].start_time).abs();
         // negated so that a NaN is a gap
-        if !(late <= TIME_S && jump <= most_gap(&document)) {
+        if !(late <= TIME_S && jump <= most_gap(document)) {
             let what = format!(
                 "sailed: a gap of {jump} m, {late} s before segment {}",
                 index + 1
@@ -107,7 +126,7 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
     if !(covered <= TIME_S * (1.0 + document.duration_s)) {
         violations.push(mismatch("sailed", "the whole duration", "another time"));
     }
-    violations.extend(contradictions(&document));
+    violations.extend(contradictions(document));
     let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
@@ -167,13 +186,13 @@ pub fn verify_simulation(text: &str) -> Result<SimulationVerification, ClaimErro
         violations.push(mismatch("safe", document.safe, safe));
     }
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
-    Ok(SimulationVerification {
-        scenario: document.scenario,
+    SimulationVerification {
+        scenario: document.scenario.clone(),
         contact,
         safe,
         least_clearance,
         violations,
-    })
+    }
 }
 
 /// Statements of a document that contradict one another.

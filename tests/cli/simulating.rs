@@ -340,6 +340,31 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
 
 /// Contacts and distances are computed again from the motions alone.
 #[test]
+fn every_simulation_of_a_list_is_verified() {
+    let folder = Folder::new();
+    let mut sailed = json(&format!(
+        "simulate {HEAD_ON_FILE} scenarios/colregs/give-way.toml --json"
+    ));
+    let list = folder.write("list.json", sailed.to_string());
+    let shown = stdout(&searoom(&["verify", &list]).success());
+    assert_eq!(shown.matches(": verified: no contact").count(), 2);
+    assert!(
+        shown.ends_with("\n2 documents: 2 verified, 2 safe\n"),
+        "{shown}"
+    );
+    sailed["simulations"][1]["contact"] = true.into();
+    let altered = folder.write("altered.json", sailed.to_string());
+    let found = document(&searoom(&["verify", &altered, "--json"]).code(1));
+    assert_eq!(found["verified"], 1);
+    assert_eq!(found["plans"][1]["verified"], false);
+    let empty = folder.write("empty.json", "{\"simulations\": []}");
+    let refused = searoom(&["verify", &empty]).code(2);
+    refused.stderr(predicates::str::contains(
+        "empty.json: simulations: an empty list",
+    ));
+}
+
+#[test]
 fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
     let folder = Folder::new();
     let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
