@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use searoom::document::{VerificationDocument, VerifiedPlanDocument};
 use searoom::input::read_text;
-use searoom::report::{simulation_verification_text, verification_text};
+use searoom::report::{printable, simulation_verification_text, verification_text};
 use searoom::verification::{
     SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
 };
@@ -47,9 +47,13 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                         reached = reached.max(ExitStatus::NoPlan);
                     }
                     documents.push(document);
-                    if !args.json {
-                        reached = reached.max(output.result(&text));
+                    if args.json {
+                        continue;
                     }
+                    reached = reached.max(match args.plans.len() {
+                        1 => output.result(&text),
+                        _ => output.result(&format!("{}: {text}", printable(&name))),
+                    });
                 }
                 reached
             }

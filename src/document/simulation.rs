@@ -60,8 +60,9 @@ impl SimulatedTargetDocument {
     }
 }
 
-/// Several simulations.
+/// Several simulations, and nothing else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SimulationsDocument {
     pub simulations: Vec<SimulationDocument>,
 }

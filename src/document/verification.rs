@@ -72,7 +72,21 @@ impl VerificationDocument {
 impl std::fmt::Display for VerificationDocument {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (documents, verified, safe) = (self.plans.len(), self.verified, self.safe);
-        write!(f, "{documents} documents: {verified} verified, {safe} safe")
+        write!(f, "{documents} documents: {verified} verified, {safe} safe")?;
+        let unread = self
+            .plans
+            .iter()
+            .filter(|plan| plan.error.is_some())
+            .count();
+        for (count, name) in [
+            (documents - verified - unread, "rejected"),
+            (unread, "unreadable or not proven"),
+        ] {
+            if count > 0 {
+                write!(f, ", {count} {name}")?;
+            }
+        }
+        Ok(())
     }
 }
 

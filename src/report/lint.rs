@@ -31,9 +31,16 @@ pub fn lint_text(document: &LintDocument, colour: bool) -> String {
         findings.extend(scenario.findings.iter().map(|f| format!("{name}: {f}")));
     }
     let summary = &document.summary;
+    let count = |count: usize, word: &str| match count {
+        1 => format!("1 {word}"),
+        _ => format!("{count} {word}s"),
+    };
     findings.push(format!(
-        "{} scenarios, {} targets: {} findings, {} unreadable",
-        summary.scenarios, summary.targets, summary.findings, summary.unreadable
+        "{}, {}: {}, {} unreadable",
+        count(summary.scenarios, "scenario"),
+        count(summary.targets, "target"),
+        count(summary.findings, "finding"),
+        summary.unreadable
     ));
     format!("{}\n{}", grid.text(colour), findings.join("\n"))
 }

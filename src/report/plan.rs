@@ -10,7 +10,7 @@ use crate::document::{
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
-use crate::text::{signed, square_metres, tenths};
+use crate::text::{printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
@@ -62,7 +62,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
     };
     let roles = per_target(&|e| e.role.clone());
     vec![
-        plain(name),
+        plain(printable(&name)),
         verdict(&run.verdict),
         or_dash(roles.or_else(|| run.search_stats.map(|_| "none".to_owned()))),
         or_dash(cost.map(turn)),

@@ -183,7 +183,8 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
             return shape(format!("found no JSON ({error}); allowed: a plan document"));
         }
     };
-    match (document.as_object(), document.get("format")) {
+    let named = document.get("format").or(document.get("simulations"));
+    match (document.as_object(), named) {
         (_, Some(_)) => shape(error.inner().to_string()),
         (Some(object), None) => {
             let keys: Vec<&str> = object.keys().take(KEYS).map(String::as_str).collect();

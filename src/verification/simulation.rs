@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::claim::ClaimError;
+use super::claim::{ClaimError, fault};
 use super::mismatch;
 use super::motion::segment;
 use crate::document::{SIMULATION_FORMAT, SimulationDocument, SimulationsDocument, StateDocument};
@@ -52,16 +52,27 @@ impl SimulationVerification {
     }
 }
 
+/// What kind of document a text is. A list has no format of its own.
+#[derive(Default, Deserialize)]
+struct Kind {
+    format: Option<String>,
+    simulations: Option<IgnoredAny>,
+}
+
+impl Kind {
+    fn of(text: &str) -> Self {
+        serde_json::from_str(text).unwrap_or_default()
+    }
+
+    fn is_list(&self) -> bool {
+        self.format.is_none() && self.simulations.is_some()
+    }
+}
+
 /// True for the text of a simulation document, or of a list of them.
 pub fn is_simulation(text: &str) -> bool {
-    #[derive(Deserialize)]
-    struct Kind {
-        format: Option<String>,
-        simulations: Option<IgnoredAny>,
-    }
-    serde_json::from_str::<Kind>(text).is_ok_and(|found| {
-        found.simulations.is_some() || found.format.as_deref() == Some(SIMULATION_FORMAT)
-    })
+    let kind = Kind::of(text);
+    kind.is_list() || kind.format.as_deref() == Some(SIMULATION_FORMAT)
 }
 
 /// Checks the text of a simulation document, or of each in a list: that own ship's motion and the
@@ -71,16 +82,17 @@ pub fn is_simulation(text: &str) -> bool {
 /// A ship that was steered is given by a segment per step. The gap after a segment bounds by how
 /// much a distance on it may differ. Plans are documents of their own. O(segments × targets).
 pub fn verify_simulations(text: &str) -> Result<Vec<SimulationVerification>, ClaimError> {
-    #[derive(Deserialize)]
-    struct Kind {
-        simulations: Option<IgnoredAny>,
-    }
-    let documents = match super::claim::parse::<Kind>(text)?.simulations {
-        Some(_) => super::claim::parse::<SimulationsDocument>(text)?.simulations,
-        None => vec![super::claim::parse(text)?],
+    let documents = if Kind::of(text).is_list() {
+        super::claim::parse::<SimulationsDocument>(text)?.simulations
+    } else {
+        vec![super::claim::parse(text)?]
     };
     if documents.is_empty() {
         return Err(ClaimError::at("simulations", "an empty list"));
+    }
+    let other = |d: &&SimulationDocument| d.format != SIMULATION_FORMAT;
+    if let Some(other) = documents.iter().find(other) {
+        return Err(fault("format", &other.format, SIMULATION_FORMAT));
     }
     Ok(documents.iter().map(verified).collect())
 }

@@ -357,6 +357,14 @@ fn every_simulation_of_a_list_is_verified() {
     let found = document(&searoom(&["verify", &altered, "--json"]).code(1));
     assert_eq!(found["verified"], 1);
     assert_eq!(found["plans"][1]["verified"], false);
+    // what stands beside a list is not passed over
+    let mut beside = sailed.clone();
+    beside["format"] = "searoom-plan/1".into();
+    let beside = folder.write("beside.json", beside.to_string());
+    searoom(&["verify", &beside]).code(2);
+    sailed["simulations"][1]["format"] = "searoom-simulation/0".into();
+    let old = folder.write("old.json", sailed.to_string());
+    searoom(&["verify", &old]).code(2);
     let empty = folder.write("empty.json", "{\"simulations\": []}");
     let refused = searoom(&["verify", &empty]).code(2);
     refused.stderr(predicates::str::contains(

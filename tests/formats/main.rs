@@ -371,17 +371,17 @@ fn every_relaxation_level_answers_some_encounter() {
     assert_eq!(by_the_rules.level, RelaxationLevel::Rules);
     let clear_of_shapes = answer(dnv("49"), Compliance::Rules);
     assert_eq!(clear_of_shapes.level, RelaxationLevel::Domains);
-    let imazu = Assumed::default().with(Assumption::SafetyMargin, 500.0);
-    let case = benchmark("imazu/imazu.json").remove(16);
-    let case = case.scenario(&imazu).expect("no faults").scenario;
     let searched = |run: &Run| run.planned.stats.expanded > 0;
-    let clear_of_hard_sets = answer(case, Compliance::Shape);
+    let clear_of_hard_sets = answer(dnv("43"), Compliance::Shape);
     assert!(
         clear_of_hard_sets.level == RelaxationLevel::ReducedDomains
             && searched(&clear_of_hard_sets)
     );
     // wide detours are not plans of the graph
-    let around = answer(dnv("53"), Compliance::Shape);
+    let far = Assumed::default().with(Assumption::SafetyMargin, 500.0);
+    let situation = benchmark("dnv/traffic_situation_49.json").remove(0);
+    let situation = situation.scenario(&far).expect("no faults").scenario;
+    let around = answer(situation, Compliance::Shape);
     assert!(around.level == RelaxationLevel::ReducedDomains && !searched(&around));
     let crowd = random_traffic(10, 201, Placement::Origin).expect("drawn");
     let half = answer(crowd.scenario, Compliance::Shape);

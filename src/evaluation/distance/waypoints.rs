@@ -7,39 +7,40 @@ use crate::trajectory::DesiredTrajectory;
 /// Accuracy of the distances, metres.
 pub(crate) const ACCURACY_M: f64 = 0.01;
 
-/// Largest number of samples of a piece. A long circle about a waypoint would need more, and is
-/// sampled less densely.
-const MOST_SAMPLES: f64 = 1e4;
+/// Largest number of parts of a piece. A long circle about a waypoint would need more, and is
+/// divided less finely.
+const MOST_SAMPLES: usize = 10_000;
 
 /// Least distance of a motion from each waypoint between the first and the last, metres, at most
-/// [`ACCURACY_M`] too large, or the way between two of [`MOST_SAMPLES`] samples of a piece. NaN for
-/// a motion that is not finite. O(pieces) per waypoint, more for a circle about one.
+/// [`ACCURACY_M`] too large, or the length of the longest of [`MOST_SAMPLES`] parts. NaN for a
+/// motion that is not finite. O(pieces) per waypoint, more for a circle about one.
 pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajectory) -> Vec<f64> {
     let inner = desired.legs().iter().skip(1).map(|leg| leg.start);
     inner.map(|place| least_distance(pieces, place)).collect()
 }
 
-/// Samples so densely that no point between two samples is nearer by more than the accuracy.
+/// Bisects each piece until no part is nearer by more than the accuracy, by the greatest speed.
 fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
     let mut least = f64::INFINITY;
     for piece in pieces {
-        let (mut time, fastest) = (piece.start_time(), piece.bounds().speed);
-        let shortest = (piece.end_time() - time) / MOST_SAMPLES;
-        loop {
-            let distance = (piece.pose_at(time).position - place).norm();
-            if !distance.is_finite() {
-                return f64::NAN;
+        let fastest = piece.bounds().speed;
+        let mut open = vec![(piece.start_time(), piece.end_time())];
+        let mut samples = 0;
+        while let Some((from, until)) = open.pop() {
+            let middle = 0.5 * (from + until);
+            for time in [from, middle, until] {
+                let distance = (piece.pose_at(time).position - place).norm();
+                if !distance.is_finite() {
+                    return f64::NAN;
+                }
+                least = least.min(distance);
             }
-            least = least.min(distance);
-            // the motion is not nearer than `least` within this time, but for the accuracy
-            let step = (distance - least + ACCURACY_M) / fastest;
-            // negated on purpose: a NaN ends the search
-            if !(time < piece.end_time()) {
-                break;
+            let here = (piece.pose_at(middle).position - place).norm();
+            let nearest = here - fastest * 0.5 * (until - from);
+            samples += 1;
+            if nearest < least - ACCURACY_M && samples < MOST_SAMPLES {
+                open.extend([(from, middle), (middle, until)]);
             }
-            // a step below a rounding would not end
-            let next = (time + step.max(shortest)).max(time.next_up());
-            time = next.min(piece.end_time());
         }
     }
     least
@@ -77,6 +78,22 @@ mod tests {
             );
         }
         assert_eq!(found.len(), 3);
+    }
+
+    /// Lines of 10 to 1,000 km straight through the waypoint.
+    #[test]
+    fn long_lines_have_exact_distances() {
+        for length in [1e4, 1e5, 1e6] {
+            let points = [(0.0, 0.0), (length / 3.0, 0.0), (length, 0.0)];
+            let points = points.map(|(x, y)| Vector::new(x, y));
+            let desired = DesiredTrajectory::new(&points, &[10.0; 2]).expect("valid");
+            for beside in [0.0, 0.005, 3.0] {
+                let start = Pose::new(Vector::new(0.0, beside), 0.0);
+                let motion = chain(start, &[(length / 10.0, 10.0, 0.0)]);
+                let found = waypoint_distances(&motion, &desired)[0];
+                assert!(found >= beside && found <= beside + ACCURACY_M, "{found}");
+            }
+        }
     }
 
     /// An unsound document: 1e300 m/s, and a turn of a year on the spot of a waypoint.

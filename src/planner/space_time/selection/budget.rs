@@ -9,9 +9,12 @@ pub(crate) struct SearchBudget {
     /// `(max_expansions, heuristic_weight)` of each search stage. The limit counts all expansions
     /// so far and bounds memory and time. A stage starts where the earlier ones found no plan.
     pub stages: &'static [(usize, f64)],
-    /// Largest number of racing rounds.
+    /// True where refinements that fall behind are stopped. The best one of one target usually shows
+    /// early; among several it often is not clear before the last rounds.
+    pub races: bool,
+    /// Largest number of rounds.
     pub steps: usize,
-    /// Largest number of racing rounds once a manoeuvre is clear. The best one then lacks segment
+    /// Largest number of rounds once a manoeuvre is clear. The best one then lacks segment
     /// variables rather than steps.
     pub rounds: usize,
     /// Largest number of manoeuvres that get segment insertions.
@@ -26,6 +29,7 @@ impl SearchBudget {
     /// Budget for one target: finds the graph's optimum.
     pub(crate) const ONE_TARGET: Self = Self {
         stages: &[(2_000, 1.0)],
+        races: true,
         steps: MAX_STEPS,
         rounds: 8,
         leaders: 2,
@@ -39,6 +43,7 @@ impl SearchBudget {
     /// ones weight the heuristic less.
     pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
+        races: false,
         leaders: 3,
         conflict_nodes: 64,
         ..Self::ONE_TARGET
@@ -49,7 +54,7 @@ impl SearchBudget {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
         leaders: 4,
         conflict_nodes: 256,
-        ..Self::ONE_TARGET
+        ..Self::SEVERAL_TARGETS
     };
 
     /// Budget of a warm start. A manoeuvre that is clear of other sets is clear of these soon or

@@ -180,7 +180,9 @@ impl<'a> Selection<'a> {
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round);
+            if self.search_budget.races {
+                race(&mut running, round);
+            }
             if round == FINE_FROM {
                 context.chord = FINE_CHORD_RAD;
                 for refinement in running.iter_mut().filter(|r| !r.is_stopped()) {
