@@ -1,6 +1,6 @@
 //! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
-use std::ffi::OsStr;
+use std::collections::HashMap;
 use std::path::Path;
 
 use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
@@ -30,22 +30,45 @@ pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
              risk, breaks, nodes, time\n[ms], verified, safe",
         ),
         numbers: 5..12,
-        rows: (runs.iter().map(|run| suite_row(run, row_name(run, runs)))).collect(),
+        rows: (runs.iter().zip(row_names(runs)))
+            .map(|(run, name)| suite_row(run, name))
+            .collect(),
     }
 }
 
-/// The file's name, or its path where another file has the same name. The title where the file
-/// holds several scenarios.
-fn row_name(run: &SuiteRunDocument, runs: &[SuiteRunDocument]) -> String {
-    let name = |file: &str| Path::new(file).file_name().map(OsStr::to_owned);
-    let alike = |other: &&SuiteRunDocument| name(&other.file) == name(&run.file);
-    let mut others = runs.iter().filter(alike).filter(|r| !std::ptr::eq(*r, run));
-    match (others.next(), &run.scenario) {
-        (None, _) => name(&run.file).map(|name| name.to_string_lossy().into_owned()),
-        (Some(other), Some(title)) if other.file == run.file => Some(title.clone()),
-        _ => None,
+/// The shortest names that tell the runs apart. A file alone has its name, or its path where
+/// another file has the same name. A scenario of several in a file has its title, after the file
+/// where the title occurs again.
+fn row_names(runs: &[SuiteRunDocument]) -> Vec<String> {
+    let name_of = |file: &str| -> Option<String> {
+        let name = Path::new(file).file_name()?;
+        Some(name.to_string_lossy().into_owned())
+    };
+    let mut files: HashMap<&str, usize> = HashMap::new();
+    let mut titles: HashMap<&Option<String>, usize> = HashMap::new();
+    for run in runs {
+        *files.entry(&run.file).or_default() += 1;
+        *titles.entry(&run.scenario).or_default() += 1;
     }
-    .unwrap_or_else(|| run.file.clone())
+    let mut names: HashMap<Option<String>, usize> = HashMap::new();
+    for file in files.keys() {
+        *names.entry(name_of(file)).or_default() += 1;
+    }
+    let label = |run: &SuiteRunDocument| {
+        let name = name_of(&run.file);
+        let file = match names[&name] {
+            1 => name.unwrap_or_else(|| run.file.clone()),
+            _ => run.file.clone(),
+        };
+        match &run.scenario {
+            Some(title) if files[run.file.as_str()] > 1 => match titles[&run.scenario] {
+                1 => title.clone(),
+                _ => format!("{file}: {title}"),
+            },
+            _ => file,
+        }
+    };
+    runs.iter().map(label).collect()
 }
 
 fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
@@ -172,17 +195,21 @@ mod tests {
             of("dnv/one.toml", "HO"),
             of("imazu/all.json", "imazu-01"),
             of("imazu/all.json", "imazu-02"),
+            of("copy/all.json", "imazu-02"),
+            of("copy/all.json", "imazu-03"),
             of("a/same.toml", "HO"),
             of("b/same.toml", "HO"),
         ];
-        let names = runs.each_ref().map(|run| row_name(run, &runs));
         let wanted = [
             "one.toml",
             "imazu-01",
-            "imazu-02",
+            "imazu/all.json: imazu-02",
+            "copy/all.json: imazu-02",
+            "imazu-03",
             "a/same.toml",
             "b/same.toml",
         ];
+        let names = row_names(&runs);
         assert_eq!(names, wanted);
     }
 

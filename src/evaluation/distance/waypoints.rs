@@ -9,10 +9,10 @@ pub(crate) const ACCURACY_M: f64 = 0.01;
 
 /// Largest number of parts of a piece. A long circle about a waypoint would need more, and is
 /// divided less finely.
-const MOST_SAMPLES: usize = 10_000;
+const MOST_PARTS: usize = 10_000;
 
 /// Least distance of a motion from each waypoint between the first and the last, metres, at most
-/// [`ACCURACY_M`] too large, or the length of the longest of [`MOST_SAMPLES`] parts. NaN for a
+/// [`ACCURACY_M`] too large, or the length of the longest of [`MOST_PARTS`] parts. NaN for a
 /// motion that is not finite. O(pieces) per waypoint, more for a circle about one.
 pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajectory) -> Vec<f64> {
     let inner = desired.legs().iter().skip(1).map(|leg| leg.start);
@@ -23,22 +23,25 @@ pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajec
 fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
     let mut least = f64::INFINITY;
     for piece in pieces {
-        let fastest = piece.bounds().speed;
-        let mut open = vec![(piece.start_time(), piece.end_time())];
-        let mut samples = 0;
+        let distance_at = |time: f64| (piece.pose_at(time).position - place).norm();
+        let (start, end) = (piece.start_time(), piece.end_time());
+        let ends = [distance_at(start), distance_at(end)];
+        if ends.iter().any(|distance| !distance.is_finite()) {
+            return f64::NAN;
+        }
+        least = least.min(ends[0]).min(ends[1]);
+        let mut open = vec![(start, end)];
+        let mut parts = 0;
         while let Some((from, until)) = open.pop() {
             let middle = 0.5 * (from + until);
-            for time in [from, middle, until] {
-                let distance = (piece.pose_at(time).position - place).norm();
-                if !distance.is_finite() {
-                    return f64::NAN;
-                }
-                least = least.min(distance);
+            let distance = distance_at(middle);
+            if !distance.is_finite() {
+                return f64::NAN;
             }
-            let here = (piece.pose_at(middle).position - place).norm();
-            let nearest = here - fastest * 0.5 * (until - from);
-            samples += 1;
-            if nearest < least - ACCURACY_M && samples < MOST_SAMPLES {
+            least = least.min(distance);
+            let nearest = distance - 0.5 * piece.bounds().speed * (until - from);
+            parts += 1;
+            if nearest < least - ACCURACY_M && parts < MOST_PARTS {
                 open.extend([(from, middle), (middle, until)]);
             }
         }
@@ -98,7 +101,7 @@ mod tests {
 
     /// An unsound document: 1e300 m/s, and a turn of a year on the spot of a waypoint.
     #[test]
-    fn the_number_of_samples_is_bounded() {
+    fn the_number_of_parts_is_bounded() {
         let points = [(0.0, 0.0), (0.0, 100.0), (900.0, 0.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[5.0; 2]).expect("valid");
         for (duration, speed, turn_rate) in
