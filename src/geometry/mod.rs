@@ -20,7 +20,7 @@ pub use disc::{DISC_SIDES, outer_disc};
 pub(crate) use ellipse::distance_in_frame;
 pub use ellipse::{Ellipse, ShapeError, SignedDistance, outer_enclosing_ellipse};
 pub(crate) use nearness::stretch_near;
-pub(crate) use parry::{BoxIndex, EdgeTree, shortest_between};
+pub(crate) use parry::{Between, BoxIndex, EdgeTree, shortest_between};
 pub use polygon::{Crossing, DecompositionError, EdgeIndex, Polygon, PolygonError, convex_pieces};
 pub(crate) use simplify::outer_simplified;
 

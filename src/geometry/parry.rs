@@ -25,45 +25,62 @@ fn vector(p: Point) -> Vector {
 /// of two, so that nothing is rounded.
 const UNITS: f64 = 1_048_576.0;
 
+/// parry tells no more than this share of the largest coordinate: the root of ten roundings, by
+/// which it also ends.
+const RESOLUTION: f64 = 5e-8;
+
 /// Steps of the algorithm after parry's own end.
 const MORE_STEPS: usize = 8;
 
 /// A convex set given by its farthest point in a direction.
 struct Farthest<F> {
     point: F,
-    /// False once a point was no number, which the library asserts.
-    is_number: Cell<bool>,
+    /// The largest coordinate so far; a NaN where a point was no number, which the library asserts.
+    largest: Cell<f64>,
 }
 
 impl<F: Fn(Vector) -> Vector> Farthest<F> {
     fn new(point: F) -> Self {
-        let is_number = Cell::new(true);
-        Self { point, is_number }
+        let largest = Cell::new(0.0);
+        Self { point, largest }
     }
 }
 
 impl<F: Fn(Vector) -> Vector> SupportMap for Farthest<F> {
     fn local_support_point(&self, direction: Point) -> Point {
         let found = (self.point)(vector(direction));
-        if !(found.x + found.y).is_finite() {
-            self.is_number.set(false);
+        let size = found.x.abs() + found.y.abs();
+        if !size.is_finite() {
+            self.largest.set(f64::NAN);
             return Point::ZERO;
+        }
+        // negated on purpose: a NaN stays
+        if !(size <= self.largest.get()) && !self.largest.get().is_nan() {
+            self.largest.set(size);
         }
         point(found * UNITS)
     }
 }
 
+/// The way between two convex sets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Between {
+    /// From the one to the other; zero where they touch or overlap. The ends lie in the sets, so it
+    /// is never shorter than the distance.
+    pub shortest: Vector,
+    /// Metres: sets this near may count as touching.
+    pub resolution: f64,
+}
+
 /// The shortest vector from one convex set to another, each given by its farthest point in a
-/// direction: zero where they touch or overlap, `None` where it is not found. Its ends lie in the
-/// sets, so it is never shorter than the distance, but for sets of less than 1e-7 m in width, which
-/// parry may take for touching. `toward` is a first guess of the vector's direction.
+/// direction; `None` where it is not found. `toward` is a first guess of the vector's direction.
 /// Parry's end leaves a share of the distance open, so the algorithm is taken on to the end of its
 /// steps. About five farthest points of each.
 pub(crate) fn shortest_between(
     from: impl Fn(Vector) -> Vector,
     to: impl Fn(Vector) -> Vector,
     toward: Vector,
-) -> Option<Vector> {
+) -> Option<Between> {
     let (from, to) = (Farthest::new(from), Farthest::new(to));
     let here = Pose::identity();
     let farthest = |direction: Point| CsoPoint::from_shapes(&here, &from, &to, direction);
@@ -93,7 +110,11 @@ pub(crate) fn shortest_between(
         }
         nearest = found;
     }
-    (from.is_number.get() && to.is_number.get()).then(|| vector(-nearest) / UNITS)
+    let largest = from.largest.get() + to.largest.get();
+    (!largest.is_nan()).then(|| Between {
+        shortest: vector(-nearest) / UNITS,
+        resolution: RESOLUTION * largest,
+    })
 }
 
 fn boxed(window: &Window) -> Aabb {

@@ -71,7 +71,7 @@ fn distances_and_depths_are_those_of_parry() {
         let ours = a.separation(&b);
         let close = |d: f64| (d - ours).abs() < 1e-7 * size;
         let found = shortest_between(farthest(&a), farthest(&b), shift).expect("an answer");
-        let found = found.norm();
+        let found = found.shortest.norm();
         if ours > 1e-7 * size {
             apart += 1;
             assert!(close(found), "{ours} {found} {a:?} {b:?}");
@@ -122,7 +122,7 @@ fn gap(initial: &ConvexPolygon, velocity: &ConvexPolygon, own: &Segment, time: f
     let here = own.pose_at(time).position;
     let section = |n: Vector| still(n) + moving(n) * time;
     let found = shortest_between(section, |_| here, Vector::zeros());
-    found.expect("an answer").norm()
+    found.expect("an answer").shortest.norm()
 }
 
 /// The times during which own ship is in a moving set are those at which parry finds no distance;
@@ -220,7 +220,7 @@ fn what_is_no_number_has_no_answer() {
         assert!(shortest_between(at(1.0), at(bad), Vector::new(bad, bad)).is_none());
     }
     let found = shortest_between(at(1.0), at(4.0), Vector::new(f64::NAN, 0.0));
-    assert_eq!(found.expect("numbers"), Vector::new(3.0, 0.0));
+    assert_eq!(found.expect("numbers").shortest, Vector::new(3.0, 0.0));
 }
 
 #[test]
