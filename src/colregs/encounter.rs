@@ -1,4 +1,4 @@
-//! Encounters along the desired trajectory, for planning once (docs/colregs.md 1.3).
+//! Encounters along the desired trajectory, for planning once (docs/colregs.md, section 1.3).
 
 use super::role::{Role, SteadyShip, role_within};
 use super::thresholds::{RiskLimits, Thresholds};
@@ -95,7 +95,7 @@ pub(super) fn state_at(track: &[(f64, SteadyShip)], time: f64) -> Option<SteadyS
 }
 
 /// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
-/// of own safety margin if that is more (docs/colregs.md 1.3).
+/// of own safety margin if that is more (docs/colregs.md, section 1.3).
 pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
     (RiskLimits::STANDARD.lengths * own.hull.length.max(target.hull.length))
         .max(0.5 * own.safety_margin)

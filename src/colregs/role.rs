@@ -1,4 +1,4 @@
-//! Roles of two ships that meet: docs/colregs.md 1.3.
+//! Roles of two ships that meet: docs/colregs.md, section 1.3.
 
 use crate::frame::{Pose, Vector, radians_from_deg, relative_bearing};
 use crate::target::ShipTrack;
@@ -130,7 +130,7 @@ impl SteadyShip {
 }
 
 /// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)`
-/// of docs/colregs.md 1.3. It is an ordered list, so that every state has one role and the two
+/// of docs/colregs.md, section 1.3. It is an ordered list, so that every state has one role and the two
 /// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
 /// port-to-port twice, and none twice in line without closing. A mirrored state has the mirrored
 /// role.
@@ -245,7 +245,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from
+    /// Each role by its own condition, in no order: a second reading of docs/colregs.md, section 1.3 from
     /// angles that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {

@@ -47,9 +47,9 @@ pub struct Request<'a> {
     /// Time after the end of the motion over which clearances at rest are reported, seconds. They
     /// do not affect the verdict.
     pub arrival_hold: f64,
-    /// `q` of eq. (30), m²/s².
+    /// `q` of paper eq. (30), m²/s².
     pub time_weight: f64,
-    /// Accepted risk of eq. (25), in `[0, 1)`. The sets are already the level sets of this risk.
+    /// Accepted risk of paper eq. (25), in `[0, 1)`. The sets are already the level sets of this risk.
     /// Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
     pub max_risk: f64,
 }

@@ -194,14 +194,14 @@ impl ConvexPolygon {
     /// Indices of [`Self::extremes`].
     ///
     /// The farthest vertices are sorted likewise, so each search starts at the last result. It
-    /// passes edges so short that rounding hides them.
+    /// passes vertices that rounding alone may put below it; far from the origin that is more.
     pub(crate) fn farthest<'a>(
         &'a self,
         directions: &'a [Vector],
     ) -> impl Iterator<Item = usize> + 'a {
         let vertices = &self.vertices;
         let count = vertices.len();
-        let rounding = 8.0 * f64::EPSILON * extent(vertices);
+        let rounding = 16.0 * f64::EPSILON * self.reach();
         let mut at = 0;
         if let Some(along) = directions.first() {
             for (index, p) in vertices.iter().enumerate() {

@@ -212,7 +212,7 @@ pub fn run(scenario: Scenario) -> Run {
         level: answer.level,
         max_risk: answer.risk,
         planned: answer.planned,
-        why: answer.why,
+        why: answer.why.filter(|_| !relaxations.is_empty()),
         scenario,
         land,
         relaxations,

@@ -21,7 +21,7 @@ pub enum Relaxation {
     Risk {
         /// Name of the target.
         target: String,
-        /// The largest risk along the plan, eq. (25), in `(0, 1]`.
+        /// The largest risk along the plan, paper eq. (25), in `(0, 1]`.
         amount: f64,
         /// Seconds. Nothing is claimed of this target's set before; from then on the plan is clear
         /// of the whole set. `None` where the plan is always clear of the level set of the accepted

@@ -171,7 +171,7 @@ pub struct Problem<'a> {
     pub land_obstacle: &'a LandObstacle,
     /// Latest arrival, seconds. The obstacles are known until then.
     pub horizon: f64,
-    /// Weight `q` of eq. (30), m²/s².
+    /// Weight `q` of paper eq. (30), m²/s².
     pub time_weight: f64,
     /// Graph search algorithm.
     pub search: SearchKind,

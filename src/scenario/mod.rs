@@ -73,9 +73,9 @@ pub struct Scenario {
     pub search: SearchKind,
     /// The sets to avoid.
     pub compliance: Compliance,
-    /// Weight `q` of eq. (30), m²/s².
+    /// Weight `q` of paper eq. (30), m²/s².
     pub time_weight: f64,
-    /// Risk of eq. (25) that the plan may accept, in `[0, 1)`.
+    /// Risk of paper eq. (25) that the plan may accept, in `[0, 1)`.
     pub max_risk: f64,
     /// Wall-clock budget of one plan, seconds.
     pub deadline: f64,

@@ -149,7 +149,7 @@ impl EncounterKind {
         }
     }
 
-    /// True for an encounter of this kind by the sectors of docs/colregs.md 1.3, Rule 13 first.
+    /// True for an encounter of this kind by the sectors of docs/colregs.md, section 1.3, Rule 13 first.
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);

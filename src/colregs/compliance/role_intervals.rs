@@ -1,5 +1,5 @@
 //! Roles over time: a role begins with risk of collision and lasts until the target is past and
-//! clear (docs/colregs.md 1.3, Rule 13(d)).
+//! clear (docs/colregs.md, section 1.3, Rule 13(d)).
 
 use super::samples::{EncounterSample, EncounterSamples};
 use crate::colregs::{Role, SteadyShip, Thresholds, role_within};

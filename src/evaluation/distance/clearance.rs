@@ -398,10 +398,9 @@ mod tests {
         assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);
     }
 
-    /// A segment that rounding makes a triangle 1e-10 m wide. The line along its shortest side is
-    /// wrong and says more than the distance; parry contradicts it.
+    /// A segment that rounding makes a triangle 1e-10 m wide.
     #[test]
-    fn a_very_narrow_set_has_its_distance_or_none() {
+    fn a_very_narrow_set_has_its_distance() {
         let polygon = |corners: &[(f64, f64)]| {
             ConvexPolygon::from_ccw(corners.iter().map(|&(x, y)| Vector::new(x, y)).collect())
         };
@@ -424,7 +423,6 @@ mod tests {
         let centre = velocity.centroid();
         let small = velocity.translated(-centre).scaled(0.056);
         let set = MovingSet::new(&initial, &small.translated(centre));
-        let mut known = 0;
         for k in 0..1000 {
             let time = 1e-3 * f64::from(k);
             let here = arc.pose_at(time);
@@ -432,13 +430,8 @@ mod tests {
             let found = least_distance(&[still], Body::POINT, &set).value;
             let section = initial.minkowski_sum(&small.translated(centre).scaled(time));
             let exact = ConvexPolygon::point(here.position).separation(&section);
-            known += usize::from(!found.is_nan());
-            assert!(
-                found.is_nan() || (found - exact).abs() < 1e-6,
-                "{k}: {found} {exact}"
-            );
+            assert!((found - exact).abs() < 1e-6, "{k}: {found} {exact}");
         }
-        assert!(known > 500, "{known}");
     }
 
     #[test]

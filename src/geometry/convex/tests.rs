@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::fixtures::random_polygon;
+use crate::geometry::fixtures::{random_polygon, random_vector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
@@ -148,6 +148,26 @@ fn the_farthest_vertex_is_beyond_an_edge_that_rounding_hides() {
     let directions = angles.map(|angle| crate::frame::direction(angle.to_radians()));
     for (found, n) in polygon.supports(&directions).iter().zip(&directions) {
         assert_eq!(*found, polygon.support(*n), "{n}");
+    }
+}
+
+/// Far from the origin, rounding makes a segment a triangle with a side of some last digits.
+#[test]
+fn the_farthest_vertex_of_a_sliver_is_found_far_from_the_origin() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for case in 0..2000 {
+        let at = Vector::new(762_685.0, 6_168_232.0) + random_vector(&mut rng, 1.0);
+        let digits = |rng: &mut ChaCha8Rng| f64::from(rng.random_range(-3..4)) * 2.0_f64.powi(-30);
+        let short = Vector::new(digits(&mut rng), digits(&mut rng));
+        let end = at + random_vector(&mut rng, 20.0);
+        let sliver = ConvexPolygon::hull(&[at, at + short, end]).unwrap();
+        let mut normals = sliver.normals();
+        normals.extend((0..12).map(|_| crate::frame::direction(rng.random_range(-3.0..3.0))));
+        normals.extend(ConvexPolygon::rectangle(Vector::zeros(), 1.0, 1.0).normals());
+        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
+        for (found, n) in sliver.supports(&normals).iter().zip(&normals) {
+            assert!(sliver.support(*n) - found < 1e-8, "{case}: {n} {sliver:?}");
+        }
     }
 }
 

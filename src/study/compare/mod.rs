@@ -26,7 +26,7 @@ use crate::trajectory::Trajectory;
 pub struct Candidate {
     /// Planner or baseline.
     pub method: Method,
-    /// Accepted risk of eq. (25), in `[0, 1)`.
+    /// Accepted risk of paper eq. (25), in `[0, 1)`.
     pub max_risk: f64,
 }
 
