@@ -220,7 +220,8 @@ pub struct InspectArgs {
 
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// Plan documents, as `plan --json` and `suite --plans` write them, or recordings (.rrd)
+    /// Plan documents, as `plan --json` and `suite --plans` write them, recordings (.rrd), or
+    /// folders of them
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
     /// Seconds for each document: what is not proven by then is not verified

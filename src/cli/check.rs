@@ -9,7 +9,7 @@ use super::output::status::ExitStatus;
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, output);
+    let files = files::find(&args.paths, &files::SCENARIOS, output);
     for scene in scenes::open(files, &assumed, output) {
         let failed = match scene {
             Ok(scene) => match scene.scenario(&assumed) {

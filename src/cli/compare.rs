@@ -48,7 +48,11 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         .as_deref()
         .map_or(Ok(()), prepare_figure)?;
     let assumed = args.assumed.assumed();
-    let all = scenes::open(files::find(&args.paths, output), &assumed, output);
+    let all = scenes::open(
+        files::find(&args.paths, &files::SCENARIOS, output),
+        &assumed,
+        output,
+    );
     let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     // one figure of all scenarios
     let wanted = Wanted {

@@ -16,7 +16,7 @@ use super::output::status::ExitStatus;
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let found = files::find(&args.files, output);
+    let found = files::find(&args.files, &files::SCENARIOS, output);
     let scenes = scenes::open(found, &assumed, output);
     let wanted: Vec<_> = scenes
         .iter()

@@ -8,7 +8,7 @@ use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, SimulationDocument, SimulationsDocument, UNREADABLE,
 };
 use searoom::report::page::HtmlReport;
-use searoom::report::{simulation_text, write_atomically};
+use searoom::report::{simulation_text, simulations_line, write_atomically};
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
@@ -24,7 +24,11 @@ use super::runner::guarded;
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let interrupted = catch_interrupt(output);
     let assumed = args.assumed.assumed();
-    let scenes = scenes::open(files::find(&args.paths, output), &assumed, output);
+    let scenes = scenes::open(
+        files::find(&args.paths, &files::SCENARIOS, output),
+        &assumed,
+        output,
+    );
     let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
@@ -33,6 +37,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let products = Products::prepare(&found, wanted)?;
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
+    let mut failed = 0;
     let mut report = HtmlReport::new();
     let several = scenes.len() > 1;
     for scene in scenes {
@@ -53,6 +58,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             Err(fault) => Some((INTERNAL_FAULT, fault.clone())),
         };
         if let Some((outcome, error)) = failure {
+            failed += 1;
             let name = shown(file);
             let error = error.replace(&file.display().to_string(), &name);
             report.add_failure(&name, outcome, &error);
@@ -94,6 +100,8 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 })
             }
         });
+    } else if several {
+        status = status.max(output.result(&simulations_line(&documents, failed)));
     }
     Ok(status)
 }

@@ -63,7 +63,7 @@ impl Tally {
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, output);
+    let files = files::find(&args.paths, &files::SCENARIOS, output);
     let all = scenes::open(files, &assumed, output);
     if args.lint {
         return Ok(lint::suite(all, args, &assumed, output));

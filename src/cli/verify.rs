@@ -11,6 +11,7 @@ use searoom::verification::{
 };
 
 use super::args::VerifyArgs;
+use super::input::files;
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::{PLAN_MEBIBYTES, guarded_within};
@@ -19,9 +20,19 @@ use super::runner::{PLAN_MEBIBYTES, guarded_within};
 pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
-    for file in &args.plans {
-        let name = file.display().to_string();
-        let path = file.clone();
+    let files = files::find(&args.plans, &files::PLANS, output);
+    let alone = files.len() == 1;
+    for found in files {
+        let path = match found {
+            Ok(found) => found.file,
+            Err((folder, error)) => {
+                let (name, error) = (folder.display().to_string(), format!("{error:#}"));
+                documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
+                status = status.max(output.refuse(&error));
+                continue;
+            }
+        };
+        let name = path.display().to_string();
         let reached = match guarded_within(args.budget_s, move || one(&path)) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
@@ -50,9 +61,10 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                     if args.json {
                         continue;
                     }
-                    reached = reached.max(match args.plans.len() {
-                        1 => output.result(&text),
-                        _ => output.result(&format!("{}: {text}", printable(&name))),
+                    reached = reached.max(if alone {
+                        output.result(&text)
+                    } else {
+                        output.result(&format!("{}: {text}", printable(&name)))
                     });
                 }
                 reached

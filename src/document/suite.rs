@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encounter::EncounterDocument;
+use super::encounter::{EncounterDocument, breaks};
 use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
 use super::plan::PlanDocument;
 use crate::evaluation::{NOT_BY_THE_RULES, outcome_word};
@@ -64,6 +64,7 @@ pub struct SuiteSummaryDocument {
     pub verified: usize,
     pub safe: usize,
     pub not_safe: usize,
+    pub breaks_rules: usize,
 }
 
 impl SuiteDocument {
@@ -89,6 +90,10 @@ impl SuiteDocument {
             not_safe: runs
                 .iter()
                 .filter(|run| is_relaxed(run) && !run.safe)
+                .count(),
+            breaks_rules: runs
+                .iter()
+                .filter(|run| breaks(&run.encounters).is_some_and(|broken| !broken.is_empty()))
                 .count(),
         };
         Self { runs, summary }
@@ -120,7 +125,11 @@ impl std::fmt::Display for SuiteSummaryDocument {
                 write!(f, ", {count} {name}")?;
             }
         }
-        write!(f, "; {} verified, {} safe", self.verified, self.safe)
+        write!(f, "; {} verified, {} safe", self.verified, self.safe)?;
+        if self.breaks_rules > 0 {
+            write!(f, ", {} with a rule broken", self.breaks_rules)?;
+        }
+        Ok(())
     }
 }
 

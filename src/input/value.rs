@@ -1,6 +1,6 @@
 //! TOML and JSON texts as one tree of values, each with the line where it begins.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -8,10 +8,6 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Fault, Faults, abbreviated};
-
-/// Beginnings of two messages of the TOML parser: nesting too deep, and brackets not closed.
-const TOO_DEEP: &str = "max recursion depth";
-const UNCLOSED: &str = "unclosed";
 
 /// A value and the line where it begins; JSON values have no line.
 #[derive(Debug, Clone)]
@@ -96,34 +92,21 @@ fn shown(number: f64) -> String {
     }
 }
 
-/// Parses TOML; every error of the grammar is noted, and then there is no value.
+/// Parses TOML. Notes the first error of the grammar alone: those after it mostly follow from it.
 pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
     let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
     let line = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
     let (document, errors) = DeTable::parse_recoverable(text);
-    if errors.is_empty() {
+    let start = |error: &toml::de::Error| error.span().map(|span| span.start);
+    let Some(first) = errors.into_iter().min_by_key(start) else {
         let value = Value::Table(table_of(document.get_ref(), &line));
         return Some(Node { value, line: None });
-    }
-    // recovered values may be in the wrong table: only the grammar is judged
-    let mut reported = BTreeSet::new();
-    let mut too_deep = false;
-    for error in errors {
-        if faults.is_full() {
-            break;
-        }
-        let (message, offset) = (error.message(), error.span().map(|span| span.start));
-        // the rest of a value that is nested too deep is not read, so it is never closed
-        let follows = too_deep && message.starts_with(UNCLOSED);
-        // nested brackets are all unclosed at one place
-        if !follows && reported.insert((offset, message.to_owned())) {
-            faults.note(Fault {
-                line: offset.map(line),
-                ..Fault::new("", message, "TOML 1.0 without errors")
-            });
-        }
-        too_deep |= message.contains(TOO_DEEP);
-    }
+    };
+    let allowed = "valid TOML; a bracket or a quote left open above also leads here";
+    faults.note(Fault {
+        line: start(&first).map(line),
+        ..Fault::new("", first.message(), allowed)
+    });
     None
 }
 

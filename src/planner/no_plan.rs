@@ -95,7 +95,7 @@ pub enum NoPlan {
     },
     /// No candidate is clear of every set.
     #[error(
-        "no trajectory of the graph or its refinement is clear of every set until arrival; held on the desired \
+        "no trajectory of the graph or its refinement is clear of every set and arrives before the horizon; held on the desired \
          trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoCandidate {
@@ -106,7 +106,7 @@ pub enum NoPlan {
     },
     /// No manoeuvre by the rules for own ship's roles is clear of every set.
     #[error(
-        "no manoeuvre by the rules toward all targets is clear of every set until arrival; held on the \
+        "no manoeuvre by the rules toward all targets is clear of every set and arrives before the horizon; held on the \
          desired trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoneComplies {

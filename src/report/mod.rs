@@ -18,6 +18,6 @@ pub use assessment::assessment_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
 pub use plan::{no_return_line, no_return_reason, plan_document_text, plan_text, suite_table};
-pub use simulation::simulation_text;
+pub use simulation::{simulation_text, simulations_line};
 pub use verification::{simulation_verification_text, verification_text};
 pub use write::{WriteError, write_atomically};

@@ -34,6 +34,30 @@ pub fn simulation_text(simulation: &SimulationDocument, colour: bool) -> String 
     blocks.join("\n\n")
 }
 
+/// Formats the counts of several simulations, and of the files that were not simulated.
+pub fn simulations_line(simulations: &[SimulationDocument], failed: usize) -> String {
+    let count = |of: fn(&SimulationDocument) -> bool| simulations.iter().filter(|s| of(s)).count();
+    let plural = if simulations.len() == 1 { "" } else { "s" };
+    let mut line = format!(
+        "{} simulation{plural}: {} without contact, {} safe, {} arrived",
+        simulations.len(),
+        count(|s| !s.contact),
+        count(|s| s.safe),
+        count(|s| s.arrived)
+    );
+    let others = [
+        (
+            count(|s| !s.conduct.breaks.is_empty()),
+            "with a rule broken",
+        ),
+        (failed, "not simulated"),
+    ];
+    for (count, name) in others.into_iter().filter(|(count, _)| *count > 0) {
+        line += &format!(", {count} {name}");
+    }
+    line
+}
+
 /// Formats whether ships met, and whether own ship arrived.
 pub(super) fn headline(simulation: &SimulationDocument) -> String {
     let met: Vec<&str> = (simulation.targets.iter())

@@ -19,6 +19,13 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
         .success()
         .stderr(is_empty())
         .stdout(contains("Head-on: verified, safe").and(contains("margin")));
+    searoom(&["verify", &plans])
+        .success()
+        .stdout(contains("4 documents: 4 verified, 4 safe"));
+    let empty = Folder::new();
+    searoom(&["verify", text(empty.path())])
+        .code(2)
+        .stderr(contains("a folder without plan documents"));
     let altered = file("altered");
     let good = fs::read_to_string(&four[1]).expect("a plan");
     let from = "\"turning_radius_m\": 100.0";

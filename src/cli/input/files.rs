@@ -1,4 +1,4 @@
-//! Scenario files at the paths of a command, and the names of their results.
+//! Files at the paths of a command, and the names of their results.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 
 use super::super::output::Output;
 
-/// Requested scenario file.
+/// Requested file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
     /// File path.
@@ -19,20 +19,41 @@ pub struct Found {
     pub in_folder: bool,
 }
 
-/// Extensions of scenario files and of imported formats.
-const ENDINGS: [&str; 3] = ["toml", "json", "xml"];
-
-fn has_known_ending(file: &Path) -> bool {
-    let ending = file.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| ENDINGS.contains(&ending))
+/// What is looked for in a folder.
+pub struct Kind {
+    name: &'static str,
+    endings: &'static [&'static str],
 }
 
-/// Lists the scenario files at `paths`, in the order of the arguments and sorted within each
+/// Scenario files, and files of imported formats.
+pub const SCENARIOS: Kind = Kind {
+    name: "scenarios (.toml, .json or .xml files)",
+    endings: &["toml", "json", "xml"],
+};
+
+/// Plan documents, and recordings that hold one.
+pub const PLANS: Kind = Kind {
+    name: "plan documents (.json or .rrd files)",
+    endings: &["json", "rrd"],
+};
+
+impl Kind {
+    fn holds(&self, file: &Path) -> bool {
+        let ending = file.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| self.endings.contains(&ending))
+    }
+}
+
+/// Lists the files of a kind at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+pub fn find(
+    paths: &[PathBuf],
+    kind: &Kind,
+    output: &Output,
+) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
-    for found in meant(paths) {
+    for found in meant(paths, kind) {
         // missing files are reported on reading
         let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
         let again = place.is_some_and(|place| !known.insert(place));
@@ -46,7 +67,7 @@ pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, a
     all
 }
 
-fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -59,13 +80,10 @@ fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
             continue;
         }
         let mut files = Vec::new();
-        match walk(path, &mut files) {
+        match walk(path, kind, &mut files) {
             Ok(()) if files.is_empty() => all.push(Err((
                 path.clone(),
-                anyhow::anyhow!(
-                    "{}: a folder without scenarios (.toml, .json or .xml files)",
-                    path.display()
-                ),
+                anyhow::anyhow!("{}: a folder without {}", path.display(), kind.name),
             ))),
             Ok(()) => all.extend(files.into_iter().map(|file| {
                 let relative = file.strip_prefix(path).unwrap_or(&file);
@@ -104,9 +122,9 @@ fn stem(relative: &Path) -> String {
     parts.join("__")
 }
 
-/// Collects files with a known ending, depth first in order of names. Hidden entries are skipped. Links
-/// to folders are not followed, which prevents loops.
-fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+/// Collects files of a kind, depth first in order of names. Hidden entries are skipped. Links to
+/// folders are not followed, which prevents loops.
+fn walk(folder: &Path, kind: &Kind, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let unread = || format!("{}: cannot be read", folder.display());
     let mut entries = fs::read_dir(folder)
         .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
@@ -118,8 +136,8 @@ fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
             continue;
         }
         if entry.file_type().with_context(unread)?.is_dir() {
-            walk(&path, files)?;
-        } else if has_known_ending(&path) && !path.is_dir() {
+            walk(&path, kind, files)?;
+        } else if kind.holds(&path) && !path.is_dir() {
             files.push(path);
         }
     }

@@ -157,7 +157,7 @@ pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene
             "{name}: a folder; `searoom suite` runs the scenarios in it"
         ));
     }
-    let found = files::find(&[file.to_owned()], output);
+    let found = files::find(&[file.to_owned()], &files::SCENARIOS, output);
     let mut scenes = open(found, assumed, output);
     match (scenes.pop(), scenes.len()) {
         (Some(Ok(scene)), 0) => Ok(scene),
