@@ -107,6 +107,9 @@ pub struct PlanArgs {
     /// Also find the last time at which a plan clear of every hard set exists (space-time planner)
     #[arg(long)]
     pub no_return: bool,
+    /// Write the legs: a file ending in .csv, .geojson or .rtz; the last two need an origin
+    #[arg(long, value_name = "FILE")]
+    pub route: Option<PathBuf>,
     /// Go on from a plan that own ship follows, as `plan --json` wrote it: with its roles, its
     /// manoeuvre and its remainder
     #[arg(long, value_name = "PLAN.json")]

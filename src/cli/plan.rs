@@ -1,9 +1,14 @@
 //! `searoom plan`: plans one scenario.
 
+use std::path::Path;
+
+use anyhow::Context;
 use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};
 use searoom::report::page::HtmlReport;
-use searoom::report::{no_return_line, no_return_reason, plan_document_text};
+use searoom::report::{
+    RouteFormat, legs_text, no_return_line, no_return_reason, plan_document_text, write_atomically,
+};
 
 use super::args::PlanArgs;
 use super::input::files::{Found, shown};
@@ -19,6 +24,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &assumed, output).map_err(anyhow::Error::msg)?;
     let found = std::slice::from_ref(&scene.found);
     let products = Products::prepare(found, args.shared.written.wanted())?;
+    let route = args.route.as_deref().map(Route::at).transpose()?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
@@ -41,15 +47,46 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 } else {
                     let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
                     let text = plan_document_text(&document);
-                    output.result(&format!("{text}{}", line.unwrap_or_default()))
+                    let legs = legs_text(&document);
+                    output.result(&format!("{text}{}\n{legs}", line.unwrap_or_default()))
                 };
                 let written = output.written(write(&products, &scene.found, &run, &document));
-                shown.max(written).max(args.shared.status(&run, &document))
+                let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
+                let routed = match routed {
+                    Ok(()) => ExitStatus::Good,
+                    Err(error) => output.refuse(&format_args!("{error:#}")),
+                };
+                shown
+                    .max(written)
+                    .max(routed)
+                    .max(args.shared.status(&run, &document))
             }
             Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
             Attempt::Fault(fault) => output.fault(&fault),
         },
     )
+}
+
+/// A route that is asked for.
+struct Route<'a> {
+    file: &'a Path,
+    format: RouteFormat,
+}
+
+impl<'a> Route<'a> {
+    fn at(file: &'a Path) -> anyhow::Result<Self> {
+        let format = RouteFormat::of(file).with_context(|| {
+            let (found, allowed) = (file.display(), RouteFormat::ENDINGS);
+            format!("--route: found {found}; allowed: a file that ends in {allowed}")
+        })?;
+        Ok(Self { file, format })
+    }
+
+    fn write(&self, run: &Run, plan: &PlanDocument) -> anyhow::Result<()> {
+        let route = self.format.write(plan, run.scenario.earth.as_ref());
+        let route = route.with_context(|| format!("--route {}", self.file.display()))?;
+        Ok(write_atomically(self.file, route.as_bytes())?)
+    }
 }
 
 fn write(

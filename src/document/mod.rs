@@ -7,6 +7,7 @@
 mod assessment;
 mod comparison;
 mod encounter;
+mod legs;
 mod lines;
 mod lint;
 mod memory;
@@ -26,6 +27,7 @@ pub use encounter::{
     ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument, RoleDocument,
     RuleViolationDocument, breaks, conduct_breaks,
 };
+pub use legs::PlannedLeg;
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub(crate) use memory::state_document;

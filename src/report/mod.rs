@@ -7,6 +7,7 @@ pub mod figure;
 mod lint;
 pub mod page;
 mod plan;
+mod route;
 mod simulation;
 mod table;
 mod verification;
@@ -17,7 +18,10 @@ pub use crate::text::{printable, printable_lines};
 pub use assessment::assessment_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
-pub use plan::{no_return_line, no_return_reason, plan_document_text, plan_text, suite_table};
+pub use plan::{
+    legs_text, no_return_line, no_return_reason, plan_document_text, plan_text, suite_table,
+};
+pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_text, simulations_line};
 pub use verification::{simulation_verification_text, verification_text};
 pub use write::{WriteError, write_atomically};

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
-    EncounterDocument, PlanDocument, SuiteRunDocument, TimingDocument, breaks, headline, met,
-    passing, plan_lines, turn,
+    EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
+    headline, met, passing, plan_lines, turn,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -14,6 +14,9 @@ use crate::text::{printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
+
+/// Maximum number of legs that are listed.
+const MOST_LEGS: usize = 40;
 
 /// Column name of the planning time.
 pub(super) const TIME_COLUMN: &str = "time\n[ms]";
@@ -126,6 +129,54 @@ pub fn plan_document_text(plan: &PlanDocument) -> String {
     let aligned = lines.map(|(name, value)| format!("  {name:<13}{value}"));
     let all: Vec<String> = std::iter::once(headline(plan)).chain(aligned).collect();
     all.join("\n")
+}
+
+/// Formats the legs of a plan as a table; empty where it has none. A long one is cut.
+pub fn legs_text(plan: &PlanDocument) -> String {
+    let mut grid = legs_grid(plan);
+    if grid.rows.is_empty() {
+        return String::new();
+    }
+    let more = grid.rows.len().saturating_sub(MOST_LEGS);
+    grid.rows.truncate(MOST_LEGS);
+    let more = match more {
+        0 => String::new(),
+        _ => format!("\n{more} more legs: --route writes all"),
+    };
+    format!("{}{more}", grid.text(false))
+}
+
+pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
+    let row = |(index, leg): (usize, PlannedLeg)| {
+        let turn = match leg.turn_deg() {
+            _ if leg.waits() => "waits".to_owned(),
+            0.0 => "–".to_owned(),
+            turn => {
+                let side = if turn > 0.0 { "starboard" } else { "port" };
+                format!("{side} {:.0}°", turn.abs())
+            }
+        };
+        // 359.9° is 000
+        let course = leg.course_deg().round() % 360.0;
+        let motion = &leg.motion;
+        vec![
+            plain((index + 1).to_string()),
+            plain(tenths(motion.start_time)),
+            plain(tenths(motion.end_time())),
+            plain(format!("{course:03.0}")),
+            plain(format!("{:.2}", motion.speed)),
+            plain(format!("{:.0}", motion.length())),
+            plain(turn),
+            plain(leg.events.join("\n")),
+        ]
+    };
+    Grid {
+        header: columns(
+            "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens",
+        ),
+        numbers: 0..6,
+        rows: plan.legs().into_iter().enumerate().map(row).collect(),
+    }
 }
 
 /// Formats the line for the time of no return.

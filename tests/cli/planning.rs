@@ -363,6 +363,46 @@ fn without_targets_there_is_no_clearance() {
     searoom(&["plan", &file]).success().stdout(contains("none"));
 }
 
+#[test]
+fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
+    let folder = Folder::new();
+    let file = folder.write("plan.toml", HEAD_ON);
+    let placed = format!("origin = {{ lat_deg = 59.0, lon_deg = 10.5 }}\n{HEAD_ON}");
+    let placed = folder.write("placed.toml", placed);
+    let route = |name: &str| folder.path().join(name);
+    let csv = route("route.csv");
+    searoom(&["plan", &file, "--route", text(&csv)])
+        .success()
+        .stdout(contains("what happens").and(contains("closest to 'target'")));
+    let rows = fs::read_to_string(&csv).expect("written");
+    assert!(rows.starts_with("leg,from_s,to_s,from_east_m"), "{rows}");
+    for name in ["route.geojson", "route.rtz"] {
+        let written = route(name);
+        searoom(&["plan", &file, "--route", text(&written)])
+            .code(2)
+            .stderr(contains("found a scenario without 'origin'"));
+        assert!(!written.exists());
+        searoom(&["plan", &placed, "--route", text(&written)]).success();
+        assert!(written.exists());
+    }
+    let other = route("route.txt");
+    searoom(&["plan", &file, "--route", text(&other)])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains(
+            "allowed: a file that ends in .csv, .geojson or .rtz",
+        ));
+    let forces = [
+        "plan",
+        "scenarios/forces/give-way.toml",
+        "--route",
+        text(&csv),
+    ];
+    searoom(&forces)
+        .code(2)
+        .stderr(contains("there are no legs"));
+}
+
 #[cfg(not(feature = "recording"))]
 #[test]
 fn recordings_need_their_feature() {

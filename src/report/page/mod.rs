@@ -13,7 +13,7 @@ use super::comparison::{comparison_grid, remarks};
 use super::figure::{
     Figure, Panel, comparison_panels, diagram_panels, plan_panels, simulation_panel,
 };
-use super::plan::{TIME_COLUMN, suite_grid};
+use super::plan::{TIME_COLUMN, legs_grid, suite_grid};
 use super::simulation::{
     TIMES, alarm_lines, conduct_lines, headline as simulation_headline, judges_grid, replans_grid,
     targets_grid,
@@ -70,6 +70,7 @@ impl HtmlReport {
         let lines = plan_lines(plan).into_iter();
         let lines = lines.filter(|(name, _)| *name != TIME_LINE);
         let figures = self.draw(subject, plan_panels(run));
+        let legs = legs_grid(plan);
         self.section(html! {
             h2 { (headline(plan)) }
             (origin(subject))
@@ -77,6 +78,7 @@ impl HtmlReport {
                 @for (name, value) in lines { dt { (name) } dd { (value) } }
             }
             (figures)
+            @if !legs.rows.is_empty() { (table(legs, &[])) }
         });
     }
 

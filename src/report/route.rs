@@ -1,0 +1,410 @@
+//! The legs of a plan as a file for spreadsheets, charts and navigation systems.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
+use std::path::Path;
+
+use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
+
+use crate::document::{PlanDocument, PlannedLeg};
+use crate::frame::{Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps};
+use crate::text::printable;
+use crate::trajectory::Segment;
+
+/// Largest turn between two points of a GeoJSON line, degrees.
+const POINT_DEG: f64 = 5.0;
+
+/// Radius and stay that RTZ cannot state any more: nautical miles and seconds.
+const RTZ_RADIUS_NMI: f64 = 10.0;
+const RTZ_STAY_S: f64 = 86_400.0;
+
+/// Format of a route, by the ending of its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RouteFormat {
+    /// A row per leg; places also in degrees where the scenario has an origin.
+    Csv,
+    /// A line per leg (RFC 7946). Needs an origin.
+    GeoJson,
+    /// Waypoints with turning radii and speeds for navigation systems: RTZ 1.1 of IEC 61174. Needs
+    /// an origin. Legs are loxodromes; a wait is a stay. A scenario has no date, so there are no
+    /// times of arrival.
+    Rtz,
+}
+
+/// Why there is no route.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum RouteError {
+    /// No plan, or one of another kind.
+    #[error("there are no legs: only a plan of segments has them; `--json` holds every plan")]
+    NoLegs,
+    /// Nobody knows where on the Earth the plan is.
+    #[error(
+        "found a scenario without 'origin'; allowed: one with it, or a route that ends in .csv"
+    )]
+    NoOrigin,
+    /// A radius or a stay beyond what the format can state.
+    #[error(
+        "RTZ states turning radii below 10 nmi and stays below a day; allowed: .csv or .geojson"
+    )]
+    BeyondRtz,
+}
+
+impl RouteFormat {
+    /// The endings, for messages.
+    pub const ENDINGS: &str = ".csv, .geojson or .rtz";
+
+    /// The format of a file; `None` for any other ending.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "csv" => Some(Self::Csv),
+            "geojson" => Some(Self::GeoJson),
+            "rtz" => Some(Self::Rtz),
+            _ => None,
+        }
+    }
+
+    /// The whole file.
+    pub fn write(
+        self,
+        plan: &PlanDocument,
+        earth: Option<&Georeference>,
+    ) -> Result<String, RouteError> {
+        let legs = plan.legs();
+        if legs.is_empty() {
+            return Err(RouteError::NoLegs);
+        }
+        match (self, earth) {
+            (Self::Csv, _) => Ok(csv(&legs, earth)),
+            (_, None) => Err(RouteError::NoOrigin),
+            (Self::GeoJson, Some(earth)) => Ok(geojson(&legs, earth)),
+            (Self::Rtz, Some(earth)) => rtz(&plan.scenario, &waypoints(&legs), earth),
+        }
+    }
+}
+
+fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> String {
+    let mut header = vec!["leg", "from_s", "to_s"];
+    header.extend(["from_east_m", "from_north_m", "to_east_m", "to_north_m"]);
+    if earth.is_some() {
+        header.extend(["from_lat_deg", "from_lon_deg", "to_lat_deg", "to_lon_deg"]);
+    }
+    header.extend([
+        "course_deg",
+        "turn_deg",
+        "radius_m",
+        "speed_mps",
+        "length_m",
+    ]);
+    header.push("what_happens");
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    // writing into memory does not fail
+    let _ = writer.write_record(&header);
+    for (index, leg) in legs.iter().enumerate() {
+        let motion = &leg.motion;
+        let ends = [motion.start.position, motion.end().position];
+        let mut row = vec![(index + 1).to_string()];
+        row.extend([motion.start_time, motion.end_time()].map(fixed::<3>));
+        row.extend(ends.iter().flat_map(|p| [p.x, p.y]).map(fixed::<3>));
+        if let Some(earth) = earth {
+            let places = ends.map(|p| earth.to_geographic(p));
+            let degrees = places.iter().flat_map(|p| [p.lat_deg, p.lon_deg]);
+            row.extend(degrees.map(fixed::<8>));
+        }
+        row.extend([leg.course_deg(), leg.turn_deg()].map(fixed::<4>));
+        row.push(match motion.is_arc() {
+            true => fixed::<3>(motion.radius().abs()),
+            false => String::new(),
+        });
+        row.extend([motion.speed, motion.length()].map(fixed::<3>));
+        row.push(leg.events.join("; "));
+        let _ = writer.write_record(&row);
+    }
+    let bytes = writer.into_inner().unwrap_or_default();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Decimals without a negative zero.
+fn fixed<const DECIMALS: usize>(value: f64) -> String {
+    let text = format!("{value:.DECIMALS$}");
+    match text.trim_matches(['-', '0', '.']) {
+        "" => text.trim_start_matches('-').to_owned(),
+        _ => text,
+    }
+}
+
+fn geojson(legs: &[PlannedLeg], earth: &Georeference) -> String {
+    let features = legs.iter().enumerate().map(|(index, leg)| {
+        let motion = &leg.motion;
+        let steps = (leg.turn_deg().abs() / POINT_DEG).ceil().max(1.0) as u32;
+        let points = (0..=steps).map(|k| {
+            let elapsed = motion.duration * f64::from(k) / f64::from(steps);
+            let place = earth.to_geographic(motion.pose_after(elapsed).position);
+            Position::from([place.lon_deg, place.lat_deg])
+        });
+        let mut properties = JsonObject::new();
+        for (key, value) in [
+            ("from_s", motion.start_time),
+            ("to_s", motion.end_time()),
+            ("course_deg", leg.course_deg()),
+            ("turn_deg", leg.turn_deg()),
+            ("speed_mps", motion.speed),
+            ("length_m", motion.length()),
+        ] {
+            properties.insert(key.to_owned(), value.into());
+        }
+        properties.insert("leg".to_owned(), (index + 1).into());
+        properties.insert("what_happens".to_owned(), leg.events.clone().into());
+        let line = GeometryValue::LineString {
+            coordinates: points.collect(),
+        };
+        Feature {
+            geometry: Some(Geometry::new(line)),
+            properties: Some(properties),
+            ..Feature::default()
+        }
+    });
+    let collection = FeatureCollection {
+        features: features.collect(),
+        bbox: None,
+        foreign_members: None,
+    };
+    format!("{collection}\n")
+}
+
+/// A waypoint of RTZ: where two lines meet, and the arc that rounds the corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Waypoint {
+    place: Vector,
+    /// Metres; 0 where the course or the speed changes at once.
+    radius: f64,
+    /// m/s on the way to it.
+    speed: f64,
+    /// Seconds that own ship lies here.
+    stay: f64,
+}
+
+/// A turn is one corner, and one per quarter turn where it is longer. Where the speed changes is a
+/// waypoint of its own.
+fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
+    let first = &legs[0].motion;
+    let at = |place, radius, speed| Waypoint {
+        place,
+        radius,
+        speed,
+        stay: 0.0,
+    };
+    let mut all = vec![at(first.start.position, 0.0, first.speed)];
+    for (index, leg) in legs.iter().enumerate() {
+        let motion = &leg.motion;
+        if leg.waits() {
+            let last = all.len() - 1;
+            all[last].stay += motion.duration;
+            continue;
+        }
+        if motion.is_arc() {
+            all.extend(corners(motion).map(|(place, radius)| at(place, radius, motion.speed)));
+        }
+        let next = legs.get(index + 1);
+        if next.is_none_or(|next| next.motion.speed != motion.speed) {
+            all.push(at(motion.end().position, 0.0, motion.speed));
+        }
+    }
+    all
+}
+
+/// The corners whose lines touch a turn, and its radius.
+fn corners(turn: &Segment) -> impl Iterator<Item = (Vector, f64)> {
+    let (radius, angle) = (turn.radius().abs(), turn.turn_rate * turn.duration);
+    let parts = (angle.abs() / FRAC_PI_2).ceil().max(1.0);
+    let ahead = radius * (0.5 * angle.abs() / parts).tan();
+    (0..parts as u32).map(move |k| {
+        let begun = turn.pose_after(turn.duration * f64::from(k) / parts);
+        (begun.position + begun.ahead() * ahead, radius)
+    })
+}
+
+fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, RouteError> {
+    let mut text = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <route xmlns=\"http://www.cirm.org/RTZ/1/1\" version=\"1.1\">\n  \
+         <routeInfo routeName=\"{}\"/>\n  <waypoints>\n",
+        in_xml(title)
+    );
+    let mut schedule = String::new();
+    for (id, waypoint) in (1..).zip(all) {
+        let Geographic { lat_deg, lon_deg } = earth.to_geographic(waypoint.place);
+        // the easternmost meridian is the westernmost
+        let lon_deg = if lon_deg >= 180.0 {
+            lon_deg - 360.0
+        } else {
+            lon_deg
+        };
+        let radius = waypoint.radius / NAUTICAL_MILE_M;
+        if radius >= RTZ_RADIUS_NMI || waypoint.stay.round() >= RTZ_STAY_S {
+            return Err(RouteError::BeyondRtz);
+        }
+        let leg = if id == 1 {
+            ""
+        } else {
+            "<leg geometryType=\"Loxodrome\"/>"
+        };
+        // writing into a text does not fail
+        let _ = writeln!(
+            text,
+            "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.8}\" \
+             lon=\"{lon_deg:.8}\"/>{leg}</waypoint>"
+        );
+        let speed = knots_from_mps(waypoint.speed);
+        let stay = match waypoint.stay {
+            0.0 => String::new(),
+            seconds => format!(" stay=\"{}\"", time_of_day(seconds)),
+        };
+        let _ = writeln!(
+            schedule,
+            "      <scheduleElement waypointId=\"{id}\" speed=\"{speed:.4}\"{stay}/>"
+        );
+    }
+    let _ = write!(
+        text,
+        "  </waypoints>\n  <schedules><schedule id=\"1\"><calculated>\n{schedule}    \
+         </calculated></schedule></schedules>\n</route>\n"
+    );
+    Ok(text)
+}
+
+/// Hours, minutes and seconds.
+fn time_of_day(seconds: f64) -> String {
+    let seconds = seconds.round() as u32;
+    let (minutes, seconds) = (seconds / 60, seconds % 60);
+    format!("{:02}:{:02}:{seconds:02}", minutes / 60, minutes % 60)
+}
+
+fn in_xml(text: &str) -> String {
+    let escaped = printable(text).replace('&', "&amp;").replace('<', "&lt;");
+    escaped.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::scenario::Scenario;
+
+    fn planned(text: &str) -> (PlanDocument, Georeference) {
+        let text = format!("origin = {{ lat_deg = 59.0, lon_deg = 10.5 }}\n{text}");
+        let scenario = Scenario::parse(&text).expect("valid");
+        let earth = scenario.earth.expect("an origin");
+        (PlanDocument::of(&pipeline::run(scenario)), earth)
+    }
+
+    fn give_way() -> (PlanDocument, Georeference) {
+        planned(include_str!("../../scenarios/colregs/give-way.toml"))
+    }
+
+    /// The lines between the waypoints, with their corners rounded, are as long as the plan.
+    #[test]
+    fn waypoints_and_their_radii_are_the_plan() {
+        let (plan, earth) = give_way();
+        let text = RouteFormat::Rtz
+            .write(&plan, Some(&earth))
+            .expect("a route");
+        let read = roxmltree::Document::parse(&text).expect("XML");
+        let number = |node: roxmltree::Node, key: &str| -> f64 {
+            let value = node.attribute(key).expect("an attribute");
+            value.parse().expect("a number")
+        };
+        let named = |name: &'static str| {
+            let nodes = read.descendants();
+            nodes
+                .filter(move |n| n.has_tag_name(name))
+                .collect::<Vec<_>>()
+        };
+        let places: Vec<Vector> = (named("position").into_iter())
+            .map(|n| {
+                earth.to_plane(Geographic {
+                    lat_deg: number(n, "lat"),
+                    lon_deg: number(n, "lon"),
+                })
+            })
+            .collect();
+        let radii = named("waypoint").into_iter().map(|n| number(n, "radius"));
+        let radii: Vec<f64> = radii.map(|radius| radius * NAUTICAL_MILE_M).collect();
+        let mut length: f64 = places.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+        for (corner, radius) in places.windows(3).zip(&radii[1..]) {
+            let [before, after] = [corner[1] - corner[0], corner[2] - corner[1]];
+            let turn = before.angle(&after);
+            length -= radius * (2.0 * (0.5 * turn).tan() - turn);
+        }
+        let cost = plan.cost.as_ref().expect("a plan");
+        assert!(
+            (length - cost.length_m).abs() < 0.1,
+            "{length} {}",
+            cost.length_m
+        );
+        let speeds = named("scheduleElement")
+            .into_iter()
+            .map(|n| number(n, "speed"));
+        let speeds: Vec<f64> = speeds.collect();
+        assert_eq!(speeds.len(), places.len());
+        let fastest = speeds.iter().copied().fold(0.0, f64::max);
+        assert!((fastest - knots_from_mps(6.0)).abs() < 1e-3);
+        let end = plan.mission.waypoints.last().expect("a mission");
+        let off = places[places.len() - 1] - Vector::new(end.east_m, end.north_m);
+        assert!(off.norm() < 0.01, "{off}");
+    }
+
+    #[test]
+    fn rows_and_lines_are_the_legs() {
+        let (plan, earth) = give_way();
+        let legs = plan.legs();
+        let text = RouteFormat::Csv
+            .write(&plan, Some(&earth))
+            .expect("a route");
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let column = |name: &str, reader: &mut csv::Reader<&[u8]>| {
+            let header = reader.headers().expect("a header");
+            header.iter().position(|n| n == name).expect("a column")
+        };
+        let length = column("length_m", &mut reader);
+        let rows: Vec<csv::StringRecord> = reader.records().map(|r| r.expect("a row")).collect();
+        assert_eq!(rows.len(), legs.len());
+        let sum: f64 = rows
+            .iter()
+            .map(|r| r[length].parse::<f64>().expect("a number"))
+            .sum();
+        assert!((sum - plan.cost.as_ref().expect("a plan").length_m).abs() < 0.01);
+        let text = RouteFormat::GeoJson
+            .write(&plan, Some(&earth))
+            .expect("a route");
+        let read: FeatureCollection = text.parse().expect("GeoJSON");
+        assert_eq!(read.features.len(), legs.len());
+        let plain = RouteFormat::Csv
+            .write(&plan, None)
+            .expect("without an origin");
+        assert!(!plain.contains("lat_deg"));
+        let refused = RouteFormat::GeoJson.write(&plan, None);
+        assert_eq!(refused, Err(RouteError::NoOrigin));
+    }
+
+    /// A turn of more than half a circle has no single corner.
+    #[test]
+    fn a_long_turn_has_a_corner_per_quarter() {
+        let start = crate::frame::Pose::new(Vector::zeros(), 0.0);
+        let turn = Segment::new(start, 0.0, 60.0, 5.0, 1.5 * std::f64::consts::PI / 60.0);
+        let all: Vec<(Vector, f64)> = corners(&turn).collect();
+        assert_eq!(all.len(), 3);
+        let radius = turn.radius();
+        for (k, expected) in [(1.0, 0.0), (1.0, 2.0), (-1.0, 2.0)]
+            .into_iter()
+            .enumerate()
+        {
+            let expected = Vector::new(expected.0, expected.1) * radius;
+            assert!((all[k].0 - expected).norm() < 1e-9 * radius, "{all:?}");
+        }
+        assert_eq!(time_of_day(3725.4), "01:02:05");
+        assert_eq!(
+            in_xml("<a & \"b\">\u{7}"),
+            "&lt;a &amp; &quot;b&quot;&gt;\\u0007"
+        );
+    }
+}
