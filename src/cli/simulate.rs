@@ -127,10 +127,7 @@ fn sail(
         output.note(note);
     }
     let scenario = changed(made.scenario, args);
-    let refused = |fault: Fault| ScenarioError::Faults {
-        file: file.clone(),
-        faults: vec![fault],
-    };
+    let refused = |fault: Fault| ScenarioError::faults(file, vec![fault]);
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();

@@ -6,7 +6,7 @@ use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument, UNREADABLE,
 };
 use searoom::report::page::HtmlReport;
-use searoom::report::{printable, suite_table};
+use searoom::report::{counted, printable, suite_table};
 use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
@@ -94,8 +94,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     let count = |wanted: fn(&SuiteRunDocument) -> bool| {
         let count = tally.runs.iter().filter(|run| wanted(run)).count();
-        let plural = if count == 1 { "" } else { "s" };
-        (count > 0).then(|| format!("{count} scenario{plural}"))
+        (count > 0).then(|| counted(count, "scenario"))
     };
     if let Some(scenarios) = count(|run| !run.notes.is_empty()) {
         output.note(&format_args!(

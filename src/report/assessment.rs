@@ -4,13 +4,12 @@ use super::table::{Grid, columns, plain};
 use crate::document::{AssessmentDocument, SectionDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
-use crate::text::tenths;
+use crate::text::{counted, tenths};
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.
 pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
     let count = assessment.targets.len();
-    let plural = if count == 1 { "" } else { "s" };
     let AssessmentDocument {
         scenario,
         sets,
@@ -18,7 +17,8 @@ pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument
         ..
     } = assessment;
     let mut blocks = vec![format!(
-        "{scenario}: {count} target{plural}, {sets} sets, 0 to {horizon_s} s"
+        "{scenario}: {}, {sets} sets, 0 to {horizon_s} s",
+        counted(count, "target")
     )];
     if count > 0 {
         blocks.push(held(situation, assessment));

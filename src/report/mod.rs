@@ -13,7 +13,7 @@ mod verification;
 mod write;
 
 pub use crate::pipeline::Verdict;
-pub use crate::text::{printable, printable_lines};
+pub use crate::text::{counted, printable, printable_lines};
 pub use assessment::assessment_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;

@@ -44,10 +44,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .require("title", LINE)
         .and_then(|field| field.line_of_text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
-    let time = match root.has("time_s") {
-        true => root.number("time_s", limits::CLOCK),
-        false => Some(0.0),
-    };
+    let time = root.number_or("time_s", limits::CLOCK, 0.0);
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
@@ -68,17 +65,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .map(|table| planner(table, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane, time, own_ship.as_ref());
-    let (targets, simulated) = match targets {
-        Some(targets) => {
-            let parts = targets.into_iter();
-            let (targets, simulated): (Vec<_>, Vec<_>) = parts
-                .map(|(target, known, simulated)| ((target, known), simulated))
-                .unzip();
-            (Some(targets), simulated)
-        }
-        None => (None, Vec::new()),
-    };
-    let simulation = simulation(&mut root, simulated);
+    let (targets, simulated): (Option<Vec<_>>, Option<Vec<_>>) =
+        targets.map(|targets| targets.into_iter().unzip()).unzip();
+    let simulation = simulation(&mut root, simulated.unwrap_or_default());
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
         let paths = mission
@@ -166,11 +155,7 @@ fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     let speeds = own_speeds(&mut table, speed);
     let margin = table.number("safety_margin_m", limits::DISTANCE);
     let tracking_margin = table.number("tracking_margin_m", limits::DISTANCE);
-    let land_margin = if table.has("land_margin_m") {
-        table.number("land_margin_m", limits::DISTANCE)
-    } else {
-        Some(0.0)
-    };
+    let land_margin = table.number_or("land_margin_m", limits::DISTANCE, 0.0);
     table.finish();
     let ship = || {
         let hull = hull?;
@@ -238,14 +223,12 @@ fn mission(
     plane: &Plane,
     time: Option<f64>,
 ) -> Option<Mission> {
-    let start = match table.has("start_s") {
-        true => time.and_then(|now| table.number("start_s", limits::until(now))),
-        false => time,
-    };
-    let alternatives = match table.take("alternatives") {
-        Some(field) => alternatives(&field, plane),
-        None => Some(Vec::new()),
-    };
+    let start = table
+        .take("start_s")
+        .map_or(time, |field| field.number(limits::until(time?)));
+    let alternatives = table.read_or("alternatives", Vec::new(), |field| {
+        alternatives(field, plane)
+    });
     let fields = table
         .require("waypoints", "a list of at least 2 positions")
         .and_then(|field| positions(&field));

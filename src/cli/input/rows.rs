@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use searoom::input::read_text;
+use searoom::report::counted;
 use searoom::scenario::{Fault, ScenarioError};
 
 /// Maximum size of a CSV file in mebibytes.
@@ -58,11 +59,6 @@ pub const VELOCITY: [Column; 2] = [
 /// Time.
 pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 
-fn values(count: usize) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} value{plural}")
-}
-
 /// Parses the comma-separated numbers of one option.
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -70,7 +66,7 @@ pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64;
         let names = header(columns);
         return Err(format!(
             "found {}; allowed: {N}: {names}",
-            values(parts.len())
+            counted(parts.len(), "value")
         ));
     }
     let mut row = [0.0; N];
@@ -98,10 +94,7 @@ pub fn read<const N: usize>(
     if faults.is_empty() {
         return Ok(rows);
     }
-    Err(ScenarioError::Faults {
-        file: file.to_owned(),
-        faults,
-    })
+    Err(ScenarioError::faults(file, faults))
 }
 
 /// Reads lines of values between commas, which may be in quotation marks; blank lines are skipped.
@@ -127,7 +120,7 @@ fn rows<const N: usize>(
             continue;
         };
         if record.len() > N {
-            let found = values(record.len());
+            let found = counted(record.len(), "value");
             faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
             continue;
         }
@@ -203,10 +196,8 @@ fn quoted(text: &str) -> String {
 
 fn fault(line: Option<usize>, path: &str, found: String, allowed: &str) -> Fault {
     Fault {
-        path: path.to_owned(),
-        found,
-        allowed: allowed.to_owned(),
         line,
+        ..Fault::new(path, found, allowed)
     }
 }
 

@@ -61,9 +61,8 @@ impl Scene {
         match &self.source {
             Source::File => None,
             Source::Situation(situation) => {
-                let file = self.found.file.clone();
                 let imported = situation.scenario(assumed);
-                Some(imported.map_err(|faults| ScenarioError::Faults { file, faults }))
+                Some(imported.map_err(|faults| ScenarioError::faults(&self.found.file, faults)))
             }
         }
     }
@@ -131,10 +130,7 @@ fn of_file(
                         found: named(found, &situation),
                         source: Source::Situation(Box::new(situation)),
                     }),
-                    Err(faults) => {
-                        let file = file.clone();
-                        Err(unread(ScenarioError::Faults { file, faults }.to_string()))
-                    }
+                    Err(faults) => Err(unread(ScenarioError::faults(file, faults).to_string())),
                 });
             }
         }
