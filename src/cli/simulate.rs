@@ -15,7 +15,7 @@ use searoom::simulation::Simulation;
 use super::args::SimulateArgs;
 use super::input::files::{self, Found, shown};
 use super::input::scenes::{self, Scene};
-use super::output::products::{Products, Wanted};
+use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
 use super::runner::guarded;
@@ -42,21 +42,10 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             }
             Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
         };
-        let (file, refused) = match &scene {
-            Ok(scene) if scene.scenario(&assumed).is_ok() => (&scene.found.file, NOT_APPLICABLE),
-            Ok(scene) => (&scene.found.file, UNREADABLE),
-            Err(unread) => (&unread.file, UNREADABLE),
+        let file = match &scene {
+            Ok(scene) => &scene.found.file,
+            Err(unread) => &unread.file,
         };
-        let failure = match &sailed {
-            Ok(Ok(_)) => None,
-            Ok(Err(error)) => Some((refused, format!("{error:#}"))),
-            Err(fault) => Some((INTERNAL_FAULT, fault.clone())),
-        };
-        if let Some((outcome, error)) = failure {
-            let name = shown(file);
-            let error = error.replace(&file.display().to_string(), &name);
-            report.add_failure(&name, outcome, &error);
-        }
         status = status.max(match sailed {
             Ok(Ok((document, written))) => {
                 let shown = if args.written.json {
@@ -72,8 +61,19 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 documents.push(document);
                 shown.max(written).max(reached)
             }
-            Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
-            Err(fault) => output.fault(&fault),
+            Ok(Err(error)) => {
+                let outcome = match &scene {
+                    Ok(scene) if scene.scenario(&assumed).is_ok() => NOT_APPLICABLE,
+                    _ => UNREADABLE,
+                };
+                let error = format!("{error:#}");
+                report_failure(&mut report, file, outcome, &error);
+                output.refuse(&error)
+            }
+            Err(fault) => {
+                report_failure(&mut report, file, INTERNAL_FAULT, &fault);
+                output.fault(&fault)
+            }
         });
         if interrupted.load(Ordering::Relaxed) {
             output.note(&"interrupted; no more scenarios are sailed");

@@ -14,7 +14,7 @@ use super::input::files::{self, Found, shown};
 use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
-use super::output::products::{Products, Wanted};
+use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::runner::{Attempt, attempt};
 
@@ -34,7 +34,7 @@ impl Tally {
 
     /// Adds a valid scenario that the requested planner or rules do not support.
     fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
-        self.fail(file, NOT_APPLICABLE, &reason);
+        report_failure(&mut self.report, file, NOT_APPLICABLE, &reason);
         let file = file.display().to_string();
         self.runs
             .push(SuiteRunDocument::not_applicable(file, title, reason));
@@ -46,17 +46,10 @@ impl Tally {
             _ => ExitStatus::BadInput,
         });
         self.errors.push(error.clone());
-        self.fail(file, outcome, &error);
+        report_failure(&mut self.report, file, outcome, &error);
         let file = file.display().to_string();
         self.runs
             .push(SuiteRunDocument::failed(file, outcome, error));
-    }
-
-    /// Adds a failure to the report, which shows files without the folders of this machine.
-    fn fail(&mut self, file: &Path, outcome: &str, error: &str) {
-        let name = shown(file);
-        let error = error.replace(&file.display().to_string(), &name);
-        self.report.add_failure(&name, outcome, &error);
     }
 }
 

@@ -7,15 +7,18 @@ use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
 
 /// True if several risk levels were requested.
-fn is_sweep(entries: &[EntryDocument]) -> bool {
+pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
+}
+
+fn title(compared: &ScenarioComparisonDocument) -> &str {
+    compared.scenario.as_deref().unwrap_or(&compared.file)
 }
 
 /// Formats the table of one scenario and the methods that do not apply. Colour only when `colour`.
 pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> String {
     let table = comparison_grid(&compared.entries).text(colour);
-    let title = compared.scenario.as_deref().unwrap_or(&compared.file);
-    let mut lines = vec![title.to_owned(), table];
+    let mut lines = vec![title(compared).to_owned(), table];
     lines.extend(remarks(compared));
     lines.join("\n")
 }
@@ -23,9 +26,8 @@ pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> 
 /// Formats the table as markdown, without the planning time.
 pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
     let grid = comparison_grid(&compared.entries).without(TIME_COLUMN);
-    let title = compared.scenario.as_deref().unwrap_or(&compared.file);
     let mut lines = vec![
-        format!("# {}\n", in_cell(title)),
+        format!("# {}\n", in_cell(title(compared))),
         grid.markdown(),
         String::new(),
     ];

@@ -10,8 +10,8 @@ mod plan;
 mod simulation;
 mod table;
 mod verification;
-mod write;
 
+pub use crate::output::{WriteError, write_atomically};
 pub use crate::pipeline::Verdict;
 pub use crate::text::{counted, printable, printable_lines};
 pub use assessment::assessment_text;
@@ -20,4 +20,3 @@ pub use lint::lint_text;
 pub use plan::{no_return_line, no_return_reason, plan_document_text, plan_text, suite_table};
 pub use simulation::simulation_text;
 pub use verification::{simulation_verification_text, verification_text};
-pub use write::{WriteError, write_atomically};

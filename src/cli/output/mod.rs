@@ -135,6 +135,15 @@ pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
 }
 
+/// Formats rows as CSV.
+pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    writer.into_inner().context("the rows cannot be written")
+}
+
 /// Prints help, the version, or an argument error.
 pub fn usage(error: &clap::Error) -> ExitCode {
     // an error of this stream cannot be reported

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::comparison::{comparison_grid, remarks};
+use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
     Figure, Panel, comparison_panels, diagram_panels, plan_panels, simulation_panel,
 };
@@ -19,11 +19,11 @@ use super::simulation::{
     targets_grid,
 };
 use super::table::{Grid, Styled, Tone, verdict};
-use super::write::{WriteError, write_atomically};
 use crate::document::{
     PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteRunDocument, TIME_LINE,
     headline, plan_lines,
 };
+use crate::output::{WriteError, write_atomically};
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use crate::study::compare::Entry;
@@ -99,8 +99,7 @@ impl HtmlReport {
         scenario: &Scenario,
         entries: &[Entry],
     ) {
-        let sweep = (entries.iter()).any(|e| e.candidate.max_risk != entries[0].candidate.max_risk);
-        let mut panels = comparison_panels(scenario, entries, sweep);
+        let mut panels = comparison_panels(scenario, entries, is_sweep(&compared.entries));
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
         let remarks = remarks(compared);
