@@ -208,7 +208,7 @@ fn write(
         let mut rows = vec![COMPARISON_COLUMNS.split(',').map(str::to_owned).collect()];
         for document in documents {
             let entries = document.entries.iter();
-            rows.extend(entries.map(|entry| comparison_csv(document, entry).to_vec()));
+            rows.extend(entries.map(|entry| comparison_csv(document, entry)));
         }
         write_atomically(file, &csv(rows)?)?;
     }

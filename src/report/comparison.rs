@@ -133,16 +133,13 @@ pub const COMPARISON_COLUMNS: &str = "file,scenario,method,max_risk,outcome,veri
     plan_ms,reason";
 
 /// Builds a row of values in the order of [`COMPARISON_COLUMNS`]; missing values are empty.
-pub fn comparison_csv(
-    compared: &ScenarioComparisonDocument,
-    entry: &EntryDocument,
-) -> [String; 22] {
+pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<String> {
     let cost = entry.cost.as_ref();
     let optional = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let number =
         |value: fn(&CostDocument) -> f64| optional(cost.map(value).filter(|v| v.is_finite()));
     let word = |value: bool| cost.map_or_else(String::new, |_| value.to_string());
-    [
+    vec![
         compared.file.clone(),
         compared.scenario.clone().unwrap_or_default(),
         entry.method.clone(),
@@ -161,10 +158,7 @@ pub fn comparison_csv(
         number(|c| c.max_risk),
         optional(entry.largest_turn_deg),
         entry.largest_turn_side.clone().unwrap_or_default(),
-        entry
-            .breaks
-            .as_ref()
-            .map_or_else(String::new, |b| b.join(" ")),
+        (entry.breaks.as_ref()).map_or_else(String::new, |b| b.join(" ")),
         (entry.search_stats).map_or_else(String::new, |stats| stats.expanded.to_string()),
         optional(entry.timing.map(|timing| 1e3 * timing.plan_s)),
         entry.reason.clone().unwrap_or_default(),

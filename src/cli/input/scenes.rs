@@ -71,7 +71,7 @@ impl Scene {
     pub fn declared(&self) -> Declared {
         match &self.source {
             Source::File => Declared::default(),
-            Source::Situation(situation) => situation.declared().clone(),
+            Source::Situation(situation) => situation.declared.clone(),
         }
     }
 
@@ -79,8 +79,8 @@ impl Scene {
     pub fn label(&self) -> String {
         let file = self.found.file.display();
         match &self.source {
-            Source::Situation(situation) if situation.id().is_some() => {
-                format!("{file}: {}", situation.name())
+            Source::Situation(situation) if situation.id.is_some() => {
+                format!("{file}: {}", situation.name)
             }
             _ => file.to_string(),
         }
@@ -168,7 +168,7 @@ pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene
 
 /// Names the outputs of one of several situations after it, in the folder of its file.
 fn named(found: &Found, situation: &Situation) -> Found {
-    let Some(id) = situation.id() else {
+    let Some(id) = &situation.id else {
         return found.clone();
     };
     let safe = |c: char| {
