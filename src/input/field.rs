@@ -143,10 +143,15 @@ impl<'a> Field<'a> {
         });
     }
 
+    /// Notes a fault here, without which there would be a value.
+    pub(crate) fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
+        self.fault(found, allowed);
+        None
+    }
+
     /// Notes that this value is not an allowed one.
     pub(crate) fn refuse<T>(&self, allowed: impl Display) -> Option<T> {
-        self.fault(self.node.described(), allowed);
-        None
+        self.reject(self.node.described(), allowed)
     }
 
     /// The value at a key; a fault if this is not a table.
@@ -275,8 +280,7 @@ impl<'a> Field<'a> {
             }
             Value::List(items) if items.len() > *most => {
                 let found = format_args!("{} {what}", items.len());
-                self.fault(found, format_args!("at most {most}"));
-                None
+                self.reject(found, format_args!("at most {most}"))
             }
             _ => self.refuse(format_args!("a list of at least {least} {what}")),
         }

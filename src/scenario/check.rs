@@ -182,13 +182,11 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
         Some((field, speeds)) => {
             let speeds = speeds?;
             if !speeds.iter().any(|speed| *speed > 0.0) {
-                field.fault("only zeros", "a list with at least one speed above 0");
-                return None;
+                return field.reject("only zeros", "a list with at least one speed above 0");
             }
             if speeds.len() > limits::SPEEDS {
                 let found = format_args!("{} speeds", speeds.len());
-                field.fault(found, format_args!("at most {}", limits::SPEEDS));
-                return None;
+                return field.reject(found, format_args!("at most {}", limits::SPEEDS));
             }
             speeds
         }
@@ -285,19 +283,17 @@ fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) ->
     let per_leg = table.speeds("leg_speeds", limits::WAY);
     if let Some((field, speeds)) = per_leg {
         if table.has_speed("speed") {
-            field.fault(
+            return field.reject(
                 "leg speeds beside a speed of the whole mission",
                 "one of the two, not both",
             );
-            return None;
         }
         let (speeds, legs) = (speeds?, legs?);
         if speeds.len() != legs {
-            field.fault(
+            return field.reject(
                 format_args!("{} speeds", speeds.len()),
                 format_args!("{legs}, one for each leg between two waypoints"),
             );
-            return None;
         }
         return Some(speeds);
     }

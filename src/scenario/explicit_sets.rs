@@ -110,8 +110,7 @@ fn like(field: &Field, velocities: ConvexSet, initial: Option<&ConvexSet>) -> Op
         }
         _ => return Some(velocities),
     };
-    field.fault(found, "sets of one kind");
-    None
+    field.reject(found, "sets of one kind")
 }
 
 /// Timed velocity sets: all but the last one end, each after the one before.
@@ -172,10 +171,7 @@ fn set_of(table: &mut Table, keys: &SetKeys) -> Option<ConvexSet> {
     let shape = matrix_of(&matrix, keys.areas);
     match Ellipse::new(center?, shape?) {
         Ok(ellipse) => Some(ellipse.into()),
-        Err(error) => {
-            matrix.fault(error, SHAPES);
-            None
-        }
+        Err(error) => matrix.reject(error, SHAPES),
     }
 }
 
@@ -186,8 +182,7 @@ const SHAPES: &str =
 fn matrix_of(field: &Field, range: Range) -> Option<Matrix2<f64>> {
     let rows = field.list(2..=usize::MAX, "rows")?;
     let [first, second] = rows.as_slice() else {
-        field.fault(format_args!("{} rows", rows.len()), SHAPES);
-        return None;
+        return field.reject(format_args!("{} rows", rows.len()), SHAPES);
     };
     let (a, b) = (first.pair(range), second.pair(range));
     let (a, b) = (a?, b?);
@@ -207,11 +202,10 @@ fn polygon(list: &Field, range: Range) -> Option<ConvexPolygon> {
                 }
                 GeometryError::Empty => list,
             };
-            place.fault(
+            place.reject(
                 error,
                 "the corners of a convex set, each on its boundary, in any order",
-            );
-            None
+            )
         }
     }
 }

@@ -50,13 +50,10 @@ impl Plane {
         let metric = table.has("east_m") | table.has("north_m");
         let geographic = table.has("lat_deg") | table.has("lon_deg");
         let point = match (metric, geographic) {
-            (true, true) => {
-                field.fault(
-                    "east_m or north_m beside lat_deg or lon_deg",
-                    "one of the two pairs, not both",
-                );
-                None
-            }
+            (true, true) => field.reject(
+                "east_m or north_m beside lat_deg or lon_deg",
+                "one of the two pairs, not both",
+            ),
             (false, true) => {
                 let place = place(&mut table, limits::LATITUDE);
                 place.and_then(|place| near(field, place, &self.need_earth()?))

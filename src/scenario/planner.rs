@@ -160,9 +160,8 @@ fn some_weight(field: &Field, weights: [f64; 6]) -> Option<[f64; 6]> {
     if weights.iter().any(|weight| *weight > 0.0) {
         return Some(weights);
     }
-    field.fault(
+    field.reject(
         "only zeros, with which the mission counts for nothing",
         "at least one number above 0",
-    );
-    None
+    )
 }

@@ -345,8 +345,9 @@ pub(super) fn simulation(
 }
 
 fn vessel(field: &Field) -> Option<VesselModel> {
-    /// The reader of the other keys of each kind.
-    const KINDS: [(&str, fn(&mut Table) -> Option<VesselModel>); 3] = [
+    /// Reads the other keys of a kind.
+    type Read = fn(&mut Table) -> Option<VesselModel>;
+    const KINDS: [(&str, Read); 3] = [
         ("kinematic", |_| Some(VesselModel::Kinematic)),
         ("first-order", |table| {
             Some(VesselModel::FirstOrder {
@@ -528,8 +529,9 @@ fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
     let Some(field) = target.take("behaviour") else {
         return Some(Behaviour::Constant);
     };
-    /// The reader of the other keys of each kind.
-    const KINDS: [(&str, fn(&mut Table, &Plane) -> Option<Behaviour>); 7] = [
+    /// Reads the other keys of a kind.
+    type Read = fn(&mut Table, &Plane) -> Option<Behaviour>;
+    const KINDS: [(&str, Read); 7] = [
         ("constant", |_, _| Some(Behaviour::Constant)),
         ("random", |table, _| {
             Some(Behaviour::Random {
@@ -583,11 +585,10 @@ fn track(points: &[Field], plane: &Plane) -> Option<Vec<(f64, Vector)>> {
         table.finish();
         let (time, position) = (time?, position?);
         if found.last().is_some_and(|(before, _)| time <= *before) {
-            point.fault(
+            return point.reject(
                 format_args!("t_s = {time}, not after the one before"),
                 "increasing times",
             );
-            return None;
         }
         found.push((time, position));
     }

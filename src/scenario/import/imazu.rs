@@ -49,8 +49,7 @@ fn own(field: &Field) -> Option<Own> {
     let goal = point(field, ["goal_east_m", "goal_north_m"]);
     let (start, goal, speed) = (start?, goal?, speed?);
     if !((goal - start).norm() >= limits::LENGTH.low) {
-        field.fault("a goal where own ship is", "a goal ahead of it");
-        return None;
+        return field.reject("a goal where own ship is", "a goal ahead of it");
     }
     Some(Own {
         pose: Pose::new(start, heading?),

@@ -35,8 +35,7 @@ pub(super) fn point(entry: &Xml) -> Option<Vector> {
 pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
     let parts: Vec<Option<Shape>> = entry.elements().map(|shape| one(&shape)).collect();
     if parts.is_empty() {
-        entry.fault("no shape", "a rectangle, a circle or a polygon");
-        return None;
+        return entry.reject("no shape", "a rectangle, a circle or a polygon");
     }
     parts.into_iter().collect()
 }
@@ -66,15 +65,13 @@ fn one(entry: &Xml) -> Option<Shape> {
             let count = points.len();
             let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
             if !(3..=limits::TRACK_POINTS).contains(&count) {
-                entry.fault(format_args!("{count} points"), "at least 3");
-                return None;
+                return entry.reject(format_args!("{count} points"), "at least 3");
             }
             // an outer approximation: a bay becomes land
             ConvexPolygon::hull(&points).ok()?
         }
         other => {
-            entry.fault(other, "a rectangle, a circle or a polygon");
-            return None;
+            return entry.reject(other, "a rectangle, a circle or a polygon");
         }
     };
     let reach = |axis: Vector| 2.0 * outline.support(axis).max(outline.support(-axis));

@@ -124,8 +124,7 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
             && !((fore + aft - size).abs() <= LENGTH_ROUNDED)
         {
             let found = format_args!("a {whole} of {size} m, of which {fore} and {aft} m are to either side");
-            field.fault(found, "distances from the reference point that add up to it");
-            return None;
+            return field.reject(found, "distances from the reference point that add up to it");
         }
         if fore == aft {
             return Some(size.or(Some(2.0 * fore)));
