@@ -31,11 +31,7 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
         return Ok(output.result(text.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
-    Ok(if args.json {
-        output.document(&contents)
-    } else {
-        output.result(&contents.text())
-    })
+    Ok(output.show(args.json, &contents, || contents.text()))
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.

@@ -35,12 +35,9 @@ pub fn suite(
         }));
     }
     let document = LintDocument::of(documents);
-    let shown = if args.shared.written.json {
-        output.document(&document)
-    } else {
-        output.result(&lint_text(&document, output.colour))
-    };
-    status.max(shown)
+    status.max(output.show(args.shared.written.json, &document, || {
+        lint_text(&document, output.colour)
+    }))
 }
 
 fn unread(scene: &Scene, error: String) -> Unread {

@@ -103,12 +103,10 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let lead = document.summary.to_string();
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
     let written = output.written(report);
-    let shown = if args.shared.written.json {
-        output.document(&document)
-    } else {
+    let shown = output.show(args.shared.written.json, &document, || {
         let table = suite_table(&document.runs, output.colour);
-        output.result(&format!("{table}\n{}", document.summary))
-    };
+        format!("{table}\n{}", document.summary)
+    });
     Ok(tally.status.max(written).max(shown))
 }
 

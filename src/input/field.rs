@@ -289,8 +289,7 @@ impl<'a> Field<'a> {
     /// A list of at least one number, each in a range.
     pub(crate) fn numbers(&self, range: Range) -> Option<Vec<f64>> {
         let items = self.list(1..=usize::MAX, "numbers")?;
-        let numbers: Vec<_> = items.iter().map(|item| item.number(range)).collect();
-        numbers.into_iter().collect()
+        every(items.iter().map(|item| item.number(range)))
     }
 
     /// A list of two numbers in a range: a vector.
@@ -317,6 +316,12 @@ impl<'a> Field<'a> {
     pub(crate) fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
     }
+}
+
+/// Every value, or none where one is faulty. All are read, so that all faults are noted.
+pub(crate) fn every<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let values: Vec<Option<T>> = read.collect();
+    values.into_iter().collect()
 }
 
 /// A text in quotation marks, cut after 40 characters.

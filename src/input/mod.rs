@@ -7,7 +7,7 @@ mod field;
 mod table;
 mod value;
 
-pub(crate) use field::{Field, Range, abbreviated};
+pub(crate) use field::{Field, Range, abbreviated, every};
 pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::plane::{POSITION, Plane};
+use super::plane::Plane;
 use super::planner::{PlannerTable, planner};
 use super::simulation::simulation;
 use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::input::{Faults, Field, Node, Table, from_toml};
+use crate::input::{Faults, Field, Node, Table, every, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::text::LINE;
@@ -125,9 +125,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
 
 /// A pose from the keys `position` and `course_deg`.
 pub(super) fn pose(table: &mut Table, plane: &Plane) -> Option<Pose> {
-    let position = table
-        .require("position", POSITION)
-        .and_then(|field| plane.position(&field));
+    let position = plane.required_position(table);
     let course = table.required_number("course_deg", limits::COURSE);
     Some(Pose::new(position?, heading_from_course_deg(course?)))
 }
@@ -253,11 +251,7 @@ fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {
 
 fn alternatives(field: &Field, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
     let paths = field.list(1..=limits::ALTERNATIVES, "paths, each a list of positions")?;
-    let read: Vec<_> = paths
-        .iter()
-        .map(|path| positions(path).and_then(|fields| waypoints(&fields, plane)))
-        .collect();
-    read.into_iter().collect()
+    every((paths.iter()).map(|path| positions(path).and_then(|fields| waypoints(&fields, plane))))
 }
 
 fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {

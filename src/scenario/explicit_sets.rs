@@ -3,9 +3,8 @@
 use nalgebra::Matrix2;
 
 use super::limits;
-use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, GeometryError};
-use crate::input::{Field, Range, Table};
+use crate::input::{Field, Range, Table, every};
 use crate::target::{TimedVelocitySet, Uncertainty};
 
 /// Allowed values of the keys of a tracked ship beside explicit sets.
@@ -191,8 +190,7 @@ fn matrix_of(field: &Field, range: Range) -> Option<Matrix2<f64>> {
 
 fn polygon(list: &Field, range: Range) -> Option<ConvexPolygon> {
     let vertices = list.list(1..=usize::MAX, "[east, north]")?;
-    let points: Vec<Option<Vector>> = vertices.iter().map(|vertex| vertex.pair(range)).collect();
-    let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
+    let points = every(vertices.iter().map(|vertex| vertex.pair(range)))?;
     match ConvexPolygon::from_vertices(&points) {
         Ok(polygon) => Some(polygon),
         Err(error) => {

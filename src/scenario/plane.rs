@@ -7,7 +7,7 @@ use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
 use crate::input::{Field, Range, Table};
 
 /// Allowed positions.
-pub(super) const POSITION: &str = "a table { east_m, north_m } or { lat_deg, lon_deg }";
+const POSITION: &str = "a table { east_m, north_m } or { lat_deg, lon_deg }";
 
 /// Allowed origins.
 const ORIGIN: &str = "a table { lat_deg, lon_deg }";
@@ -42,6 +42,11 @@ impl Plane {
     pub(super) fn need_earth(&self) -> Option<Georeference> {
         self.wanted.set(true);
         self.earth
+    }
+
+    /// The point at the key `position`, which must be there.
+    pub(super) fn required_position(&self, table: &mut Table) -> Option<Vector> {
+        self.position(&table.require("position", POSITION)?)
     }
 
     /// A point in metres from a table of east and north, or of latitude and longitude.

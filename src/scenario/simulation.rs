@@ -2,9 +2,9 @@
 //! loop. Plans do not use them.
 
 use super::limits;
-use super::plane::{POSITION, Plane};
+use super::plane::Plane;
 use crate::frame::{Vector, heading_from_course_deg, radians_from_deg};
-use crate::input::{Field, Range, Table};
+use crate::input::{Field, Range, Table, every};
 use crate::vessel::Hull;
 
 /// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
@@ -495,11 +495,8 @@ fn sensor(field: &Field) -> Option<Sensor> {
 
 fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
     let times = field.list(0..=SILENT_TIMES, "pairs of seconds, from and until")?;
-    let pairs: Vec<_> = times
-        .iter()
-        .map(|pair| pair.pair(limits::HOLD).map(|pair| [pair.x, pair.y]))
-        .collect();
-    pairs.into_iter().collect()
+    let pairs = times.iter().map(|pair| pair.pair(limits::HOLD));
+    every(pairs.map(|pair| pair.map(|pair| [pair.x, pair.y])))
 }
 
 /// Fields of a target in the file that only the simulation uses.
@@ -579,9 +576,7 @@ fn track(points: &[Field], plane: &Plane) -> Option<Vec<(f64, Vector)>> {
     for point in points {
         let mut table = point.table("a table with t_s and position")?;
         let time = table.required_number("t_s", limits::DURATION);
-        let position = table
-            .require("position", POSITION)
-            .and_then(|field| plane.position(&field));
+        let position = plane.required_position(&mut table);
         table.finish();
         let (time, position) = (time?, position?);
         if found.last().is_some_and(|(before, _)| time <= *before) {

@@ -84,6 +84,20 @@ impl Output {
         }
     }
 
+    /// Prints a result as a document, or as text.
+    pub fn show(
+        &self,
+        json: bool,
+        document: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> ExitStatus {
+        if json {
+            self.document(document)
+        } else {
+            self.result(&text())
+        }
+    }
+
     /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         // an error of standard error cannot be reported

@@ -242,8 +242,6 @@ fn cost_within_risk(entry: &Entry) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::planner::path_time::PathTimePlanner;
     use crate::planner::space_time::SpaceTimePlanner;
@@ -253,8 +251,8 @@ mod tests {
     /// In the head-on scenario no path is clear at any accepted risk.
     #[test]
     fn what_goes_beyond_the_risk_has_no_point() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let scenario = Scenario::read(&root.join("scenarios/colregs/head-on.toml")).expect("valid");
+        let read = |name: &str| Scenario::read(name.as_ref()).expect(name);
+        let scenario = read("scenarios/colregs/head-on.toml");
         let planners: [&dyn Planner; 2] = [&SpaceTimePlanner, &PathTimePlanner];
         let entries: Vec<Entry> = planners
             .into_iter()
@@ -274,7 +272,7 @@ mod tests {
         };
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
         // a plan that does not arrive has no point either
-        let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
+        let forces = read("scenarios/forces/give-way.toml");
         let along = Candidate {
             max_risk: 0.2,
             ..entries[2].candidate

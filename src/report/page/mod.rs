@@ -67,15 +67,11 @@ impl HtmlReport {
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
         self.row(SuiteRunDocument::of(file, plan, Vec::new()));
-        let lines = plan_lines(plan).into_iter();
-        let lines = lines.filter(|(name, _)| *name != TIME_LINE);
         let figures = self.draw(subject, plan_panels(run));
         self.section(html! {
             h2 { (headline(plan)) }
             (origin(subject))
-            dl {
-                @for (name, value) in lines { dt { (name) } dd { (value) } }
-            }
+            (named_lines(plan_lines(plan), TIME_LINE))
             (figures)
         });
     }
@@ -122,16 +118,12 @@ impl HtmlReport {
         scenario: &Scenario,
         simulation: &SimulationDocument,
     ) {
-        let lines = conduct_lines(simulation).into_iter();
-        let lines = lines.filter(|(name, _)| *name != TIMES);
         let figures = self.draw(subject, vec![simulation_panel(scenario, simulation)]);
         let targets = &simulation.targets;
         self.section(html! {
             h2 { (simulation_headline(simulation)) }
             (origin(subject))
-            dl {
-                @for (name, value) in lines { dt { (name) } dd { (value) } }
-            }
+            (named_lines(conduct_lines(simulation), TIMES))
             (figures)
             @if !targets.is_empty() {
                 h3 { "Targets" }
@@ -221,6 +213,16 @@ fn origin(subject: &Subject) -> Markup {
             @for (name, address) in &subject.links {
                 " · " a href=(address) { (name) }
             }
+        }
+    }
+}
+
+/// Renders named lines without that of the planning time.
+fn named_lines(lines: Vec<(&'static str, String)>, time: &str) -> Markup {
+    let lines = lines.into_iter().filter(|(name, _)| *name != time);
+    html! {
+        dl {
+            @for (name, value) in lines { dt { (name) } dd { (value) } }
         }
     }
 }

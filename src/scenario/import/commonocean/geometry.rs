@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::super::xml::Xml;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
-use crate::input::Range;
+use crate::input::{Range, every};
 use crate::scenario::limits;
 use crate::vessel::Hull;
 
@@ -33,11 +33,10 @@ pub(super) fn point(entry: &Xml) -> Option<Vector> {
 
 /// The shapes in an element, at least one.
 pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
-    let parts: Vec<Option<Shape>> = entry.elements().map(|shape| one(&shape)).collect();
-    if parts.is_empty() {
+    if entry.elements().next().is_none() {
         return entry.reject("no shape", "a rectangle, a circle or a polygon");
     }
-    parts.into_iter().collect()
+    every(entry.elements().map(|shape| one(&shape)))
 }
 
 fn one(entry: &Xml) -> Option<Shape> {
@@ -61,9 +60,8 @@ fn one(entry: &Xml) -> Option<Shape> {
             outer_disc(radius, 0.0).translated(center)
         }
         "polygon" => {
-            let points: Vec<Option<Vector>> = entry.all("point").map(|p| point(&p)).collect();
+            let points = every(entry.all("point").map(|p| point(&p)))?;
             let count = points.len();
-            let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
             if !(3..=limits::TRACK_POINTS).contains(&count) {
                 return entry.reject(format_args!("{count} points"), "at least 3");
             }
