@@ -14,7 +14,7 @@ use searoom::scenario::import::Assumed;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
-use super::input::files::{self, Found};
+use super::input::files::shown;
 use super::input::scenes::{self, Made, Scene};
 use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
 use super::output::status::ExitStatus;
@@ -41,14 +41,13 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         .as_deref()
         .map_or(Ok(()), prepare_figure)?;
     let assumed = args.assumed.assumed();
-    let all = scenes::open(files::find(&args.paths, output), &assumed, output);
-    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
+    let all = scenes::open(&args.paths, &assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
         ..args.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
+    let products = Products::prepare(&scenes::found(&all), wanted)?;
     let asked = all.into_iter().map(|scene| match scene {
         Ok(scene) => ask(&scene, args, &assumed),
         Err(unread) => Compared::refused(unread.file, unread.error),
@@ -234,13 +233,13 @@ fn report(
     for (c, document) in compared.iter().zip(documents) {
         match &c.scenario {
             Ok(scenario) => {
-                let subject = products.subject(&c.stem, files::shown(&c.file));
+                let subject = products.subject(&c.stem, shown(&c.file));
                 report.add_comparison(&subject, document, scenario, &c.entries);
             }
             Err(error) => report_failure(&mut report, &c.file, UNREADABLE, error),
         }
         for fault in &c.faults {
-            report.add_failure(&files::shown(&c.file), INTERNAL_FAULT, fault);
+            report.add_failure(&shown(&c.file), INTERNAL_FAULT, fault);
         }
     }
     let lead = "Every planner that applies and two baselines on the same targets.";

@@ -6,7 +6,8 @@ use searoom::scenario::import::Assumed;
 use searoom::study::lint::lint;
 
 use super::args::SuiteArgs;
-use super::input::scenes::{Scene, Unread};
+use super::input::files::Unread;
+use super::input::scenes::Scene;
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded;

@@ -13,7 +13,7 @@ use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::input::files::{self, Found, shown};
+use super::input::files::shown;
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
@@ -24,13 +24,12 @@ use super::runner::guarded;
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let interrupted = catch_interrupt(output);
     let assumed = args.assumed.assumed();
-    let scenes = scenes::open(files::find(&args.paths, output), &assumed, output);
-    let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
+    let scenes = scenes::open(&args.paths, &assumed, output);
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
+    let products = Products::prepare(&scenes::found(&scenes), wanted)?;
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     let mut report = HtmlReport::new();

@@ -10,7 +10,7 @@ use searoom::report::{counted, printable, suite_table};
 use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
-use super::input::files::{self, Found, shown};
+use super::input::files::shown;
 use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
@@ -56,17 +56,15 @@ impl Tally {
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, output);
-    let all = scenes::open(files, &assumed, output);
+    let all = scenes::open(&args.paths, &assumed, output);
     if args.lint {
         return Ok(lint::suite(all, args, &assumed, output));
     }
-    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
+    let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());
     let mut tally = Tally::default();
     for entry in all {

@@ -19,6 +19,15 @@ pub struct Found {
     pub in_folder: bool,
 }
 
+/// File, or a part of it, without a scenario.
+#[derive(Debug)]
+pub struct Unread {
+    /// File path.
+    pub file: PathBuf,
+    /// Error that includes the file name.
+    pub error: String,
+}
+
 /// Extensions of scenario files and of imported formats.
 const ENDINGS: [&str; 3] = ["toml", "json", "xml"];
 
@@ -29,7 +38,7 @@ fn has_known_ending(file: &Path) -> bool {
 
 /// Lists the scenario files at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, Unread>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
     for found in meant(paths) {
@@ -46,7 +55,7 @@ pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, a
     all
 }
 
-fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+fn meant(paths: &[PathBuf]) -> Vec<Result<Found, Unread>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -58,15 +67,18 @@ fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
             }));
             continue;
         }
+        let unread = |error: String| {
+            Err(Unread {
+                file: path.clone(),
+                error,
+            })
+        };
         let mut files = Vec::new();
         match walk(path, &mut files) {
-            Ok(()) if files.is_empty() => all.push(Err((
-                path.clone(),
-                anyhow::anyhow!(
-                    "{}: a folder without scenarios (.toml, .json or .xml files)",
-                    path.display()
-                ),
-            ))),
+            Ok(()) if files.is_empty() => {
+                let why = "a folder without scenarios (.toml, .json or .xml files)";
+                all.push(unread(format!("{}: {why}", path.display())));
+            }
             Ok(()) => all.extend(files.into_iter().map(|file| {
                 let relative = file.strip_prefix(path).unwrap_or(&file);
                 Ok(Found {
@@ -75,7 +87,7 @@ fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
                     in_folder: true,
                 })
             })),
-            Err(error) => all.push(Err((path.clone(), error))),
+            Err(error) => all.push(unread(format!("{error:#}"))),
         }
     }
     all

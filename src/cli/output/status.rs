@@ -38,9 +38,7 @@ impl ExitStatus {
             (Some(_), _) => Self::InternalFault,
         }
     }
-}
 
-impl ExitStatus {
     /// Exit code of the process.
     pub fn code(self) -> u8 {
         match self {

@@ -52,15 +52,9 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs lines every round number of metres, and the north arrow.
 fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Window { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
-    let spacing = grid_spacing(canvas);
-    let mut lines = Lines::new();
-    for east in multiples(low.x, high.x, spacing) {
-        let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
-        lines.add(ends.map(flat), style::GRID, 0.5);
-    }
-    for north in multiples(low.y, high.y, spacing) {
-        let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
+    let window = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
+    let mut lines = Lines::default();
+    for ends in grid_lines(canvas, &window) {
         lines.add(ends.map(flat), style::GRID, 0.5);
     }
     let unit = canvas.bounds.size().max() / 100.0;
@@ -82,6 +76,17 @@ pub fn grid_spacing(canvas: &Canvas) -> f64 {
     round_down(canvas.bounds.size().max() / 4.0)
 }
 
+/// The ends of the lines of the grid within a window, those to the north first.
+pub fn grid_lines(canvas: &Canvas, window: &Window) -> Vec<[Vector; 2]> {
+    let Window { low, high } = window;
+    let spacing = grid_spacing(canvas);
+    let northward = multiples(low.x, high.x, spacing)
+        .map(|east| [low.y, high.y].map(|north| Vector::new(east, north)));
+    let eastward = multiples(low.y, high.y, spacing)
+        .map(|north| [low.x, high.x].map(|east| Vector::new(east, north)));
+    northward.chain(eastward).collect()
+}
+
 /// Multiples of `step` within the interval.
 pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
@@ -91,7 +96,7 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 /// Logs the desired trajectory, dashed.
 fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let dash = canvas.bounds.size().max() / 120.0;
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for leg in canvas.scenario.desired.legs() {
         let mut along = 0.0;
         while along < leg.length {
@@ -109,7 +114,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for (pace, points) in planned_strips(model) {
         let strip: Strip = points.into_iter().map(|(p, _)| flat(p)).collect();
         lines.add(strip, pace.color(), pace.radius());
@@ -234,7 +239,7 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let mut labels = Vec::new();
     for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
         let own = model.motion.pose_at(passage.tcpa).position;

@@ -115,7 +115,7 @@ pub fn outline(polygon: &ConvexPolygon) -> Strip {
 fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
         lines.add(outline(&ship.hull.polygon(&here)), color, 1.0);

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rerun::{AsComponents, Color, LineStrips3D, Mesh3D, Points3D, Transform3D, ViewCoordinates};
 
-use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
+use super::chart::{grid_lines, mark_step, multiples, planned_strips};
 use super::ships::{DrawnShip, ship_colors, ship_places};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
@@ -53,16 +53,9 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs the sea at t = 0 as a grid, and the time axis with its ticks.
 fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Window { low, high } = canvas.bounds;
-    let spacing = grid_spacing(canvas);
-    let mut lines = Lines::new();
-    let ground = |east: f64, north: f64| canvas.lifted(Vector::new(east, north), 0.0);
-    for east in multiples(low.x, high.x, spacing) {
-        let ends = [ground(east, low.y), ground(east, high.y)];
-        lines.add(ends, style::GRID, 0.5);
-    }
-    for north in multiples(low.y, high.y, spacing) {
-        let ends = [ground(low.x, north), ground(high.x, north)];
+    let mut lines = Lines::default();
+    for ends in grid_lines(canvas, &canvas.bounds) {
+        let ends = ends.map(|end| canvas.lifted(end, 0.0));
         lines.add(ends, style::GRID, 0.5);
     }
     let text = style::CHART_TEXT;
@@ -79,7 +72,7 @@ fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
             format!("{time:.0} s")
         });
     }
-    let middle = canvas.bounds.center();
+    let (high, middle) = (canvas.bounds.high, canvas.bounds.center());
     for (place, name) in [
         (Vector::new(high.x, middle.y), "E"),
         (Vector::new(middle.x, high.y), "N"),
@@ -120,7 +113,7 @@ pub fn log_body(
     let body = mesh(canvas, set).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * canvas.end) {
         let section = set.outer_section(time);
         let ring = section.vertices().iter().chain(section.vertices().first());
@@ -187,7 +180,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let shadow = style::toward_background(style::OWN_SHIP, SHADOW);
     for (pace, points) in planned_strips(model) {
         let risen = points.iter().map(|&(p, t)| model.lifted(p, t));
@@ -201,7 +194,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// Logs the desired motion and the expected ones of the targets.
 fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let desired = &canvas.scenario.desired;
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let mut strip: Vec<_> = desired
         .legs()
         .iter()
@@ -213,7 +206,7 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     if canvas.scenario.targets.is_empty() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         let mut times = vec![0.0];
         times.extend(target.changes().into_iter().filter(|&t| t < canvas.end));

@@ -54,7 +54,7 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// Logs the axes, and a circle for each of own ship's speeds.
 fn log_axes(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let limit = limit(model);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {
         lines.add([-axis, axis].map(flat), style::GRID, 0.5);
     }

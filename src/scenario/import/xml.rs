@@ -191,11 +191,6 @@ impl<'a> Xml<'a> {
         self.require(name, range)?.number(range)
     }
 
-    /// The number in `exact` of an element that must be there.
-    pub(super) fn required_exact(&self, name: &str, range: Range) -> Option<f64> {
-        self.require(name, range)?.exact(range)
-    }
-
     /// The number in the element `exact`; an interval is not a number.
     pub(super) fn exact(&self, range: Range) -> Option<f64> {
         self.require("exact", range)?.number(range)

@@ -110,7 +110,8 @@ pub(super) fn state(entry: &Xml) -> Option<State> {
         Some(angle) => angle.exact(HEADING.in_unit("rad")),
         None => Some(0.0),
     };
-    let time = entry.required_exact("time", STEPS.in_unit("steps"));
+    let steps = STEPS.in_unit("steps");
+    let time = entry.require("time", steps).and_then(|t| t.exact(steps));
     let velocity = match entry.take("velocity") {
         Some(velocity) => velocity.exact(VELOCITY.in_unit("m/s")).map(Some),
         None => Some(None),
