@@ -180,12 +180,21 @@ impl<'a> Field<'a> {
         self.require(key, range)?.number(range)
     }
 
-    /// The number at a key that may be absent: the outer `None` is a faulty number.
-    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+    /// The value at a key that may be absent: the outer `None` is a faulty value.
+    pub(crate) fn optional<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(&Self) -> Option<T>,
+    ) -> Option<Option<T>> {
         match self.get(key) {
-            Some(field) => field.number(range).map(Some),
+            Some(field) => read(&field).map(Some),
             None => Some(None),
         }
+    }
+
+    /// The number at a key that may be absent: the outer `None` is a faulty number.
+    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+        self.optional(key, |field| field.number(range))
     }
 
     /// The keys of a table, in alphabetical order.
