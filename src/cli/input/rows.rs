@@ -1,5 +1,6 @@
 //! Points and velocities from the command line and from CSV files.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use searoom::input::read_text;
@@ -63,21 +64,14 @@ pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     if parts.len() != N {
-        let names = header(columns);
-        return Err(format!(
-            "found {}; allowed: {N}: {names}",
-            counted(parts.len(), "value")
-        ));
+        let allowed = format_args!("{N}: {}", header(columns));
+        return Err(Fault::new("", counted(parts.len(), "value"), allowed).to_string());
     }
     let mut row = [0.0; N];
     for ((number, column), part) in row.iter_mut().zip(columns).zip(parts) {
-        *number = column.number(part).map_err(|found| {
-            format!(
-                "{}: found {found}; allowed: {}",
-                column.name,
-                column.allowed()
-            )
-        })?;
+        *number = column
+            .number(part)
+            .map_err(|found| Fault::new(column.name, found, column.allowed()).to_string())?;
     }
     Ok(row)
 }
@@ -121,12 +115,12 @@ fn rows<const N: usize>(
         };
         if record.len() > N {
             let found = counted(record.len(), "value");
-            faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
+            faults.push(fault(Some(line), "", found, format_args!("{N}: {names}")));
             continue;
         }
         if rows.len() == ROWS {
-            let found = format!("more than {ROWS} rows");
-            faults.push(fault(Some(line), "", found, &format!("at most {ROWS}")));
+            let found = format_args!("more than {ROWS} rows");
+            faults.push(fault(Some(line), "", found, format_args!("at most {ROWS}")));
             return rows;
         }
         let mut row = [0.0; N];
@@ -137,16 +131,16 @@ fn rows<const N: usize>(
             };
             match read {
                 Ok(value) => *number = value,
-                Err(found) => faults.push(fault(Some(line), column.name, found, &column.allowed())),
+                Err(found) => faults.push(fault(Some(line), column.name, found, column.allowed())),
             }
         }
         rows.push(row);
     }
     let wanted = format!("a header line {names} and at least one row");
     if order.is_none() {
-        faults.push(fault(Some(1), "", "an empty file".to_owned(), &wanted));
+        faults.push(fault(Some(1), "", "an empty file", &wanted));
     } else if rows.is_empty() && faults.is_empty() {
-        faults.push(fault(None, "", "no rows".to_owned(), &wanted));
+        faults.push(fault(None, "", "no rows", &wanted));
     }
     rows
 }
@@ -162,10 +156,10 @@ fn columns_of<const N: usize>(
     let before = faults.len();
     for (i, name) in found.iter().enumerate() {
         if !columns.iter().any(|c| c.name == *name) {
-            let what = format!("an unknown column {}", quoted(name));
+            let what = format_args!("an unknown column {}", quoted(name));
             faults.push(fault(Some(line), "", what, &names));
         } else if found.iter().take(i).any(|earlier| earlier == name) {
-            faults.push(fault(Some(line), name, "the column twice".into(), "once"));
+            faults.push(fault(Some(line), name, "the column twice", "once"));
         }
     }
     let mut order = [0; N];
@@ -175,8 +169,8 @@ fn columns_of<const N: usize>(
             None => faults.push(fault(
                 Some(line),
                 column.name,
-                "no such column".to_owned(),
-                &format!("a header line {names}"),
+                "no such column",
+                format_args!("a header line {names}"),
             )),
         }
     }
@@ -194,7 +188,7 @@ fn quoted(text: &str) -> String {
     format!("{short:?}{more}")
 }
 
-fn fault(line: Option<usize>, path: &str, found: String, allowed: &str) -> Fault {
+fn fault(line: Option<usize>, path: &str, found: impl Display, allowed: impl Display) -> Fault {
     Fault {
         line,
         ..Fault::new(path, found, allowed)
