@@ -8,9 +8,27 @@ use std::sync::Mutex;
 
 use tempfile::NamedTempFile;
 
+/// File that could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot be written: {source}", file.display())]
+pub struct WriteError {
+    /// File path.
+    pub file: PathBuf,
+    /// Operating system error.
+    pub source: io::Error,
+}
+
 /// Writes `contents` to a temporary file beside `file` and renames it, so that a crash leaves the
 /// old or the new file, never half of it. The folder must exist. The target of a link is replaced,
 /// not the link; devices and pipes are written to and never replaced.
+pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> {
+    write_whole(file, contents).map_err(|source| WriteError {
+        file: file.to_owned(),
+        source,
+    })
+}
+
+/// [`write_atomically`] with the error of the system.
 pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
     let file = match fs::metadata(file) {
         Ok(there) if there.is_dir() => file.to_owned(),

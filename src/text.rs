@@ -77,6 +77,12 @@ pub(crate) fn short_numbers(text: &str) -> String {
     out + rest
 }
 
+/// A count with its word, which has an s unless the count is one.
+pub fn counted(count: usize, word: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {word}{plural}")
+}
+
 /// Formats a space-time error; small values have one decimal.
 pub(crate) fn square_metres(value: f64) -> String {
     if value.is_nan() {

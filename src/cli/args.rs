@@ -334,20 +334,24 @@ impl AssumedArgs {
             (Assumption::Length, self.length_m),
             (Assumption::Beam, self.beam_m),
         ];
-        let mut assumed = Assumed::default().with_variants(self.variants);
-        for (what, value) in given {
-            if let Some(value) = value {
-                assumed = assumed.with(what, value);
-            }
-        }
-        assumed
+        let given = given
+            .into_iter()
+            .filter_map(|(what, value)| Some((what, value?)));
+        let assumed = Assumed::default().with_variants(self.variants);
+        given.fold(assumed, |assumed, (what, value)| assumed.with(what, value))
     }
 }
 
 fn assumption(what: Assumption) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |word| match word.parse() {
-        Ok(value) if what.allows(value) => Ok(value + 0.0),
-        _ => Err(format!("allowed: {}", what.allowed())),
+    move |word| number(word, |value| what.allows(value), &what.allowed())
+}
+
+/// The number in a word, if it is allowed.
+fn number(word: &str, allows: impl Fn(f64) -> bool, allowed: &str) -> Result<f64, String> {
+    match word.parse() {
+        // +0.0 turns a negative zero into zero
+        Ok(value) if allows(value) => Ok(value + 0.0),
+        _ => Err(format!("allowed: {allowed}")),
     }
 }
 
@@ -469,15 +473,14 @@ fn budget(word: &str) -> Result<Duration, String> {
 }
 
 fn duration(word: &str) -> Result<f64, String> {
-    let seconds = word.parse().ok();
-    let seconds = seconds.filter(|s| *s > 0.0 && *s <= 1e6);
-    seconds.ok_or_else(|| "allowed: seconds above 0, at most 1000000".to_owned())
+    let allowed = "seconds above 0, at most 1000000";
+    number(word, |s| s > 0.0 && s <= 1e6, allowed)
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {
-    let allowed = format!("allowed: {}", Scenario::max_risk_allowed());
-    match word.parse() {
-        Ok(risk) if Scenario::allows_max_risk(risk) => Ok(risk + 0.0),
-        _ => Err(allowed),
-    }
+    number(
+        word,
+        Scenario::allows_max_risk,
+        &Scenario::max_risk_allowed(),
+    )
 }

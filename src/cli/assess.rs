@@ -80,12 +80,9 @@ fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<Str
 fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> ExitStatus {
     let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
         .into_iter()
-        .map(|sets| {
-            if args.domains {
-                sets.with_domain
-            } else {
-                sets.hard
-            }
+        .map(|sets| match args.domains {
+            true => sets.with_domain,
+            false => sets.hard,
         })
         .collect();
     let own = &scenario.own_ship;
@@ -98,19 +95,16 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     };
     let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
-    let drawn = match &args.figure {
-        Some(path) => match assessment_figure(&situation, &query.sections)
+    let drawn = args.figure.as_ref().map(|path| {
+        assessment_figure(&situation, &query.sections)
             .titled(&format!("{}, {sets} sets", scenario.title))
             .write(path)
-        {
-            Ok(()) => ExitStatus::Good,
-            Err(error) => output.refuse(&error),
-        },
-        None => ExitStatus::Good,
+    });
+    let drawn = match drawn {
+        Some(Err(error)) => output.refuse(&error),
+        Some(Ok(())) | None => ExitStatus::Good,
     };
-    drawn.max(if args.json {
-        output.document(&assessment)
-    } else {
-        output.result(&assessment_text(&situation, &assessment))
-    })
+    drawn.max(output.show(args.json, &assessment, || {
+        assessment_text(&situation, &assessment)
+    }))
 }

@@ -1,7 +1,7 @@
 //! `searoom check`: reads and checks scenarios without planning.
 
 use super::args::CheckArgs;
-use super::input::{files, scenes};
+use super::input::scenes;
 use super::output::Output;
 use super::output::status::ExitStatus;
 
@@ -9,8 +9,7 @@ use super::output::status::ExitStatus;
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, &files::SCENARIOS, output);
-    for scene in scenes::open(files, &assumed, output) {
+    for scene in scenes::open(&args.paths, &assumed, output) {
         let failed = match scene {
             Ok(scene) => match scene.scenario(&assumed) {
                 Ok(made) => {

@@ -1,42 +1,35 @@
 //! `searoom compare`: every applicable planner and two baselines.
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use anyhow::Context;
 use rayon::prelude::*;
 use searoom::document::{
     ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
 };
 use searoom::report::figure::comparison_figure;
 use searoom::report::page::HtmlReport;
-use searoom::report::{
-    COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
-};
+use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
 use searoom::scenario::Scenario;
 use searoom::scenario::import::Assumed;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
-use super::input::files::{self, Found};
+use super::input::files::shown;
 use super::input::scenes::{self, Made, Scene};
-use super::output::Output;
-use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepare_figure};
+use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
 use super::output::status::ExitStatus;
+use super::output::{Output, csv};
 use super::runner::guarded;
 
-/// Scenario with its candidates, or the error.
-struct Asked {
-    file: String,
+/// Scenario with its candidates and their results, or the error.
+struct Compared {
+    file: PathBuf,
     stem: String,
     scenario: Result<Scenario, String>,
     candidates: Vec<Candidate>,
     inapplicable: Vec<Inapplicable>,
-}
-
-/// Scenario with its entries and internal faults.
-struct Compared {
-    asked: Asked,
     entries: Vec<Entry>,
+    /// Internal faults.
     faults: Vec<String>,
 }
 
@@ -48,29 +41,22 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         .as_deref()
         .map_or(Ok(()), prepare_figure)?;
     let assumed = args.assumed.assumed();
-    let all = scenes::open(
-        files::find(&args.paths, &files::SCENARIOS, output),
-        &assumed,
-        output,
-    );
-    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
+    let all = scenes::open(&args.paths, &assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
         ..args.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
-    let asked: Vec<Asked> = all
-        .into_iter()
-        .map(|scene| match scene {
-            Ok(scene) => ask(&scene, args, &assumed),
-            Err(unread) => Asked::refused(unread.file.display().to_string(), unread.error),
-        })
-        .collect();
-    let compared = run(asked, output);
+    let products = Products::prepare(&scenes::found(&all), wanted)?;
+    let asked = all.into_iter().map(|scene| match scene {
+        Ok(scene) => ask(&scene, args, &assumed),
+        Err(unread) => Compared::refused(unread.file, unread.error),
+    });
+    let mut compared: Vec<Compared> = asked.collect();
+    run(&mut compared, output);
     let mut status = ExitStatus::Good;
     for c in &compared {
-        for error in c.asked.scenario.as_ref().err().into_iter().chain(&c.faults) {
+        for error in c.scenario.as_ref().err().into_iter().chain(&c.faults) {
             output.error(error);
         }
         status = status.max(c.status());
@@ -80,18 +66,11 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         status = status.max(output.refuse(&format_args!("{error:#}")));
     }
     for (c, document) in compared.iter().zip(&documents) {
-        let Ok(scenario) = &c.asked.scenario else {
+        let Ok(scenario) = &c.scenario else {
             continue;
         };
-        let side = ScenarioCompared {
-            scenario,
-            entries: &c.entries,
-            table: comparison_markdown(document),
-            document: ComparisonDocument {
-                comparisons: vec![document.clone()],
-            },
-        };
-        status = status.max(output.written(products.write_comparison(&c.asked.stem, &side)));
+        let written = products.write_comparison(&c.stem, scenario, &c.entries, document);
+        status = status.max(output.written(written));
     }
     if products.wants_report() {
         status = status.max(output.written(report(&compared, &documents, &products)));
@@ -99,24 +78,15 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     Ok(status.max(show(args, documents, output)))
 }
 
-impl Asked {
-    fn refused(file: String, error: String) -> Self {
-        Self {
-            file,
-            stem: String::new(),
-            scenario: Err(error),
-            candidates: Vec::new(),
-            inapplicable: Vec::new(),
-        }
-    }
-}
-
-fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Asked {
-    let name = scene.found.file.display().to_string();
+fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Compared {
+    let file = scene.found.file.clone();
     let mut scenario = match guarded(|| scene.scenario(assumed)) {
         Ok(Ok(Made { scenario, .. })) => scenario,
-        Ok(Err(error)) => return Asked::refused(name, error.to_string()),
-        Err(fault) => return Asked::refused(name.clone(), format!("{name}: {fault}")),
+        Ok(Err(error)) => return Compared::refused(file, error.to_string()),
+        Err(fault) => {
+            let error = format!("{}: {fault}", file.display());
+            return Compared::refused(file, error);
+        }
     };
     args.asked.apply_rules(&mut scenario);
     let risks = if args.max_risk.is_empty() {
@@ -129,12 +99,14 @@ fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Asked {
     found
         .inapplicable
         .retain(|other| is_wanted(&other.method, args));
-    Asked {
-        file: name,
+    Compared {
+        file,
         stem: scene.found.stem.clone(),
         candidates: candidates(&found.methods, &risks),
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),
+        entries: Vec::new(),
+        faults: Vec::new(),
     }
 }
 
@@ -151,52 +123,54 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
 }
 
 /// Runs all candidates of all scenarios in parallel.
-fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
-    let jobs: Vec<(usize, &Scenario, Candidate)> = asked
+fn run(compared: &mut [Compared], output: &Output) {
+    let jobs: Vec<(usize, &Scenario, Candidate)> = compared
         .iter()
         .enumerate()
-        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.candidates)))
+        .filter_map(|(index, c)| Some((index, c.scenario.as_ref().ok()?, &c.candidates)))
         .flat_map(|(index, scenario, all)| all.iter().map(move |c| (index, scenario, *c)))
         .collect();
     let bar = output.progress(jobs.len());
     let results: Vec<(usize, Result<Entry, String>)> = jobs
         .into_par_iter()
         .map(|(index, scenario, candidate)| {
-            let entry = guarded(|| candidate.run(scenario))
-                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, candidate.method));
+            let entry = guarded(|| candidate.run(scenario)).map_err(|fault| {
+                let file = compared[index].file.display();
+                format!("{file}, {}: {fault}", candidate.method)
+            });
             bar.inc(1);
             (index, entry)
         })
         .collect();
     bar.finish_and_clear();
-    let mut compared: Vec<Compared> = asked
-        .into_iter()
-        .map(|asked| Compared {
-            asked,
-            entries: Vec::new(),
-            faults: Vec::new(),
-        })
-        .collect();
     for (index, result) in results {
         match result {
             Ok(entry) => compared[index].entries.push(entry),
             Err(fault) => compared[index].faults.push(fault),
         }
     }
-    compared
 }
 
 impl Compared {
+    fn refused(file: PathBuf, error: String) -> Self {
+        Self {
+            file,
+            stem: String::new(),
+            scenario: Err(error),
+            candidates: Vec::new(),
+            inapplicable: Vec::new(),
+            entries: Vec::new(),
+            faults: Vec::new(),
+        }
+    }
+
     /// Builds this scenario's part of the document.
     fn document(&self) -> ScenarioComparisonDocument {
-        let file = self.asked.file.clone();
-        match &self.asked.scenario {
-            Ok(scenario) => ScenarioComparisonDocument::of(
-                file,
-                scenario,
-                &self.entries,
-                &self.asked.inapplicable,
-            ),
+        let file = self.file.display().to_string();
+        match &self.scenario {
+            Ok(scenario) => {
+                ScenarioComparisonDocument::of(file, scenario, &self.entries, &self.inapplicable)
+            }
             Err(error) => ScenarioComparisonDocument::failed(file, error.clone()),
         }
     }
@@ -204,7 +178,7 @@ impl Compared {
     /// Good if some planner has a clear plan. A plan that fails its verification is an internal
     /// fault.
     fn status(&self) -> ExitStatus {
-        if self.asked.scenario.is_err() {
+        if self.scenario.is_err() {
             return ExitStatus::BadInput;
         }
         if !self.faults.is_empty() {
@@ -230,20 +204,17 @@ fn write(
     documents: &[ScenarioComparisonDocument],
 ) -> anyhow::Result<()> {
     if let Some(file) = &args.csv {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COMPARISON_COLUMNS.split(','))?;
+        let mut rows = vec![COMPARISON_COLUMNS.split(',').map(str::to_owned).collect()];
         for document in documents {
-            for entry in &document.entries {
-                writer.write_record(comparison_csv(document, entry))?;
-            }
+            let entries = document.entries.iter();
+            rows.extend(entries.map(|entry| comparison_csv(document, entry)));
         }
-        let bytes = writer.into_inner().context("the rows cannot be written")?;
-        write_atomically(file, &bytes)?;
+        write_atomically(file, &csv(rows)?)?;
     }
     if let Some(file) = &args.written.figure {
         let drawn: Vec<(&Scenario, &[Entry])> = compared
             .iter()
-            .filter_map(|c| Some((c.asked.scenario.as_ref().ok()?, c.entries.as_slice())))
+            .filter_map(|c| Some((c.scenario.as_ref().ok()?, c.entries.as_slice())))
             .collect();
         if !drawn.is_empty() {
             comparison_figure(&drawn).write(file)?;
@@ -260,23 +231,15 @@ fn report(
 ) -> Result<(), Failure> {
     let mut report = HtmlReport::new();
     for (c, document) in compared.iter().zip(documents) {
-        let file = files::shown(Path::new(&c.asked.file));
-        match &c.asked.scenario {
+        match &c.scenario {
             Ok(scenario) => {
-                let subject = products.subject(&c.asked.stem, file);
+                let subject = products.subject(&c.stem, shown(&c.file));
                 report.add_comparison(&subject, document, scenario, &c.entries);
             }
-            Err(error) => {
-                let error = error.replace(&c.asked.file, &file);
-                report.add_failure(&file, UNREADABLE, &error);
-            }
+            Err(error) => report_failure(&mut report, &c.file, UNREADABLE, error),
         }
         for fault in &c.faults {
-            report.add_failure(
-                &files::shown(Path::new(&c.asked.file)),
-                INTERNAL_FAULT,
-                fault,
-            );
+            report.add_failure(&shown(&c.file), INTERNAL_FAULT, fault);
         }
     }
     let lead = "Every planner that applies and two baselines on the same targets.";

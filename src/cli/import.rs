@@ -8,22 +8,15 @@ use searoom::scenario::import::Assumed;
 
 use super::args::ImportArgs;
 use super::input::files::refuse_clashes;
-use super::input::scenes::Scene;
-use super::input::{files, scenes};
+use super::input::scenes::{self, Scene};
 use super::output::Output;
 use super::output::status::ExitStatus;
 
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let found = files::find(&args.files, &files::SCENARIOS, output);
-    let scenes = scenes::open(found, &assumed, output);
-    let wanted: Vec<_> = scenes
-        .iter()
-        .flatten()
-        .map(|scene| scene.found.clone())
-        .collect();
-    refuse_clashes(&wanted)?;
+    let scenes = scenes::open(&args.files, &assumed, output);
+    refuse_clashes(&scenes::found(&scenes))?;
     fs::create_dir_all(&args.out)
         .with_context(|| format!("{}: the folder cannot be made", args.out.display()))?;
     let mut status = ExitStatus::Good;

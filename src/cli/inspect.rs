@@ -11,8 +11,8 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::args::InspectArgs;
-use super::output::Output;
 use super::output::status::ExitStatus;
+use super::output::{Output, csv};
 use super::runner::guarded;
 
 /// Maximum number of similar entity names suggested for a missing one.
@@ -27,14 +27,11 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
     }
     if let Some(entity) = &args.csv {
         let table = table(&recorded, entity, &args.recording)?;
-        return Ok(output.result(csv(&table)?.trim_end()));
+        let text = String::from_utf8(csv(table.csv_rows())?)?;
+        return Ok(output.result(text.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
-    Ok(if args.json {
-        output.document(&contents)
-    } else {
-        output.result(&contents.text())
-    })
+    Ok(output.show(args.json, &contents, || contents.text()))
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.
@@ -94,15 +91,6 @@ fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<Entit
     )
 }
 
-fn csv(table: &EntityTable) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in table.csv_rows() {
-        writer.write_record(row)?;
-    }
-    let bytes = writer.into_inner().context("the rows cannot be written")?;
-    Ok(String::from_utf8(bytes)?)
-}
-
 /// Contents of a recording.
 #[derive(Debug, Serialize)]
 struct Contents {
@@ -146,22 +134,16 @@ fn range(timeline: &TimelineContents) -> String {
 
 impl Contents {
     fn of(file: &Path, recorded: &Recorded) -> Self {
-        let document: Value = recorded
-            .document()
-            .and_then(|text| serde_json::from_str(&text).ok())
-            .unwrap_or_default();
-        let mut compared: Value = recorded
-            .comparison()
-            .and_then(|text| serde_json::from_str(&text).ok())
-            .unwrap_or_default();
-        let comparison = compared
+        let parsed = |text: Option<String>| -> Value {
+            text.and_then(|text| serde_json::from_str(&text).ok())
+                .unwrap_or_default()
+        };
+        let document = parsed(recorded.document());
+        let comparison = parsed(recorded.comparison())
             .pointer_mut("/comparisons/0")
             .map(Value::take)
             .unwrap_or_default();
-        let simulation: Value = recorded
-            .simulation()
-            .and_then(|text| serde_json::from_str(&text).ok())
-            .unwrap_or_default();
+        let simulation = parsed(recorded.simulation());
         let scenario = [&document, &comparison, &simulation]
             .into_iter()
             .find_map(|d| d.get("scenario"))

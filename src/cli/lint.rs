@@ -6,7 +6,8 @@ use searoom::scenario::import::Assumed;
 use searoom::study::lint::lint;
 
 use super::args::SuiteArgs;
-use super::input::scenes::{Scene, Unread};
+use super::input::files::Unread;
+use super::input::scenes::Scene;
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded;
@@ -35,12 +36,9 @@ pub fn suite(
         }));
     }
     let document = LintDocument::of(documents);
-    let shown = if args.shared.written.json {
-        output.document(&document)
-    } else {
-        output.result(&lint_text(&document, output.colour))
-    };
-    status.max(shown)
+    status.max(output.show(args.shared.written.json, &document, || {
+        lint_text(&document, output.colour)
+    }))
 }
 
 fn unread(scene: &Scene, error: String) -> Unread {

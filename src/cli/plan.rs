@@ -42,14 +42,12 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                     time_of_no_return_s: no_return.map(NoReturn::time),
                     ..PlanDocument::of(&run)
                 };
-                let shown = if args.shared.written.json {
-                    output.document(&document)
-                } else {
+                let shown = output.show(args.shared.written.json, &document, || {
                     let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
                     let text = plan_document_text(&document);
                     let legs = legs_text(&document);
-                    output.result(&format!("{text}{}\n{legs}", line.unwrap_or_default()))
-                };
+                    format!("{text}{}\n{legs}", line.unwrap_or_default())
+                });
                 let written = output.written(write(&products, &scene.found, &run, &document));
                 let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
                 let routed = match routed {

@@ -146,18 +146,14 @@ pub fn attempt(
             mut scenario,
             mut notes,
         }) => {
-            let refused = |file: &Path, faults| ScenarioError::Faults {
-                file: file.to_owned(),
-                faults,
-            };
             if let Err(faults) = shared.apply(&mut scenario) {
-                return Attempt::NotApplicable(scenario.title, refused(file, faults));
+                return Attempt::NotApplicable(scenario.title, ScenarioError::faults(file, faults));
             }
             if let Some(previous) = previous {
                 match previous.remember(&mut scenario) {
                     Ok(note) => notes.extend(note),
                     Err(fault) => {
-                        let error = refused(&previous.file, vec![fault]);
+                        let error = ScenarioError::faults(&previous.file, vec![fault]);
                         return Attempt::NotApplicable(scenario.title, error);
                     }
                 }

@@ -13,9 +13,9 @@ use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::input::files::{self, Found, shown};
+use super::input::files::shown;
 use super::input::scenes::{self, Scene};
-use super::output::products::{Products, Wanted};
+use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
 use super::runner::guarded;
@@ -24,17 +24,12 @@ use super::runner::guarded;
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let interrupted = catch_interrupt(output);
     let assumed = args.assumed.assumed();
-    let scenes = scenes::open(
-        files::find(&args.paths, &files::SCENARIOS, output),
-        &assumed,
-        output,
-    );
-    let found: Vec<Found> = scenes.iter().flatten().map(|s| s.found.clone()).collect();
+    let scenes = scenes::open(&args.paths, &assumed, output);
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
+    let products = Products::prepare(&scenes::found(&scenes), wanted)?;
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     let mut failed = 0;
@@ -47,22 +42,10 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             }
             Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
         };
-        let (file, refused) = match &scene {
-            Ok(scene) if scene.scenario(&assumed).is_ok() => (&scene.found.file, NOT_APPLICABLE),
-            Ok(scene) => (&scene.found.file, UNREADABLE),
-            Err(unread) => (&unread.file, UNREADABLE),
+        let file = match &scene {
+            Ok(scene) => &scene.found.file,
+            Err(unread) => &unread.file,
         };
-        let failure = match &sailed {
-            Ok(Ok(_)) => None,
-            Ok(Err(error)) => Some((refused, format!("{error:#}"))),
-            Err(fault) => Some((INTERNAL_FAULT, fault.clone())),
-        };
-        if let Some((outcome, error)) = failure {
-            failed += 1;
-            let name = shown(file);
-            let error = error.replace(&file.display().to_string(), &name);
-            report.add_failure(&name, outcome, &error);
-        }
         status = status.max(match sailed {
             Ok(Ok((document, written))) => {
                 let shown = if args.written.json {
@@ -78,8 +61,21 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 documents.push(document);
                 shown.max(written).max(reached)
             }
-            Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
-            Err(fault) => output.fault(&fault),
+            Ok(Err(error)) => {
+                failed += 1;
+                let outcome = match &scene {
+                    Ok(scene) if scene.scenario(&assumed).is_ok() => NOT_APPLICABLE,
+                    _ => UNREADABLE,
+                };
+                let error = format!("{error:#}");
+                report_failure(&mut report, file, outcome, &error);
+                output.refuse(&error)
+            }
+            Err(fault) => {
+                failed += 1;
+                report_failure(&mut report, file, INTERNAL_FAULT, &fault);
+                output.fault(&fault)
+            }
         });
         if interrupted.load(Ordering::Relaxed) {
             output.note(&"interrupted; no more scenarios are sailed");
@@ -135,10 +131,7 @@ fn sail(
         output.note(note);
     }
     let scenario = changed(made.scenario, args);
-    let refused = |fault: Fault| ScenarioError::Faults {
-        file: file.clone(),
-        faults: vec![fault],
-    };
+    let refused = |fault: Fault| ScenarioError::faults(file, vec![fault]);
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();

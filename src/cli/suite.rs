@@ -6,15 +6,15 @@ use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument, UNREADABLE,
 };
 use searoom::report::page::HtmlReport;
-use searoom::report::{printable, suite_table};
+use searoom::report::{counted, printable, suite_table};
 use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
-use super::input::files::{self, Found, shown};
+use super::input::files::shown;
 use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
-use super::output::products::{Products, Wanted};
+use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::runner::{Attempt, attempt};
 
@@ -34,7 +34,7 @@ impl Tally {
 
     /// Adds a valid scenario that the requested planner or rules do not support.
     fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
-        self.fail(file, NOT_APPLICABLE, &reason);
+        report_failure(&mut self.report, file, NOT_APPLICABLE, &reason);
         let file = file.display().to_string();
         self.runs
             .push(SuiteRunDocument::not_applicable(file, title, reason));
@@ -46,34 +46,25 @@ impl Tally {
             _ => ExitStatus::BadInput,
         });
         self.errors.push(error.clone());
-        self.fail(file, outcome, &error);
+        report_failure(&mut self.report, file, outcome, &error);
         let file = file.display().to_string();
         self.runs
             .push(SuiteRunDocument::failed(file, outcome, error));
-    }
-
-    /// Adds a failure to the report, which shows files without the folders of this machine.
-    fn fail(&mut self, file: &Path, outcome: &str, error: &str) {
-        let name = shown(file);
-        let error = error.replace(&file.display().to_string(), &name);
-        self.report.add_failure(&name, outcome, &error);
     }
 }
 
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let assumed = args.assumed.assumed();
-    let files = files::find(&args.paths, &files::SCENARIOS, output);
-    let all = scenes::open(files, &assumed, output);
+    let all = scenes::open(&args.paths, &assumed, output);
     if args.lint {
         return Ok(lint::suite(all, args, &assumed, output));
     }
-    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()
     };
-    let products = Products::prepare(&found, wanted)?;
+    let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());
     let mut tally = Tally::default();
     for entry in all {
@@ -94,8 +85,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     let count = |wanted: fn(&SuiteRunDocument) -> bool| {
         let count = tally.runs.iter().filter(|run| wanted(run)).count();
-        let plural = if count == 1 { "" } else { "s" };
-        (count > 0).then(|| format!("{count} scenario{plural}"))
+        (count > 0).then(|| counted(count, "scenario"))
     };
     if let Some(scenarios) = count(|run| !run.notes.is_empty()) {
         output.note(&format_args!(
@@ -111,12 +101,10 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let lead = document.summary.to_string();
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
     let written = output.written(report);
-    let shown = if args.shared.written.json {
-        output.document(&document)
-    } else {
+    let shown = output.show(args.shared.written.json, &document, || {
         let table = suite_table(&document.runs, output.colour);
-        output.result(&format!("{table}\n{}", document.summary))
-    };
+        format!("{table}\n{}", document.summary)
+    });
     Ok(tally.status.max(written).max(shown))
 }
 

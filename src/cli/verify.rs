@@ -11,7 +11,7 @@ use searoom::verification::{
 };
 
 use super::args::VerifyArgs;
-use super::input::files;
+use super::input::files::{self, Unread};
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::{PLAN_MEBIBYTES, guarded_within};
@@ -25,15 +25,16 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     for found in files {
         let path = match found {
             Ok(found) => found.file,
-            Err((folder, error)) => {
-                let (name, error) = (folder.display().to_string(), format!("{error:#}"));
+            Err(Unread { file, error }) => {
+                let name = file.display().to_string();
                 documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
                 status = status.max(output.refuse(&error));
                 continue;
             }
         };
         let name = path.display().to_string();
-        let reached = match guarded_within(args.budget_s, move || one(&path)) {
+        let colour = output.colour;
+        let reached = match guarded_within(args.budget_s, move || one(&path, colour)) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
                 let error = format!("{name}: not proven within the budget of {budget} s");
@@ -43,17 +44,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
             }
             Some(Ok(Ok(all))) => {
                 let mut reached = ExitStatus::Good;
-                for checked in all {
-                    let (document, text) = match &checked {
-                        Checked::Plan(plan) => (
-                            VerifiedPlanDocument::of(name.clone(), plan),
-                            verification_text(plan, output.colour),
-                        ),
-                        Checked::Simulation(sailed) => (
-                            VerifiedPlanDocument::of_simulation(name.clone(), sailed),
-                            simulation_verification_text(sailed),
-                        ),
-                    };
+                for (document, text) in all {
                     if !document.verified {
                         reached = reached.max(ExitStatus::NoPlan);
                     }
@@ -94,24 +85,27 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     status.max(shown)
 }
 
-/// A document that was checked.
-#[expect(clippy::large_enum_variant, reason = "few per file")]
-enum Checked {
-    Plan(Verification),
-    Simulation(SimulationVerification),
-}
-
-fn one(file: &Path) -> anyhow::Result<Vec<Checked>> {
+/// Checks the documents of a file, each with its result as text.
+fn one(file: &Path, colour: bool) -> anyhow::Result<Vec<(VerifiedPlanDocument, String)>> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
         // the message already includes its source
         read_text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
     };
+    let name = || file.display().to_string();
+    let plan = |plan: &Verification| {
+        let document = VerifiedPlanDocument::of(name(), plan);
+        (document, verification_text(plan, colour))
+    };
+    let simulation = |sailed: &SimulationVerification| {
+        let document = VerifiedPlanDocument::of_simulation(name(), sailed);
+        (document, simulation_verification_text(sailed))
+    };
     let checked = if is_simulation(&text) {
-        verify_simulations(&text).map(|all| all.into_iter().map(Checked::Simulation).collect())
+        verify_simulations(&text).map(|all| all.iter().map(simulation).collect())
     } else {
-        check(&text).map(|plan| vec![Checked::Plan(plan)])
+        check(&text).map(|checked| vec![plan(&checked)])
     };
     // the message already includes its field
     checked.map_err(|error| anyhow!("{error}"))

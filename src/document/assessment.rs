@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::parts::InitialSetDocument;
+
 /// Results of `assess`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AssessmentDocument {
@@ -25,17 +27,10 @@ pub struct TargetSectionsDocument {
 
 /// Set of possible positions at one time, `[east, north]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum SectionDocument {
-    Polygon {
-        t_s: f64,
-        vertices_m: Vec<[f64; 2]>,
-    },
-    Ellipse {
-        t_s: f64,
-        center_m: [f64; 2],
-        shape_m2: [[f64; 2]; 2],
-    },
+pub struct SectionDocument {
+    pub t_s: f64,
+    #[serde(flatten)]
+    pub set: InitialSetDocument,
 }
 
 /// Risk at one point.

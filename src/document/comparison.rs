@@ -1,5 +1,7 @@
 //! Comparison document: the candidates of every scenario.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
@@ -25,7 +27,7 @@ pub struct ComparisonDocument {
 }
 
 /// One scenario. For an unreadable file, `error` gives the reason and the rest is empty.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioComparisonDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -97,10 +99,8 @@ impl ScenarioComparisonDocument {
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,
-            scenario: None,
             error: Some(error),
-            entries: Vec::new(),
-            inapplicable: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -124,12 +124,8 @@ impl EntryDocument {
         let turn = trajectory
             .and_then(|motion| largest_alteration(motion, scenario.own_ship.pose.heading));
         let conduct = entry.conduct(scenario);
-        let mut broken: Vec<String> = (conduct.iter())
-            .flat_map(|conduct| conduct.broken())
-            .map(str::to_owned)
-            .collect();
-        broken.sort_unstable();
-        broken.dedup();
+        let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
+        let broken = broken.into_iter().map(str::to_owned).collect();
         Self {
             method: entry.candidate.method.to_string(),
             max_risk,

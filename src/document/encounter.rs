@@ -1,6 +1,6 @@
 //! Encounter with each target and own ship's compliance with the rules toward it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
@@ -87,25 +87,18 @@ pub struct ManoeuvreDocument {
 pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
     let judged = || encounters.iter().filter_map(|e| e.conduct.as_ref());
     judged().next()?;
-    let mut broken: Vec<&str> = judged().flat_map(conduct_breaks).collect();
-    broken.sort_unstable();
-    broken.dedup();
-    Some(broken)
+    let broken: BTreeSet<&str> = judged().flat_map(conduct_breaks).collect();
+    Some(broken.into_iter().collect())
 }
 
 /// The rules and monitors that own ship breaks toward one target, sorted, each once.
 pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
     let violated = conduct.monitors.iter();
     let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.word());
-    let rules = conduct
-        .violations
-        .iter()
-        .map(|violation| violation.rule.as_str());
+    let rules = conduct.violations.iter().map(|v| v.rule.as_str());
     let broken = rules.chain(violated.map(|m| m.monitor.as_str()));
-    let mut broken: Vec<&str> = broken.collect();
-    broken.sort_unstable();
-    broken.dedup();
-    broken
+    let broken: BTreeSet<&str> = broken.collect();
+    broken.into_iter().collect()
 }
 
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).

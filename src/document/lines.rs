@@ -18,6 +18,9 @@ const SKIPPED_RADII: f64 = 2.0;
 /// Name of the line with the planning time.
 pub(crate) const TIME_LINE: &str = "time";
 
+/// Adds a named line.
+type Add<'a> = dyn FnMut(&'static str, String) + 'a;
+
 /// Title, outcome, and whether the plan is verified and safe.
 pub(crate) fn headline(plan: &PlanDocument) -> String {
     let facts = match plan.trajectory {
@@ -73,11 +76,7 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
 }
 
 /// Manoeuvres that the plan continues, and the targets that did not stay in their sets.
-fn memory_lines(
-    plan: &PlanDocument,
-    memory: &MemoryDocument,
-    add: &mut impl FnMut(&'static str, String),
-) {
+fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     let begun = plan.manoeuvres.iter().find(|m| m.begins_s < 0.0);
     let begun = begun.map(|m| format!("the manoeuvre that began {:.0} s ago", -m.begins_s));
     let kept = memory
@@ -152,7 +151,7 @@ fn stand_on(escape: &EscapeDocument) -> String {
     )
 }
 
-fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, String)) {
+fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
     let met = met(&plan.encounters);
     if met.is_empty() {
         add("encounter", "none".to_owned());
@@ -240,11 +239,7 @@ fn skipped_waypoints(plan: &PlanDocument, cost: &CostDocument) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn cost_lines(
-    plan: &PlanDocument,
-    cost: &CostDocument,
-    add: &mut impl FnMut(&'static str, String),
-) {
+fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
     add("turn", turn(cost));
     let error = square_metres(cost.space_time_error_m2);
     let by_length = square_metres(cost.space_time_error_arc_length_m2);
@@ -301,11 +296,7 @@ fn risk(plan: &PlanDocument, largest: f64) -> String {
 }
 
 /// Lines on the solution of a plan under forces.
-fn control_lines(
-    plan: &PlanDocument,
-    control: &ControlDocument,
-    add: &mut impl FnMut(&'static str, String),
-) {
+fn control_lines(plan: &PlanDocument, control: &ControlDocument, add: &mut Add) {
     if !control.enclosed_targets.is_empty() {
         let names = control.enclosed_targets.join("', '");
         let text = format!("'{names}' enclosed in the smallest ellipses");

@@ -16,7 +16,7 @@ use super::parts::{
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
 use super::targets::{TargetDocument, initial_set, target, velocity_set};
-use crate::evaluation::Evaluation;
+use crate::evaluation::{Evaluation, Violation};
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
@@ -120,15 +120,8 @@ impl PlanDocument {
             verified: verified(run),
             safe: run.safe(),
             time_of_no_return_s: None,
-            violations: run
-                .evaluation
-                .iter()
-                .flat_map(|evaluation| &evaluation.violations)
-                .map(|violation| ViolationDocument {
-                    what: violation.what.clone(),
-                    t_s: finite(violation.time),
-                })
-                .collect(),
+            violations: (run.evaluation.as_ref())
+                .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
             cost: cost(run),
             search_stats: stats(run),
             timing: timing(run),
@@ -175,6 +168,14 @@ fn verified(run: &Run) -> bool {
 pub(crate) fn finite(value: f64) -> Option<f64> {
     // adding +0.0 converts a negative zero to zero
     value.is_finite().then_some(value + 0.0)
+}
+
+pub(super) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
+    let document = |violation: &Violation| ViolationDocument {
+        what: violation.what.clone(),
+        t_s: finite(violation.time),
+    };
+    found.iter().map(document).collect()
 }
 
 pub(crate) fn position(p: Vector) -> PositionDocument {

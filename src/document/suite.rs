@@ -7,6 +7,7 @@ use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, Timing
 use super::plan::PlanDocument;
 use crate::evaluation::{NOT_BY_THE_RULES, outcome_word};
 use crate::pipeline::Verdict;
+use crate::text::counted;
 
 /// Outcome of a file that is not a scenario.
 pub const UNREADABLE: &str = "unreadable";
@@ -70,31 +71,24 @@ pub struct SuiteSummaryDocument {
 impl SuiteDocument {
     /// Builds the document of these runs with a summary.
     pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
-        let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
-        let is_relaxed = |run: &SuiteRunDocument| run.outcome == Verdict::Relaxed.word();
+        let count = |is: &dyn Fn(&SuiteRunDocument) -> bool| runs.iter().filter(|r| is(r)).count();
+        let ended = |word: &str| count(&|run| run.outcome == word);
         let summary = SuiteSummaryDocument {
             scenarios: runs.len(),
             solved: ended(Verdict::Solved.word()),
             relaxed: ended(Verdict::Relaxed.word()),
-            not_by_the_rules: runs
-                .iter()
-                .filter(|run| run.verdict == NOT_BY_THE_RULES)
-                .count(),
+            not_by_the_rules: count(&|run| run.verdict == NOT_BY_THE_RULES),
             infeasible: ended(Verdict::Infeasible.word()),
             deadline: ended(Verdict::Deadline.word()),
             not_applicable: ended(NOT_APPLICABLE),
             unreadable: ended(UNREADABLE),
             internal_faults: ended(INTERNAL_FAULT),
-            verified: runs.iter().filter(|run| run.verified).count(),
-            safe: runs.iter().filter(|run| run.safe).count(),
-            not_safe: runs
-                .iter()
-                .filter(|run| is_relaxed(run) && !run.safe)
-                .count(),
-            breaks_rules: runs
-                .iter()
-                .filter(|run| breaks(&run.encounters).is_some_and(|broken| !broken.is_empty()))
-                .count(),
+            verified: count(&|run| run.verified),
+            safe: count(&|run| run.safe),
+            not_safe: count(&|run| run.outcome == Verdict::Relaxed.word() && !run.safe),
+            breaks_rules: count(&|run| {
+                breaks(&run.encounters).is_some_and(|broken| !broken.is_empty())
+            }),
         };
         Self { runs, summary }
     }
@@ -102,12 +96,8 @@ impl SuiteDocument {
 
 impl std::fmt::Display for SuiteSummaryDocument {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let plural = if self.scenarios == 1 { "" } else { "s" };
-        write!(
-            f,
-            "{} scenario{plural}: {} solved",
-            self.scenarios, self.solved
-        )?;
+        let scenarios = counted(self.scenarios, "scenario");
+        write!(f, "{scenarios}: {} solved", self.solved)?;
         for (count, name) in [
             (
                 (self.relaxed).saturating_sub(self.not_safe + self.not_by_the_rules),

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::parts::ViolationDocument;
-use super::plan::finite;
-use crate::evaluation::Violation;
+use super::plan::{finite, violations};
 use crate::verification::{SimulationVerification, Verification};
 
 /// Outcome of a file that is not a plan document.
@@ -48,14 +47,6 @@ pub struct MarginDocument {
     pub tcpa_s: Option<f64>,
 }
 
-fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
-    let document = |violation: &Violation| ViolationDocument {
-        what: violation.what.clone(),
-        t_s: finite(violation.time),
-    };
-    found.iter().map(document).collect()
-}
-
 impl VerificationDocument {
     /// Builds the document with its summary.
     pub fn of(plans: Vec<VerifiedPlanDocument>) -> Self {
@@ -73,11 +64,8 @@ impl std::fmt::Display for VerificationDocument {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (documents, verified, safe) = (self.plans.len(), self.verified, self.safe);
         write!(f, "{documents} documents: {verified} verified, {safe} safe")?;
-        let unread = self
-            .plans
-            .iter()
-            .filter(|plan| plan.error.is_some())
-            .count();
+        let unread = self.plans.iter().filter(|plan| plan.error.is_some());
+        let unread = unread.count();
         for (count, name) in [
             (documents - verified - unread, "rejected"),
             (unread, "unreadable or not proven"),
@@ -101,7 +89,6 @@ impl VerifiedPlanDocument {
             scenario: Some(checked.scenario.clone()),
             planner: Some(checked.planner.clone()),
             outcome: checked.outcome.clone(),
-            error: None,
             verified: checked.verified(),
             safe: checked.safe(),
             violations: violations(&checked.violations),
@@ -119,6 +106,7 @@ impl VerifiedPlanDocument {
                 .collect(),
             min_land_distance_m: land.map(|e| e.min_land_distance),
             min_land_distance_t_s: land.map(|e| e.min_land_distance_time),
+            ..Self::default()
         }
     }
 

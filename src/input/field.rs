@@ -143,10 +143,15 @@ impl<'a> Field<'a> {
         });
     }
 
+    /// Notes a fault here, without which there would be a value.
+    pub(crate) fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
+        self.fault(found, allowed);
+        None
+    }
+
     /// Notes that this value is not an allowed one.
     pub(crate) fn refuse<T>(&self, allowed: impl Display) -> Option<T> {
-        self.fault(self.node.described(), allowed);
-        None
+        self.reject(self.node.described(), allowed)
     }
 
     /// The value at a key; a fault if this is not a table.
@@ -175,12 +180,21 @@ impl<'a> Field<'a> {
         self.require(key, range)?.number(range)
     }
 
-    /// The number at a key that may be absent: the outer `None` is a faulty number.
-    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+    /// The value at a key that may be absent: the outer `None` is a faulty value.
+    pub(crate) fn optional<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(&Self) -> Option<T>,
+    ) -> Option<Option<T>> {
         match self.get(key) {
-            Some(field) => field.number(range).map(Some),
+            Some(field) => read(&field).map(Some),
             None => Some(None),
         }
+    }
+
+    /// The number at a key that may be absent: the outer `None` is a faulty number.
+    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+        self.optional(key, |field| field.number(range))
     }
 
     /// The keys of a table, in alphabetical order.
@@ -275,8 +289,7 @@ impl<'a> Field<'a> {
             }
             Value::List(items) if items.len() > *most => {
                 let found = format_args!("{} {what}", items.len());
-                self.fault(found, format_args!("at most {most}"));
-                None
+                self.reject(found, format_args!("at most {most}"))
             }
             _ => self.refuse(format_args!("a list of at least {least} {what}")),
         }
@@ -285,8 +298,7 @@ impl<'a> Field<'a> {
     /// A list of at least one number, each in a range.
     pub(crate) fn numbers(&self, range: Range) -> Option<Vec<f64>> {
         let items = self.list(1..=usize::MAX, "numbers")?;
-        let numbers: Vec<_> = items.iter().map(|item| item.number(range)).collect();
-        numbers.into_iter().collect()
+        every(items.iter().map(|item| item.number(range)))
     }
 
     /// A list of two numbers in a range: a vector.
@@ -313,6 +325,12 @@ impl<'a> Field<'a> {
     pub(crate) fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
     }
+}
+
+/// Every value, or none where one is faulty. All are read, so that all faults are noted.
+pub(crate) fn every<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let values: Vec<Option<T>> = read.collect();
+    values.into_iter().collect()
 }
 
 /// A text in quotation marks, cut after 40 characters.

@@ -7,7 +7,7 @@ mod field;
 mod table;
 mod value;
 
-pub(crate) use field::{Field, Range, abbreviated};
+pub(crate) use field::{Field, Range, abbreviated, every};
 pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 
@@ -16,6 +16,8 @@ use std::fmt::{self, Display};
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
+
+use crate::text::counted;
 
 /// One thing wrong in a file: its place, what was found, what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +79,7 @@ pub enum InputError {
 
 impl InputError {
     /// Faults of a file.
-    pub(crate) fn faults(file: &Path, faults: Vec<Fault>) -> Self {
+    pub fn faults(file: &Path, faults: Vec<Fault>) -> Self {
         Self::Faults {
             file: file.to_owned(),
             faults,
@@ -93,7 +95,6 @@ const COUNTED: usize = 1000;
 
 /// The number of faults, then one fault on each line.
 fn listed(faults: &[Fault]) -> String {
-    let plural = if faults.len() == 1 { "" } else { "s" };
     let shown = faults.iter().take(LISTED);
     let lines: String = shown.map(|fault| format!("\n  {fault}")).collect();
     if faults.len() > COUNTED {
@@ -103,7 +104,7 @@ fn listed(faults: &[Fault]) -> String {
         0 => String::new(),
         more => format!("\n  and {more} more"),
     };
-    format!("{} fault{plural}{lines}{more}", faults.len())
+    format!("{}{lines}{more}", counted(faults.len(), "fault"))
 }
 
 /// Collects faults while a file is read.

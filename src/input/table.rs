@@ -73,6 +73,21 @@ impl<'a> Table<'a> {
         self.require(key, range)?.number(range)
     }
 
+    /// The value of a key, or `default` where the key is absent; `None` for a fault.
+    pub(crate) fn read_or<T>(
+        &mut self,
+        key: &str,
+        default: T,
+        read: impl FnOnce(&Field<'a>) -> Option<T>,
+    ) -> Option<T> {
+        self.take(key).map_or(Some(default), |field| read(&field))
+    }
+
+    /// A number, or `default` where the key is absent; `None` for a fault.
+    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> Option<f64> {
+        self.read_or(key, default, |field| field.number(range))
+    }
+
     /// The meaning of one of these words; the key may be absent.
     pub(crate) fn choice<T: Copy>(&mut self, key: &str, words: &[(&str, T)]) -> Option<T> {
         self.take(key)?.choice(words)

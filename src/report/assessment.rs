@@ -1,16 +1,15 @@
 //! Text of an assessment.
 
 use super::table::{Grid, columns, plain};
-use crate::document::{AssessmentDocument, SectionDocument};
+use crate::document::{AssessmentDocument, InitialSetDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
-use crate::text::tenths;
+use crate::text::{counted, tenths};
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.
 pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
     let count = assessment.targets.len();
-    let plural = if count == 1 { "" } else { "s" };
     let AssessmentDocument {
         scenario,
         sets,
@@ -18,7 +17,8 @@ pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument
         ..
     } = assessment;
     let mut blocks = vec![format!(
-        "{scenario}: {count} target{plural}, {sets} sets, 0 to {horizon_s} s"
+        "{scenario}: {}, {sets} sets, 0 to {horizon_s} s",
+        counted(count, "target")
     )];
     if count > 0 {
         blocks.push(held(situation, assessment));
@@ -130,38 +130,34 @@ fn sections(assessment: &AssessmentDocument) -> String {
     let header = "target, t\n[s], west\n[m], east\n[m], south\n[m], north\n[m], made of";
     let rows = assessment.targets.iter().flat_map(|target| {
         target.sections.iter().map(|section| {
-            let (time, [x, y], made_of) = extent(section);
+            let ([x, y], made_of) = extent(&section.set);
             let [west, east, south, north] = [x[0], x[1], y[0], y[1]].map(tenths);
             let name = target.name.clone();
-            vec![name, number(time), west, east, south, north, made_of]
+            vec![name, number(section.t_s), west, east, south, north, made_of]
         })
     });
     format!("Sections and their extents\n{}", table(header, 1..6, rows))
 }
 
-/// Time, east and north intervals, and kind of a section.
-fn extent(section: &SectionDocument) -> (f64, [[f64; 2]; 2], String) {
+/// East and north intervals, and kind of a section.
+fn extent(section: &InitialSetDocument) -> ([[f64; 2]; 2], String) {
     match section {
-        SectionDocument::Polygon { t_s, vertices_m } => {
+        InitialSetDocument::Polygon { vertices_m } => {
             let interval = |axis: usize| {
                 let all = vertices_m.iter().map(|vertex| vertex[axis]);
                 all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
                     [low.min(value), high.max(value)]
                 })
             };
-            let intervals = [interval(0), interval(1)];
-            (*t_s, intervals, format!("{} vertices", vertices_m.len()))
+            let made_of = format!("{} vertices", vertices_m.len());
+            ([interval(0), interval(1)], made_of)
         }
-        SectionDocument::Ellipse {
-            t_s,
-            center_m,
-            shape_m2,
-        } => {
+        InitialSetDocument::Ellipse { center_m, shape_m2 } => {
             let interval = |axis: usize| {
                 let half = shape_m2[axis][axis].sqrt();
                 [center_m[axis] - half, center_m[axis] + half]
             };
-            (*t_s, [interval(0), interval(1)], "an ellipse".to_owned())
+            ([interval(0), interval(1)], "an ellipse".to_owned())
         }
     }
 }

@@ -7,15 +7,18 @@ use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
 
 /// True if several risk levels were requested.
-fn is_sweep(entries: &[EntryDocument]) -> bool {
+pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
+}
+
+fn title(compared: &ScenarioComparisonDocument) -> &str {
+    compared.scenario.as_deref().unwrap_or(&compared.file)
 }
 
 /// Formats the table of one scenario and the methods that do not apply. Colour only when `colour`.
 pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> String {
     let table = comparison_grid(&compared.entries).text(colour);
-    let title = compared.scenario.as_deref().unwrap_or(&compared.file);
-    let mut lines = vec![title.to_owned(), table];
+    let mut lines = vec![title(compared).to_owned(), table];
     lines.extend(remarks(compared));
     lines.join("\n")
 }
@@ -23,9 +26,8 @@ pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> 
 /// Formats the table as markdown, without the planning time.
 pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
     let grid = comparison_grid(&compared.entries).without(TIME_COLUMN);
-    let title = compared.scenario.as_deref().unwrap_or(&compared.file);
     let mut lines = vec![
-        format!("# {}\n", in_cell(title)),
+        format!("# {}\n", in_cell(title(compared))),
         grid.markdown(),
         String::new(),
     ];
@@ -131,16 +133,13 @@ pub const COMPARISON_COLUMNS: &str = "file,scenario,method,max_risk,outcome,veri
     plan_ms,reason";
 
 /// Builds a row of values in the order of [`COMPARISON_COLUMNS`]; missing values are empty.
-pub fn comparison_csv(
-    compared: &ScenarioComparisonDocument,
-    entry: &EntryDocument,
-) -> [String; 22] {
+pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<String> {
     let cost = entry.cost.as_ref();
     let optional = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let number =
         |value: fn(&CostDocument) -> f64| optional(cost.map(value).filter(|v| v.is_finite()));
     let word = |value: bool| cost.map_or_else(String::new, |_| value.to_string());
-    [
+    vec![
         compared.file.clone(),
         compared.scenario.clone().unwrap_or_default(),
         entry.method.clone(),
@@ -159,10 +158,7 @@ pub fn comparison_csv(
         number(|c| c.max_risk),
         optional(entry.largest_turn_deg),
         entry.largest_turn_side.clone().unwrap_or_default(),
-        entry
-            .breaks
-            .as_ref()
-            .map_or_else(String::new, |b| b.join(" ")),
+        (entry.breaks.as_ref()).map_or_else(String::new, |b| b.join(" ")),
         (entry.search_stats).map_or_else(String::new, |stats| stats.expanded.to_string()),
         optional(entry.timing.map(|timing| 1e3 * timing.plan_s)),
         entry.reason.clone().unwrap_or_default(),

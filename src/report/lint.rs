@@ -2,7 +2,7 @@
 
 use super::table::{Grid, columns, or_dash, plain};
 use crate::document::LintDocument;
-use crate::text::tenths;
+use crate::text::{counted, tenths};
 
 /// Formats one row per target, then every finding and a summary.
 pub fn lint_text(document: &LintDocument, colour: bool) -> String {
@@ -31,15 +31,11 @@ pub fn lint_text(document: &LintDocument, colour: bool) -> String {
         findings.extend(scenario.findings.iter().map(|f| format!("{name}: {f}")));
     }
     let summary = &document.summary;
-    let count = |count: usize, word: &str| match count {
-        1 => format!("1 {word}"),
-        _ => format!("{count} {word}s"),
-    };
     findings.push(format!(
         "{}, {}: {}, {} unreadable",
-        count(summary.scenarios, "scenario"),
-        count(summary.targets, "target"),
-        count(summary.findings, "finding"),
+        counted(summary.scenarios, "scenario"),
+        counted(summary.targets, "target"),
+        counted(summary.findings, "finding"),
         summary.unreadable
     ));
     format!("{}\n{}", grid.text(colour), findings.join("\n"))

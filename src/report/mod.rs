@@ -11,10 +11,10 @@ mod route;
 mod simulation;
 mod table;
 mod verification;
-mod write;
 
+pub use crate::output::{WriteError, write_atomically};
 pub use crate::pipeline::Verdict;
-pub use crate::text::{printable, printable_lines};
+pub use crate::text::{counted, printable, printable_lines};
 pub use assessment::assessment_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
@@ -24,4 +24,3 @@ pub use plan::{
 pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_text, simulations_line};
 pub use verification::{simulation_verification_text, verification_text};
-pub use write::{WriteError, write_atomically};

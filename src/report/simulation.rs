@@ -1,6 +1,6 @@
 //! Text of a simulation.
 
-use super::table::{Grid, Tone, or_dash, plain, verdict};
+use super::table::{Grid, Tone, columns, or_dash, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
@@ -93,44 +93,30 @@ pub(super) fn headline(simulation: &SimulationDocument) -> String {
 /// A row per target: captain's figures, and the rules that own ship breaks toward it.
 pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
     let rows = targets.iter().map(|target| {
-        let roles: Vec<&str> = target
-            .conduct
-            .roles
-            .iter()
-            .map(|r| r.role.as_str())
-            .collect();
+        let roles = target.conduct.roles.iter();
+        let roles: Vec<&str> = roles.map(|r| r.role.as_str()).collect();
         let broken = conduct_breaks(&target.conduct);
         let clearance = match (target.least_clearance_m, target.contact_t_s) {
             (Some(metres), None) => plain(tenths(metres)),
             (metres, _) => (metres.map_or("contact".to_owned(), tenths), Tone::Bad),
         };
-        let manoeuvre = target.conduct.manoeuvre.as_ref();
+        let lead = target.conduct.manoeuvre.as_ref().and_then(|m| m.lead_s);
         vec![
             plain(target.name.clone()),
             plain(target.behaviour.clone()),
             or_dash((!roles.is_empty()).then(|| roles.join("\n"))),
             clearance,
             plain(format!("{:.0}", target.least_clearance_t_s)),
-            or_dash(
-                manoeuvre
-                    .and_then(|m| m.lead_s)
-                    .map(|lead| format!("{lead:.0}")),
-            ),
+            or_dash(lead.map(|lead| format!("{lead:.0}"))),
             plain(target.outside_sets.to_string()),
             or_dash((!broken.is_empty()).then(|| broken.join(" "))),
         ]
     });
     Grid {
-        header: vec![
-            "target",
-            "behaviour",
-            "role",
-            "clearance\n[m]",
-            "at\n[s]",
-            "acts before\n[s]",
-            "outside\nits set",
-            "breaks",
-        ],
+        header: columns(
+            "target, behaviour, role, clearance\n[m], at\n[s], acts before\n[s], \
+             outside\nits set, breaks",
+        ),
         numbers: 3..7,
         rows: rows.collect(),
     }
@@ -220,13 +206,7 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
         ]
     });
     Grid {
-        header: vec![
-            "target",
-            "scores",
-            "rules broken",
-            "monitors satisfied",
-            "monitors violated",
-        ],
+        header: columns("target, scores, rules broken, monitors satisfied, monitors violated"),
         numbers: 0..0,
         rows: rows.collect(),
     }
@@ -281,7 +261,7 @@ pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
         ]);
     }
     Grid {
-        header: vec!["planned at", "turn", "J\n[m²]", "outcome", "remarks"],
+        header: columns("planned at, turn, J\n[m²], outcome, remarks"),
         numbers: 1..3,
         rows,
     }

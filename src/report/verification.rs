@@ -2,7 +2,7 @@
 
 use super::table::{Grid, Tone, columns, or_dash, plain};
 use crate::evaluation::{Violation, facts, outcome_word};
-use crate::text::{printable, short_numbers, tenths};
+use crate::text::{counted, printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
 
 /// Maximum number of violations listed; the rest is counted.
@@ -33,8 +33,7 @@ pub fn simulation_verification_text(checked: &SimulationVerification) -> String 
             checked.outcome(),
             tenths(checked.least_clearance)
         ),
-        1 => "REJECTED, 1 fault".to_owned(),
-        n => format!("REJECTED, {n} faults"),
+        n => format!("REJECTED, {}", counted(n, "fault")),
     };
     let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
     lines.extend(fault_lines(&checked.violations));
@@ -59,8 +58,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
                 word => format!("{facts}: {word}"),
             }
         }
-        (Some(_), 1) => "REJECTED, 1 fault".to_owned(),
-        (Some(_), n) => format!("REJECTED, {n} faults"),
+        (Some(_), n) => format!("REJECTED, {}", counted(n, "fault")),
     };
     let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
     lines.extend(fault_lines(&checked.violations));
@@ -68,15 +66,12 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         return lines.join("\n");
     };
     lines.push(format!(
-        "{} plan, {} piece{} until {} s; {} set{}, {} piece{} of land",
+        "{} plan, {} until {} s; {}, {} of land",
         checked.planner,
-        checked.pieces,
-        plural(checked.pieces),
+        counted(checked.pieces, "piece"),
         tenths(evaluation.duration),
-        checked.sets,
-        plural(checked.sets),
-        checked.land,
-        plural(checked.land),
+        counted(checked.sets, "set"),
+        counted(checked.land, "piece"),
     ));
     let mut entered: Vec<(&String, f64)> = (checked.targets.iter())
         .zip(checked.claimed_from.iter().copied())
@@ -104,10 +99,6 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         lines.push(margins(checked, colour));
     }
     lines.join("\n")
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 fn margins(checked: &Verification, colour: bool) -> String {

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::plane::{POSITION, Plane};
+use super::plane::Plane;
 use super::planner::{PlannerTable, planner};
 use super::simulation::simulation;
 use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::input::{Faults, Field, Node, Table, from_toml};
+use crate::input::{Faults, Field, Node, Table, every, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::text::LINE;
@@ -44,10 +44,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .require("title", LINE)
         .and_then(|field| field.line_of_text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
-    let time = match root.has("time_s") {
-        true => root.number("time_s", limits::CLOCK),
-        false => Some(0.0),
-    };
+    let time = root.number_or("time_s", limits::CLOCK, 0.0);
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
@@ -68,17 +65,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .map(|table| planner(table, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane, time, own_ship.as_ref());
-    let (targets, simulated) = match targets {
-        Some(targets) => {
-            let parts = targets.into_iter();
-            let (targets, simulated): (Vec<_>, Vec<_>) = parts
-                .map(|(target, known, simulated)| ((target, known), simulated))
-                .unzip();
-            (Some(targets), simulated)
-        }
-        None => (None, Vec::new()),
-    };
-    let simulation = simulation(&mut root, simulated);
+    let (targets, simulated): (Option<Vec<_>>, Option<Vec<_>>) =
+        targets.map(|targets| targets.into_iter().unzip()).unzip();
+    let simulation = simulation(&mut root, simulated.unwrap_or_default());
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
         let paths = mission
@@ -136,9 +125,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
 
 /// A pose from the keys `position` and `course_deg`.
 pub(super) fn pose(table: &mut Table, plane: &Plane) -> Option<Pose> {
-    let position = table
-        .require("position", POSITION)
-        .and_then(|field| plane.position(&field));
+    let position = plane.required_position(table);
     let course = table.required_number("course_deg", limits::COURSE);
     Some(Pose::new(position?, heading_from_course_deg(course?)))
 }
@@ -166,11 +153,7 @@ fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     let speeds = own_speeds(&mut table, speed);
     let margin = table.number("safety_margin_m", limits::DISTANCE);
     let tracking_margin = table.number("tracking_margin_m", limits::DISTANCE);
-    let land_margin = if table.has("land_margin_m") {
-        table.number("land_margin_m", limits::DISTANCE)
-    } else {
-        Some(0.0)
-    };
+    let land_margin = table.number_or("land_margin_m", limits::DISTANCE, 0.0);
     table.finish();
     let ship = || {
         let hull = hull?;
@@ -197,13 +180,11 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
         Some((field, speeds)) => {
             let speeds = speeds?;
             if !speeds.iter().any(|speed| *speed > 0.0) {
-                field.fault("only zeros", "a list with at least one speed above 0");
-                return None;
+                return field.reject("only zeros", "a list with at least one speed above 0");
             }
             if speeds.len() > limits::SPEEDS {
                 let found = format_args!("{} speeds", speeds.len());
-                field.fault(found, format_args!("at most {}", limits::SPEEDS));
-                return None;
+                return field.reject(found, format_args!("at most {}", limits::SPEEDS));
             }
             speeds
         }
@@ -238,14 +219,12 @@ fn mission(
     plane: &Plane,
     time: Option<f64>,
 ) -> Option<Mission> {
-    let start = match table.has("start_s") {
-        true => time.and_then(|now| table.number("start_s", limits::until(now))),
-        false => time,
-    };
-    let alternatives = match table.take("alternatives") {
-        Some(field) => alternatives(&field, plane),
-        None => Some(Vec::new()),
-    };
+    let start = table
+        .take("start_s")
+        .map_or(time, |field| field.number(limits::until(time?)));
+    let alternatives = table.read_or("alternatives", Vec::new(), |field| {
+        alternatives(field, plane)
+    });
     let fields = table
         .require("waypoints", "a list of at least 2 positions")
         .and_then(|field| positions(&field));
@@ -272,11 +251,7 @@ fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {
 
 fn alternatives(field: &Field, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
     let paths = field.list(1..=limits::ALTERNATIVES, "paths, each a list of positions")?;
-    let read: Vec<_> = paths
-        .iter()
-        .map(|path| positions(path).and_then(|fields| waypoints(&fields, plane)))
-        .collect();
-    read.into_iter().collect()
+    every((paths.iter()).map(|path| positions(path).and_then(|fields| waypoints(&fields, plane))))
 }
 
 fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
@@ -302,19 +277,17 @@ fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) ->
     let per_leg = table.speeds("leg_speeds", limits::WAY);
     if let Some((field, speeds)) = per_leg {
         if table.has_speed("speed") {
-            field.fault(
+            return field.reject(
                 "leg speeds beside a speed of the whole mission",
                 "one of the two, not both",
             );
-            return None;
         }
         let (speeds, legs) = (speeds?, legs?);
         if speeds.len() != legs {
-            field.fault(
+            return field.reject(
                 format_args!("{} speeds", speeds.len()),
                 format_args!("{legs}, one for each leg between two waypoints"),
             );
-            return None;
         }
         return Some(speeds);
     }

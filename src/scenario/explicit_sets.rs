@@ -3,9 +3,8 @@
 use nalgebra::Matrix2;
 
 use super::limits;
-use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, GeometryError};
-use crate::input::{Field, Range, Table};
+use crate::input::{Field, Range, Table, every};
 use crate::target::{TimedVelocitySet, Uncertainty};
 
 /// Allowed values of the keys of a tracked ship beside explicit sets.
@@ -110,8 +109,7 @@ fn like(field: &Field, velocities: ConvexSet, initial: Option<&ConvexSet>) -> Op
         }
         _ => return Some(velocities),
     };
-    field.fault(found, "sets of one kind");
-    None
+    field.reject(found, "sets of one kind")
 }
 
 /// Timed velocity sets: all but the last one end, each after the one before.
@@ -172,10 +170,7 @@ fn set_of(table: &mut Table, keys: &SetKeys) -> Option<ConvexSet> {
     let shape = matrix_of(&matrix, keys.areas);
     match Ellipse::new(center?, shape?) {
         Ok(ellipse) => Some(ellipse.into()),
-        Err(error) => {
-            matrix.fault(error, SHAPES);
-            None
-        }
+        Err(error) => matrix.reject(error, SHAPES),
     }
 }
 
@@ -186,8 +181,7 @@ const SHAPES: &str =
 fn matrix_of(field: &Field, range: Range) -> Option<Matrix2<f64>> {
     let rows = field.list(2..=usize::MAX, "rows")?;
     let [first, second] = rows.as_slice() else {
-        field.fault(format_args!("{} rows", rows.len()), SHAPES);
-        return None;
+        return field.reject(format_args!("{} rows", rows.len()), SHAPES);
     };
     let (a, b) = (first.pair(range), second.pair(range));
     let (a, b) = (a?, b?);
@@ -196,8 +190,7 @@ fn matrix_of(field: &Field, range: Range) -> Option<Matrix2<f64>> {
 
 fn polygon(list: &Field, range: Range) -> Option<ConvexPolygon> {
     let vertices = list.list(1..=usize::MAX, "[east, north]")?;
-    let points: Vec<Option<Vector>> = vertices.iter().map(|vertex| vertex.pair(range)).collect();
-    let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
+    let points = every(vertices.iter().map(|vertex| vertex.pair(range)))?;
     match ConvexPolygon::from_vertices(&points) {
         Ok(polygon) => Some(polygon),
         Err(error) => {
@@ -207,11 +200,10 @@ fn polygon(list: &Field, range: Range) -> Option<ConvexPolygon> {
                 }
                 GeometryError::Empty => list,
             };
-            place.fault(
+            place.reject(
                 error,
                 "the corners of a convex set, each on its boundary, in any order",
-            );
-            None
+            )
         }
     }
 }

@@ -77,8 +77,7 @@ pub(super) fn map(root: &mut Table, plane: &Plane, folder: &Path) -> Option<Arc<
         Ok(map) => Some(Arc::new(map)),
         Err(InputError::Read { file, source }) => {
             let found = format_args!("{}, which cannot be read ({source})", file.display());
-            field.fault(found, "a GeoJSON file of land polygons");
-            None
+            field.reject(found, "a GeoJSON file of land polygons")
         }
         Err(InputError::Faults { file, faults }) => {
             for fault in faults.iter().take(MAX_LISTED) {

@@ -7,7 +7,7 @@ use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
 use crate::input::{Field, Range, Table};
 
 /// Allowed positions.
-pub(super) const POSITION: &str = "a table { east_m, north_m } or { lat_deg, lon_deg }";
+const POSITION: &str = "a table { east_m, north_m } or { lat_deg, lon_deg }";
 
 /// Allowed origins.
 const ORIGIN: &str = "a table { lat_deg, lon_deg }";
@@ -44,19 +44,21 @@ impl Plane {
         self.earth
     }
 
+    /// The point at the key `position`, which must be there.
+    pub(super) fn required_position(&self, table: &mut Table) -> Option<Vector> {
+        self.position(&table.require("position", POSITION)?)
+    }
+
     /// A point in metres from a table of east and north, or of latitude and longitude.
     pub(super) fn position(&self, field: &Field) -> Option<Vector> {
         let mut table = field.table(POSITION)?;
         let metric = table.has("east_m") | table.has("north_m");
         let geographic = table.has("lat_deg") | table.has("lon_deg");
         let point = match (metric, geographic) {
-            (true, true) => {
-                field.fault(
-                    "east_m or north_m beside lat_deg or lon_deg",
-                    "one of the two pairs, not both",
-                );
-                None
-            }
+            (true, true) => field.reject(
+                "east_m or north_m beside lat_deg or lon_deg",
+                "one of the two pairs, not both",
+            ),
             (false, true) => {
                 let place = place(&mut table, limits::LATITUDE);
                 place.and_then(|place| near(field, place, &self.need_earth()?))

@@ -6,6 +6,7 @@ use crate::input::{Field, Range, Table};
 use crate::planner::{
     ControlSettings, Objective, Planner, PlannerSettings, SearchKind, Tidiness, planner_words,
 };
+use crate::text::counted;
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// The fields of the table `[planner]` that a file has.
@@ -107,42 +108,32 @@ fn control_settings(planner: &mut Table, length: f64) -> Option<ControlSettings>
         return Some(ControlSettings::at_length(VesselKind::CyberShip2, length));
     };
     let mut table = field.table("a table")?;
-    // the outer `None` is a fault, the inner one an absent key
-    let vessel = optional(&mut table, "vessel", |field| {
+    let vessel = table.read_or("vessel", VesselKind::CyberShip2, |field| {
         field.choice(&VesselKind::WORDS)
     });
-    let force_limits = optional(&mut table, "force_limits", force_limits);
-    let intervals = optional(&mut table, "intervals", |field| {
+    let vessel_kind = vessel.unwrap_or(VesselKind::CyberShip2);
+    let default = ControlSettings::at_length(vessel_kind, length);
+    let force_limits = table.read_or("force_limits", default.force_limits, force_limits);
+    let intervals = table.read_or("intervals", default.intervals, |field| {
         field.whole_number(limits::INTERVALS)
     });
-    let state = optional(&mut table, "state_weights", |field| {
+    let state = table.read_or("state_weights", default.state_weights, |field| {
         let weights = weights::<6>(field, limits::STATE_WEIGHT)?;
-        some_weight(field, weights)
+        some_weight(field, weights).map(StateVector::from)
     });
-    let force = optional(&mut table, "control_weights", |field| {
-        weights::<3>(field, limits::FORCE_WEIGHT)
+    // sway and yaw are positive to starboard in files, which a square does not see
+    let force = table.read_or("control_weights", default.force_weights, |field| {
+        weights::<3>(field, limits::FORCE_WEIGHT).map(ForceVector::from)
     });
     table.finish();
-    let default = ControlSettings::at_length(vessel?.unwrap_or(VesselKind::CyberShip2), length);
+    vessel?;
     Some(ControlSettings {
-        force_limits: force_limits?.unwrap_or(default.force_limits),
-        intervals: intervals?.unwrap_or(default.intervals),
-        state_weights: state?.map_or(default.state_weights, StateVector::from),
-        // sway and yaw are positive to starboard in files, which a square does not see
-        force_weights: force?.map_or(default.force_weights, ForceVector::from),
+        force_limits: force_limits?,
+        intervals: intervals?,
+        state_weights: state?,
+        force_weights: force?,
         ..default
     })
-}
-
-fn optional<'a, T>(
-    table: &mut Table<'a>,
-    key: &str,
-    read: impl Fn(&Field<'a>) -> Option<T>,
-) -> Option<Option<T>> {
-    match table.take(key) {
-        Some(field) => read(&field).map(Some),
-        None => Some(None),
-    }
 }
 
 fn force_limits(field: &Field) -> Option<ForceVector> {
@@ -159,9 +150,7 @@ fn weights<const N: usize>(field: &Field, range: Range) -> Option<[f64; N]> {
     let count = numbers.len();
     let weights = <[f64; N]>::try_from(numbers).ok();
     if weights.is_none() {
-        let plural = if count == 1 { "" } else { "s" };
-        let found = format_args!("{count} number{plural}");
-        field.fault(found, format_args!("{N} numbers"));
+        field.fault(counted(count, "number"), format_args!("{N} numbers"));
     }
     weights
 }
@@ -171,9 +160,8 @@ fn some_weight(field: &Field, weights: [f64; 6]) -> Option<[f64; 6]> {
     if weights.iter().any(|weight| *weight > 0.0) {
         return Some(weights);
     }
-    field.fault(
+    field.reject(
         "only zeros, with which the mission counts for nothing",
         "at least one number above 0",
-    );
-    None
+    )
 }

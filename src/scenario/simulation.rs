@@ -2,9 +2,9 @@
 //! loop. Plans do not use them.
 
 use super::limits;
-use super::plane::{POSITION, Plane};
+use super::plane::Plane;
 use crate::frame::{Vector, heading_from_course_deg, radians_from_deg};
-use crate::input::{Field, Range, Table};
+use crate::input::{Field, Range, Table, every};
 use crate::vessel::Hull;
 
 /// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
@@ -297,14 +297,6 @@ const TURN_DEG: Range = Range::within(180.0);
 const TRACK_POINTS: usize = 20_000;
 const SILENT_TIMES: usize = 1000;
 
-/// A number, or the default where the key is absent; `None` for a fault.
-fn number_or(table: &mut Table, key: &str, range: Range, default: f64) -> Option<f64> {
-    match table.take(key) {
-        Some(field) => field.number(range),
-        None => Some(default),
-    }
-}
-
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
 pub(super) fn simulation(
     root: &mut Table,
@@ -320,33 +312,23 @@ pub(super) fn simulation(
         return Some(standard);
     };
     let mut table = field.table("a table")?;
-    let step = number_or(&mut table, "step_s", STEP, standard.step);
-    let replan = number_or(&mut table, "replan_s", limits::DURATION, standard.replan);
-    let replan_on_events = match table.take("replan") {
-        Some(field) => field.choice(&[("period", false), ("events", true)]),
-        None => Some(standard.replan_on_events),
-    };
-    let delay = number_or(&mut table, "delay_s", DELAY, standard.delay);
-    let duration = match table.take("duration_s") {
-        Some(field) => field.number(limits::DURATION).map(Some),
-        None => Some(None),
-    };
-    let seed = match table.take("seed") {
-        Some(field) => field.whole_number(SEED).map(|seed| seed as u64),
-        None => Some(standard.seed),
-    };
-    let vessel = match table.take("vessel") {
-        Some(field) => vessel(&field),
-        None => Some(standard.vessel),
-    };
-    let current = match table.take("current") {
-        Some(field) => current(&field, standard.current),
-        None => Some(standard.current),
-    };
-    let sensor = match table.take("sensor") {
-        Some(field) => sensor(&field),
-        None => Some(standard.sensor.clone()),
-    };
+    let step = table.number_or("step_s", STEP, standard.step);
+    let replan = table.number_or("replan_s", limits::DURATION, standard.replan);
+    let replan_on_events = table.read_or("replan", standard.replan_on_events, |field| {
+        field.choice(&[("period", false), ("events", true)])
+    });
+    let delay = table.number_or("delay_s", DELAY, standard.delay);
+    let duration = table.read_or("duration_s", None, |field| {
+        field.number(limits::DURATION).map(Some)
+    });
+    let seed = table.read_or("seed", standard.seed, |field| {
+        field.whole_number(SEED).map(|seed| seed as u64)
+    });
+    let vessel = table.read_or("vessel", standard.vessel, vessel);
+    let current = table.read_or("current", standard.current, |field| {
+        current(field, standard.current)
+    });
+    let sensor = table.read_or("sensor", standard.sensor.clone(), sensor);
     table.finish();
     Some(SimulationSettings {
         step: step?,
@@ -363,38 +345,34 @@ pub(super) fn simulation(
 }
 
 fn vessel(field: &Field) -> Option<VesselModel> {
-    #[derive(Clone, Copy)]
-    enum Kind {
-        Kinematic,
-        FirstOrder,
-        Nomoto,
-    }
-    const WORDS: [(&str, Kind); 3] = [
-        ("kinematic", Kind::Kinematic),
-        ("first-order", Kind::FirstOrder),
-        ("nomoto", Kind::Nomoto),
+    /// Reads the other keys of a kind.
+    type Read = fn(&mut Table) -> Option<VesselModel>;
+    const KINDS: [(&str, Read); 3] = [
+        ("kinematic", |_| Some(VesselModel::Kinematic)),
+        ("first-order", |table| {
+            Some(VesselModel::FirstOrder {
+                course_time: table.number_or("course_time_s", TIME_CONSTANT, 3.0)?,
+                speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0)?,
+            })
+        }),
+        ("nomoto", |table| {
+            Some(VesselModel::Nomoto {
+                gain: table.number_or("gain", NOMOTO, 1.0)?,
+                time: table.number_or("time", NOMOTO, 1.0)?,
+                rudder: radians_from_deg(table.number_or("rudder_deg", RUDDER_DEG, 35.0)?),
+                rudder_rate: {
+                    let rate = table.number_or("rudder_rate_deg_per_s", RUDDER_DEG, 5.0)?;
+                    radians_from_deg(rate)
+                },
+                speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0)?,
+            })
+        }),
     ];
     let mut table = field.table("a table with the key kind")?;
     let kind = table
         .require_first("kind", "\"kinematic\", \"first-order\" or \"nomoto\"")?
-        .choice(&WORDS);
-    let model = match kind? {
-        Kind::Kinematic => VesselModel::Kinematic,
-        Kind::FirstOrder => VesselModel::FirstOrder {
-            course_time: number_or(&mut table, "course_time_s", TIME_CONSTANT, 3.0)?,
-            speed_time: number_or(&mut table, "speed_time_s", TIME_CONSTANT, 5.0)?,
-        },
-        Kind::Nomoto => VesselModel::Nomoto {
-            gain: number_or(&mut table, "gain", NOMOTO, 1.0)?,
-            time: number_or(&mut table, "time", NOMOTO, 1.0)?,
-            rudder: radians_from_deg(number_or(&mut table, "rudder_deg", RUDDER_DEG, 35.0)?),
-            rudder_rate: {
-                let rate = number_or(&mut table, "rudder_rate_deg_per_s", RUDDER_DEG, 5.0)?;
-                radians_from_deg(rate)
-            },
-            speed_time: number_or(&mut table, "speed_time_s", TIME_CONSTANT, 5.0)?,
-        },
-    };
+        .choice(&KINDS);
+    let model = kind?(&mut table)?;
     table.finish();
     Some(model)
 }
@@ -402,9 +380,9 @@ fn vessel(field: &Field) -> Option<VesselModel> {
 fn current(field: &Field, standard: Current) -> Option<Current> {
     let mut table = field.table("a table")?;
     let speed = table.speed("speed", CURRENT);
-    let toward = number_or(&mut table, "toward_deg", limits::COURSE, 0.0);
-    let std = number_or(&mut table, "std_mps", CURRENT, standard.std);
-    let time = number_or(&mut table, "time_s", TIME_CONSTANT, standard.time);
+    let toward = table.number_or("toward_deg", limits::COURSE, 0.0);
+    let std = table.number_or("std_mps", CURRENT, standard.std);
+    let time = table.number_or("time_s", TIME_CONSTANT, standard.time);
     let known = table.choice("known", &[("yes", true), ("no", false)]);
     table.finish();
     let heading = heading_from_course_deg(toward?);
@@ -417,12 +395,11 @@ fn current(field: &Field, standard: Current) -> Option<Current> {
 }
 
 fn noise(table: &mut Table, standard: Noise) -> Option<Noise> {
-    let position = number_or(table, "position_std_m", limits::DISTANCE, standard.position);
-    let course = match table.take("course_std_deg") {
-        Some(field) => field.number(ANGLE_STD_DEG).map(radians_from_deg),
-        None => Some(standard.course),
-    };
-    let speed = number_or(table, "speed_std_mps", limits::SPEED, standard.speed);
+    let position = table.number_or("position_std_m", limits::DISTANCE, standard.position);
+    let course = table.read_or("course_std_deg", standard.course, |field| {
+        field.number(ANGLE_STD_DEG).map(radians_from_deg)
+    });
+    let speed = table.number_or("speed_std_mps", limits::SPEED, standard.speed);
     Some(Noise {
         position: position?,
         course: course?,
@@ -445,23 +422,23 @@ fn sensor(field: &Field) -> Option<Sensor> {
         table.finish();
         return Some(Sensor::EXACT);
     }
-    let mut interval = Some(None);
+    let interval;
     let mut default_hull = Some(Sensor::EXACT.default_hull);
     if kind == AIS {
         let Hull { length, beam } = Sensor::EXACT.default_hull;
-        let length = number_or(&mut table, "default_length_m", limits::SHIP_LENGTH, length);
-        let beam = number_or(&mut table, "default_beam_m", limits::SHIP_LENGTH, beam);
+        let length = table.number_or("default_length_m", limits::SHIP_LENGTH, length);
+        let beam = table.number_or("default_beam_m", limits::SHIP_LENGTH, beam);
         default_hull = length
             .zip(beam)
             .map(|(length, beam)| Hull::new(length, beam));
         let class = table.choice("class", &[("a", true), ("b", false)]);
         let class_a = class.unwrap_or(true);
         kind = SensorKind::Ais { class_a };
-        if let Some(field) = table.take("interval_s") {
-            interval = field.number(TIME_CONSTANT).map(Some);
-        }
+        interval = table.read_or("interval_s", None, |field| {
+            field.number(TIME_CONSTANT).map(Some)
+        });
     } else {
-        interval = number_or(&mut table, "interval_s", TIME_CONSTANT, 3.0).map(Some);
+        interval = table.number_or("interval_s", TIME_CONSTANT, 3.0).map(Some);
     }
     let standard = match kind {
         SensorKind::Radar => (20.0, 0.0, 0.0),
@@ -482,13 +459,10 @@ fn sensor(field: &Field) -> Option<Sensor> {
         }
         None => found,
     };
-    let acceleration = number_or(&mut table, "acceleration", CURRENT, 0.02);
-    let latency = number_or(&mut table, "latency_s", DELAY, 0.0);
-    let detection = number_or(&mut table, "detection", DETECTION, 1.0);
-    let silent = match table.take("silent_s") {
-        Some(field) => silent(&field),
-        None => Some(Vec::new()),
-    };
+    let acceleration = table.number_or("acceleration", CURRENT, 0.02);
+    let latency = table.number_or("latency_s", DELAY, 0.0);
+    let detection = table.number_or("detection", DETECTION, 1.0);
+    let silent = table.read_or("silent_s", Vec::new(), silent);
     let (every, lasts) = match table.take("dropout") {
         Some(field) => {
             let mut table = field.table("a table")?;
@@ -499,8 +473,8 @@ fn sensor(field: &Field) -> Option<Sensor> {
         }
         None => (Some(f64::INFINITY), Some(0.0)),
     };
-    let settle = number_or(&mut table, "settle_s", DELAY, 60.0);
-    let stale = number_or(&mut table, "stale_s", TIME_CONSTANT, 180.0);
+    let settle = table.number_or("settle_s", DELAY, 60.0);
+    let stale = table.number_or("stale_s", TIME_CONSTANT, 180.0);
     table.finish();
     Some(Sensor {
         kind,
@@ -521,11 +495,8 @@ fn sensor(field: &Field) -> Option<Sensor> {
 
 fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
     let times = field.list(0..=SILENT_TIMES, "pairs of seconds, from and until")?;
-    let pairs: Vec<_> = times
-        .iter()
-        .map(|pair| pair.pair(limits::HOLD).map(|pair| [pair.x, pair.y]))
-        .collect();
-    pairs.into_iter().collect()
+    let pairs = times.iter().map(|pair| pair.pair(limits::HOLD));
+    every(pairs.map(|pair| pair.map(|pair| [pair.x, pair.y])))
 }
 
 /// Fields of a target in the file that only the simulation uses.
@@ -534,10 +505,7 @@ pub(super) type SimulatedTarget = (Behaviour, NotReported);
 /// The keys of a target for the simulation, all of which may be absent.
 pub(super) fn simulated(target: &mut Table, plane: &Plane) -> Option<SimulatedTarget> {
     let behaviour = behaviour(target, plane);
-    let not_reported = match target.take("not_reported") {
-        Some(field) => not_reported(&field),
-        None => Some(NotReported::default()),
-    };
+    let not_reported = target.read_or("not_reported", NotReported::default(), not_reported);
     behaviour.zip(not_reported)
 }
 
@@ -558,56 +526,47 @@ fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
     let Some(field) = target.take("behaviour") else {
         return Some(Behaviour::Constant);
     };
-    #[derive(Clone, Copy)]
-    enum Kind {
-        Constant,
-        Random,
-        Extremes,
-        Pursuit,
-        Track,
-        GivesWay,
-        Mutual,
-    }
-    const WORDS: [(&str, Kind); 7] = [
-        ("constant", Kind::Constant),
-        ("random", Kind::Random),
-        ("extremes", Kind::Extremes),
-        ("pursuit", Kind::Pursuit),
-        ("track", Kind::Track),
-        ("gives-way", Kind::GivesWay),
-        ("mutual", Kind::Mutual),
+    /// Reads the other keys of a kind.
+    type Read = fn(&mut Table, &Plane) -> Option<Behaviour>;
+    const KINDS: [(&str, Read); 7] = [
+        ("constant", |_, _| Some(Behaviour::Constant)),
+        ("random", |table, _| {
+            Some(Behaviour::Random {
+                every: table.number_or("every_s", TIME_CONSTANT, 20.0)?,
+                factor: table.number_or("factor", FACTOR, 1.0)?,
+            })
+        }),
+        ("extremes", |table, _| {
+            Some(Behaviour::Extremes {
+                every: table.number_or("every_s", TIME_CONSTANT, 20.0)?,
+                factor: table.number_or("factor", FACTOR, 1.0)?,
+            })
+        }),
+        ("pursuit", |table, _| {
+            let every = table.number_or("every_s", TIME_CONSTANT, 5.0)?;
+            Some(Behaviour::Pursuit { every })
+        }),
+        ("track", |table, plane| {
+            let field = table.require_first("points", "a list of tables with t_s and position")?;
+            let points = field.list(1..=TRACK_POINTS, "tables with t_s and position")?;
+            track(&points, plane).map(Behaviour::Track)
+        }),
+        ("gives-way", |table, _| {
+            let mut number = |key, range, default| table.number_or(key, range, default);
+            Some(Behaviour::GivesWay {
+                turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)?),
+                before: number("before_cpa_s", limits::DURATION, 240.0)?,
+                probability: number("probability", PROBABILITY, 1.0)?,
+                turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)?),
+            })
+        }),
+        ("mutual", |_, _| Some(Behaviour::Mutual)),
     ];
     let mut table = field.table("a table with the key kind")?;
     let kind = table
         .require_first("kind", "a behaviour, such as \"constant\"")?
-        .choice(&WORDS)?;
-    let mut number = |key, range, default| number_or(&mut table, key, range, default);
-    let behaviour = match kind {
-        Kind::Constant => Behaviour::Constant,
-        Kind::Mutual => Behaviour::Mutual,
-        Kind::Random => Behaviour::Random {
-            every: number("every_s", TIME_CONSTANT, 20.0)?,
-            factor: number("factor", FACTOR, 1.0)?,
-        },
-        Kind::Extremes => Behaviour::Extremes {
-            every: number("every_s", TIME_CONSTANT, 20.0)?,
-            factor: number("factor", FACTOR, 1.0)?,
-        },
-        Kind::Pursuit => Behaviour::Pursuit {
-            every: number("every_s", TIME_CONSTANT, 5.0)?,
-        },
-        Kind::GivesWay => Behaviour::GivesWay {
-            turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)?),
-            before: number("before_cpa_s", limits::DURATION, 240.0)?,
-            probability: number("probability", PROBABILITY, 1.0)?,
-            turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)?),
-        },
-        Kind::Track => {
-            let field = table.require_first("points", "a list of tables with t_s and position")?;
-            let points = field.list(1..=TRACK_POINTS, "tables with t_s and position")?;
-            Behaviour::Track(track(&points, plane)?)
-        }
-    };
+        .choice(&KINDS)?;
+    let behaviour = kind(&mut table, plane)?;
     table.finish();
     Some(behaviour)
 }
@@ -617,17 +576,14 @@ fn track(points: &[Field], plane: &Plane) -> Option<Vec<(f64, Vector)>> {
     for point in points {
         let mut table = point.table("a table with t_s and position")?;
         let time = table.required_number("t_s", limits::DURATION);
-        let position = table
-            .require("position", POSITION)
-            .and_then(|field| plane.position(&field));
+        let position = plane.required_position(&mut table);
         table.finish();
         let (time, position) = (time?, position?);
         if found.last().is_some_and(|(before, _)| time <= *before) {
-            point.fault(
+            return point.reject(
                 format_args!("t_s = {time}, not after the one before"),
                 "increasing times",
             );
-            return None;
         }
         found.push((time, position));
     }

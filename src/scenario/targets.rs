@@ -20,7 +20,7 @@ pub(super) fn targets(
     plane: &Plane,
     time: Option<f64>,
     own: Option<&OwnShip>,
-) -> Option<Vec<(Target, TargetMemory, SimulatedTarget)>> {
+) -> Option<Vec<((Target, TargetMemory), SimulatedTarget)>> {
     let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };
@@ -70,7 +70,7 @@ pub(super) fn targets(
                 role,
                 ..TargetMemory::default()
             };
-            (target, memory, simulated)
+            ((target, memory), simulated)
         }));
     }
     targets.into_iter().collect()
@@ -92,10 +92,9 @@ fn role(
         }
         return Some(None);
     };
-    let since = match table.has(MORE[0]) {
-        true => time.and_then(|now| table.number(MORE[0], limits::until(now))),
-        false => time,
-    };
+    let since = table
+        .take(MORE[0])
+        .map_or(time, |field| field.number(limits::until(time?)));
     let course = match table.take(MORE[1]) {
         Some(field) => Some(field.number(limits::COURSE).map(heading_from_course_deg)?),
         None => None,
@@ -173,10 +172,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let speed_spread = table.speed("speed_spread", limits::SPEED);
     let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
     let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
-    let domain = match table.take("domain") {
-        Some(field) => domain(&field),
-        None => Some(DomainKind::Colregs),
-    };
+    let domain = table.read_or("domain", DomainKind::Colregs, domain);
     Some(ShipTrack {
         pose: pose?,
         speed: speed?,

@@ -54,10 +54,8 @@ fn what_is_left_out_takes_its_default() {
     let ship = scenario.targets[0].ship().expect("a ship");
     assert_eq!(ship.speed, mps_from_knots(10.0));
     assert!((ship.velocity() - Vector::new(-ship.speed, 0.0)).norm() < 1e-12);
-    assert_eq!(
-        (ship.position_std, ship.speed_spread, ship.course_spread),
-        (0.0, 0.0, 0.0)
-    );
+    let spreads = [ship.position_std, ship.speed_spread, ship.course_spread];
+    assert_eq!(spreads, [0.0; 3]);
     assert_eq!(ship.domain, DomainKind::Colregs);
 }
 
@@ -85,10 +83,8 @@ fn knots_replace_lists_too() {
     let text = SCENARIO.replace("turning", "speeds_kn = [12, 0, 6, 6]\nturning")
         + "leg_speeds_kn = [10, 5]";
     let scenario = Scenario::parse(&text).expect("valid");
-    assert_eq!(
-        scenario.own_ship.speeds,
-        [0.0, mps_from_knots(6.0), mps_from_knots(12.0)]
-    );
+    let speeds = [0.0, 6.0, 12.0].map(mps_from_knots);
+    assert_eq!(scenario.own_ship.speeds, speeds);
     assert_eq!(scenario.desired.legs()[1].speed, mps_from_knots(5.0));
     let mean = scenario.desired.length() / scenario.desired.duration();
     assert_eq!(scenario.time_weight, mean * mean);
@@ -284,11 +280,8 @@ fn a_ship_that_may_turn_is_no_ellipsoid() {
 /// figure 6 has three greatest speeds, figure 8 the paper's shape.
 #[test]
 fn the_scenes_of_the_paper_have_its_numbers() {
-    let read = |name: &str| {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        let file = folder.join(format!("scenarios/paper/{name}.toml"));
-        Scenario::read(&file).expect(name)
-    };
+    let read =
+        |name: &str| Scenario::read(format!("scenarios/paper/{name}.toml").as_ref()).expect(name);
     let polygon = |points: &[(f64, f64)]| {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         ConvexPolygon::from_vertices(&points).expect("convex")
@@ -361,12 +354,9 @@ fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
 fn the_vessel_is_as_long_as_own_ship() {
     for length in [0.5, 1.255, 30.0, 300.0] {
         let text = OPTIMAL_CONTROL.replace("1.255", &length.to_string());
-        let found = Scenario::parse(&text)
-            .expect("valid")
-            .settings
-            .optimal_control;
-        let vessel = VesselKind::CyberShip2;
-        assert_eq!(found, ControlSettings::at_length(vessel, length));
+        let found = Scenario::parse(&text).expect("valid").settings;
+        let expected = ControlSettings::at_length(VesselKind::CyberShip2, length);
+        assert_eq!(found.optimal_control, expected);
     }
 }
 

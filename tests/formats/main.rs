@@ -89,7 +89,7 @@ fn every_case_of_imazu_meets_where_it_is_said_to() {
         assert!((scenario.desired.position_at(1800.0) - meeting).norm() < 0.2);
         for target in &scenario.targets {
             let off = (target.position_at(1800.0) - meeting).norm();
-            assert!(off < 0.2, "{}", case.name());
+            assert!(off < 0.2, "{}", case.name);
             let ship = target.ship().expect("a ship");
             assert_eq!(ship.speed_spread, 0.5);
             assert!((ship.course_spread - 5.0_f64.to_radians()).abs() < 1e-15);
@@ -108,7 +108,7 @@ fn every_target_of_dnv_meets_own_ship() {
     for file in files {
         let situation = benchmark(&file).remove(0);
         let scenario = imported(&situation).scenario;
-        assert_eq!(situation.name().split(", ").count(), scenario.targets.len());
+        assert_eq!(situation.name.split(", ").count(), scenario.targets.len());
         let own = &scenario.own_ship;
         assert_eq!((own.hull.length, own.hull.beam), (122.0, 20.0));
         assert!((own.speed - 10.0 * 1852.0 / 3600.0).abs() < 1e-12);
@@ -333,7 +333,7 @@ fn every_encounter_has_a_plan_clear_of_all_it_declares() {
         // outcomes must not depend on the clock
         scenario.deadline = 60.0;
         let run = pipeline::run(scenario);
-        let name = situation.name();
+        let name = &situation.name;
         let plan = run.planned.outcome.plan().expect("a plan");
         assert_eq!(run.max_risk, 0.0, "{name}");
         assert!(!run.enters(), "{name}");

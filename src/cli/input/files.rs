@@ -19,6 +19,15 @@ pub struct Found {
     pub in_folder: bool,
 }
 
+/// File, or a part of it, without a scenario.
+#[derive(Debug)]
+pub struct Unread {
+    /// File path.
+    pub file: PathBuf,
+    /// Error that includes the file name.
+    pub error: String,
+}
+
 /// What is looked for in a folder.
 pub struct Kind {
     name: &'static str,
@@ -46,11 +55,7 @@ impl Kind {
 
 /// Lists the files of a kind at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(
-    paths: &[PathBuf],
-    kind: &Kind,
-    output: &Output,
-) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+pub fn find(paths: &[PathBuf], kind: &Kind, output: &Output) -> Vec<Result<Found, Unread>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
     for found in meant(paths, kind) {
@@ -67,7 +72,7 @@ pub fn find(
     all
 }
 
-fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, Unread>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -79,12 +84,18 @@ fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, (PathBuf, anyhow::
             }));
             continue;
         }
+        let unread = |error: String| {
+            Err(Unread {
+                file: path.clone(),
+                error,
+            })
+        };
         let mut files = Vec::new();
         match walk(path, kind, &mut files) {
-            Ok(()) if files.is_empty() => all.push(Err((
-                path.clone(),
-                anyhow::anyhow!("{}: a folder without {}", path.display(), kind.name),
-            ))),
+            Ok(()) if files.is_empty() => {
+                let (folder, kind) = (path.display(), kind.name);
+                all.push(unread(format!("{folder}: a folder without {kind}")));
+            }
             Ok(()) => all.extend(files.into_iter().map(|file| {
                 let relative = file.strip_prefix(path).unwrap_or(&file);
                 Ok(Found {
@@ -93,7 +104,7 @@ fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, (PathBuf, anyhow::
                     in_folder: true,
                 })
             })),
-            Err(error) => all.push(Err((path.clone(), error))),
+            Err(error) => all.push(unread(format!("{error:#}"))),
         }
     }
     all

@@ -1,8 +1,10 @@
 //! Points and velocities from the command line and from CSV files.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use searoom::input::read_text;
+use searoom::report::counted;
 use searoom::scenario::{Fault, ScenarioError};
 
 /// Maximum size of a CSV file in mebibytes.
@@ -58,30 +60,18 @@ pub const VELOCITY: [Column; 2] = [
 /// Time.
 pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 
-fn values(count: usize) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} value{plural}")
-}
-
 /// Parses the comma-separated numbers of one option.
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     if parts.len() != N {
-        let names = header(columns);
-        return Err(format!(
-            "found {}; allowed: {N}: {names}",
-            values(parts.len())
-        ));
+        let allowed = format_args!("{N}: {}", header(columns));
+        return Err(Fault::new("", counted(parts.len(), "value"), allowed).to_string());
     }
     let mut row = [0.0; N];
     for ((number, column), part) in row.iter_mut().zip(columns).zip(parts) {
-        *number = column.number(part).map_err(|found| {
-            format!(
-                "{}: found {found}; allowed: {}",
-                column.name,
-                column.allowed()
-            )
-        })?;
+        *number = column
+            .number(part)
+            .map_err(|found| Fault::new(column.name, found, column.allowed()).to_string())?;
     }
     Ok(row)
 }
@@ -98,10 +88,7 @@ pub fn read<const N: usize>(
     if faults.is_empty() {
         return Ok(rows);
     }
-    Err(ScenarioError::Faults {
-        file: file.to_owned(),
-        faults,
-    })
+    Err(ScenarioError::faults(file, faults))
 }
 
 /// Reads lines of values between commas, which may be in quotation marks; blank lines are skipped.
@@ -127,13 +114,13 @@ fn rows<const N: usize>(
             continue;
         };
         if record.len() > N {
-            let found = values(record.len());
-            faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
+            let found = counted(record.len(), "value");
+            faults.push(fault(Some(line), "", found, format_args!("{N}: {names}")));
             continue;
         }
         if rows.len() == ROWS {
-            let found = format!("more than {ROWS} rows");
-            faults.push(fault(Some(line), "", found, &format!("at most {ROWS}")));
+            let found = format_args!("more than {ROWS} rows");
+            faults.push(fault(Some(line), "", found, format_args!("at most {ROWS}")));
             return rows;
         }
         let mut row = [0.0; N];
@@ -144,16 +131,16 @@ fn rows<const N: usize>(
             };
             match read {
                 Ok(value) => *number = value,
-                Err(found) => faults.push(fault(Some(line), column.name, found, &column.allowed())),
+                Err(found) => faults.push(fault(Some(line), column.name, found, column.allowed())),
             }
         }
         rows.push(row);
     }
     let wanted = format!("a header line {names} and at least one row");
     if order.is_none() {
-        faults.push(fault(Some(1), "", "an empty file".to_owned(), &wanted));
+        faults.push(fault(Some(1), "", "an empty file", &wanted));
     } else if rows.is_empty() && faults.is_empty() {
-        faults.push(fault(None, "", "no rows".to_owned(), &wanted));
+        faults.push(fault(None, "", "no rows", &wanted));
     }
     rows
 }
@@ -169,10 +156,10 @@ fn columns_of<const N: usize>(
     let before = faults.len();
     for (i, name) in found.iter().enumerate() {
         if !columns.iter().any(|c| c.name == *name) {
-            let what = format!("an unknown column {}", quoted(name));
+            let what = format_args!("an unknown column {}", quoted(name));
             faults.push(fault(Some(line), "", what, &names));
         } else if found.iter().take(i).any(|earlier| earlier == name) {
-            faults.push(fault(Some(line), name, "the column twice".into(), "once"));
+            faults.push(fault(Some(line), name, "the column twice", "once"));
         }
     }
     let mut order = [0; N];
@@ -182,8 +169,8 @@ fn columns_of<const N: usize>(
             None => faults.push(fault(
                 Some(line),
                 column.name,
-                "no such column".to_owned(),
-                &format!("a header line {names}"),
+                "no such column",
+                format_args!("a header line {names}"),
             )),
         }
     }
@@ -201,12 +188,10 @@ fn quoted(text: &str) -> String {
     format!("{short:?}{more}")
 }
 
-fn fault(line: Option<usize>, path: &str, found: String, allowed: &str) -> Fault {
+fn fault(line: Option<usize>, path: &str, found: impl Display, allowed: impl Display) -> Fault {
     Fault {
-        path: path.to_owned(),
-        found,
-        allowed: allowed.to_owned(),
         line,
+        ..Fault::new(path, found, allowed)
     }
 }
 

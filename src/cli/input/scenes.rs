@@ -6,31 +6,15 @@ use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::super::output::Output;
-use super::files::{self, Found};
+use super::files::{self, Found, Unread};
 
 /// Scenario that is not yet fully read.
 #[derive(Debug)]
 pub struct Scene {
     /// File and output name.
     pub found: Found,
-    source: Source,
-}
-
-#[derive(Debug)]
-enum Source {
-    /// Scenario file.
-    File,
-    /// Situation of an imported file.
-    Situation(Box<Situation>),
-}
-
-/// File, or a part of it, without a scenario.
-#[derive(Debug)]
-pub struct Unread {
-    /// File path.
-    pub file: PathBuf,
-    /// Error that includes the file name.
-    pub error: String,
+    /// Situation of an imported file; `None` for a scenario file.
+    situation: Option<Situation>,
 }
 
 /// Scenario with notes.
@@ -58,54 +42,42 @@ impl Scene {
 
     /// Builds the scenario of an imported file with its text; `None` for a scenario file.
     pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
-        match &self.source {
-            Source::File => None,
-            Source::Situation(situation) => {
-                let file = self.found.file.clone();
-                let imported = situation.scenario(assumed);
-                Some(imported.map_err(|faults| ScenarioError::Faults { file, faults }))
-            }
-        }
+        let imported = self.situation.as_ref()?.scenario(assumed);
+        Some(imported.map_err(|faults| ScenarioError::faults(&self.found.file, faults)))
     }
 
     /// Further facts that an imported file declares about its situation.
     pub fn declared(&self) -> Declared {
-        match &self.source {
-            Source::File => Declared::default(),
-            Source::Situation(situation) => situation.declared().clone(),
-        }
+        let situation = self.situation.as_ref();
+        situation.map_or_else(Declared::default, |situation| situation.declared.clone())
     }
 
     /// Name of the file, with the situation if the file may contain several.
     pub fn label(&self) -> String {
         let file = self.found.file.display();
-        match &self.source {
-            Source::Situation(situation) if situation.id().is_some() => {
-                format!("{file}: {}", situation.name())
-            }
+        match &self.situation {
+            Some(situation) if situation.id.is_some() => format!("{file}: {}", situation.name),
             _ => file.to_string(),
         }
     }
 }
 
-/// Opens files and lists their scenes in order. Documents and maps in a folder are skipped with a
-/// note.
-pub fn open(
-    found: Vec<Result<Found, (PathBuf, anyhow::Error)>>,
-    assumed: &Assumed,
-    output: &Output,
-) -> Vec<Result<Scene, Unread>> {
+/// Opens the files at `paths` and lists their scenes in order. Documents and maps in a folder are
+/// skipped with a note.
+pub fn open(paths: &[PathBuf], assumed: &Assumed, output: &Output) -> Vec<Result<Scene, Unread>> {
     let mut scenes = Vec::new();
-    for entry in found {
+    for entry in files::find(paths, &files::SCENARIOS, output) {
         match entry {
             Ok(found) => of_file(&found, assumed, output, &mut scenes),
-            Err((file, error)) => scenes.push(Err(Unread {
-                file,
-                error: format!("{error:#}"),
-            })),
+            Err(unread) => scenes.push(Err(unread)),
         }
     }
     scenes
+}
+
+/// The files of the scenes.
+pub fn found(scenes: &[Result<Scene, Unread>]) -> Vec<Found> {
+    scenes.iter().flatten().map(|s| s.found.clone()).collect()
 }
 
 fn of_file(
@@ -122,19 +94,16 @@ fn of_file(
     match Contents::read(file, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),
-            source: Source::File,
+            situation: None,
         })),
         Ok(Contents::Situations(situations)) => {
             for situation in situations {
                 scenes.push(match situation {
                     Ok(situation) => Ok(Scene {
                         found: named(found, &situation),
-                        source: Source::Situation(Box::new(situation)),
+                        situation: Some(situation),
                     }),
-                    Err(faults) => {
-                        let file = file.clone();
-                        Err(unread(ScenarioError::Faults { file, faults }.to_string()))
-                    }
+                    Err(faults) => Err(unread(ScenarioError::faults(file, faults).to_string())),
                 });
             }
         }
@@ -157,8 +126,7 @@ pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene
             "{name}: a folder; `searoom suite` runs the scenarios in it"
         ));
     }
-    let found = files::find(&[file.to_owned()], &files::SCENARIOS, output);
-    let mut scenes = open(found, assumed, output);
+    let mut scenes = open(&[file.to_owned()], assumed, output);
     match (scenes.pop(), scenes.len()) {
         (Some(Ok(scene)), 0) => Ok(scene),
         (Some(Err(unread)), 0) => Err(unread.error),
@@ -172,7 +140,7 @@ pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene
 
 /// Names the outputs of one of several situations after it, in the folder of its file.
 fn named(found: &Found, situation: &Situation) -> Found {
-    let Some(id) = situation.id() else {
+    let Some(id) = &situation.id else {
         return found.clone();
     };
     let safe = |c: char| {

@@ -84,6 +84,20 @@ impl Output {
         }
     }
 
+    /// Prints a result as a document, or as text.
+    pub fn show(
+        &self,
+        json: bool,
+        document: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> ExitStatus {
+        if json {
+            self.document(document)
+        } else {
+            self.result(&text())
+        }
+    }
+
     /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         // an error of standard error cannot be reported
@@ -133,6 +147,15 @@ impl Output {
 /// Serialises a document to JSON.
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
+}
+
+/// Formats rows as CSV.
+pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    writer.into_inner().context("the rows cannot be written")
 }
 
 /// Prints help, the version, or an argument error.

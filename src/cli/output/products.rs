@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use searoom::document::{ComparisonDocument, PlanDocument, SimulationDocument};
+use searoom::document::{PlanDocument, ScenarioComparisonDocument, SimulationDocument};
 use searoom::pipeline::Run;
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure, simulation_figure};
 use searoom::report::page::{HtmlReport, Subject, link_from};
@@ -13,7 +13,7 @@ use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
-use super::super::input::files::{Found, refuse_clashes};
+use super::super::input::files::{Found, refuse_clashes, shown};
 use super::super::runner::guarded;
 use super::json;
 use super::status::ExitStatus;
@@ -92,8 +92,9 @@ impl Products {
     /// Writes the requested recording, figure and plan document.
     pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
         attempt(|| {
+            #[cfg(feature = "recording")]
             if let Some(place) = &self.recordings {
-                record(run, plan, &place.file(stem, "rrd"))?;
+                searoom::recording::write(run, plan, &place.file(stem, "rrd"))?;
             }
             if let Some(place) = &self.figures {
                 plan_figure(run).write(&place.file(stem, "svg"))?;
@@ -141,6 +142,67 @@ impl Products {
         };
         attempt(|| Ok(report.write(folder, title, lead)?))
     }
+
+    /// Writes the recording of a comparison, if requested.
+    #[cfg_attr(
+        not(feature = "recording"),
+        expect(unused_variables, reason = "only recordings are written of it")
+    )]
+    pub fn write_comparison(
+        &self,
+        stem: &str,
+        scenario: &Scenario,
+        entries: &[Entry],
+        document: &ScenarioComparisonDocument,
+    ) -> Result<(), Failure> {
+        #[cfg(feature = "recording")]
+        if let Some(place) = &self.recordings {
+            let whole = searoom::document::ComparisonDocument {
+                comparisons: vec![document.clone()],
+            };
+            return attempt(|| {
+                let compared = searoom::recording::Compared {
+                    scenario,
+                    entries,
+                    table: &searoom::report::comparison_markdown(document),
+                    document: &json(&whole)?,
+                };
+                let file = place.file(stem, "rrd");
+                Ok(searoom::recording::write_comparison(&compared, &file)?)
+            });
+        }
+        Ok(())
+    }
+
+    /// Writes the figure of a simulation, and the recording of one that kept its plans.
+    #[cfg_attr(
+        not(feature = "recording"),
+        expect(unused_variables, reason = "only recordings need the plans")
+    )]
+    pub fn write_simulation(
+        &self,
+        stem: &str,
+        scenario: &Scenario,
+        simulation: &Simulation,
+        document: &SimulationDocument,
+    ) -> Result<(), Failure> {
+        attempt(|| {
+            #[cfg(feature = "recording")]
+            if let Some(place) = &self.recordings {
+                let simulated = searoom::recording::Simulated {
+                    scenario,
+                    document,
+                    plans: simulation.plans(),
+                    text: &searoom::report::simulation_text(document, false),
+                };
+                searoom::recording::write_simulation(&simulated, &place.file(stem, "rrd"))?;
+            }
+            if let Some(place) = &self.figures {
+                simulation_figure(scenario, document).write(&place.file(stem, "svg"))?;
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Exit status and reason of a failed write.
@@ -164,51 +226,7 @@ pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("--figure: {}: a folder; name a file", path.display());
     }
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => make(folder),
-        _ => Ok(()),
-    }
-}
-
-/// Comparison of one scenario, ready for output.
-#[cfg_attr(
-    not(feature = "recording"),
-    expect(dead_code, reason = "recordings alone are written of it")
-)]
-pub struct ScenarioCompared<'a> {
-    pub scenario: &'a Scenario,
-    pub entries: &'a [Entry],
-    pub table: String,
-    pub document: ComparisonDocument,
-}
-
-impl Products {
-    /// Writes the recording of a comparison, if requested.
-    pub fn write_comparison(&self, stem: &str, side: &ScenarioCompared) -> Result<(), Failure> {
-        let Some(place) = &self.recordings else {
-            return Ok(());
-        };
-        attempt(|| record_comparison(side, &place.file(stem, "rrd")))
-    }
-
-    /// Writes the figure of a simulation, and the recording of one that kept its plans.
-    pub fn write_simulation(
-        &self,
-        stem: &str,
-        scenario: &Scenario,
-        simulation: &Simulation,
-        document: &SimulationDocument,
-    ) -> Result<(), Failure> {
-        attempt(|| {
-            if let Some(place) = &self.recordings {
-                record_simulation(scenario, simulation, document, &place.file(stem, "rrd"))?;
-            }
-            if let Some(place) = &self.figures {
-                simulation_figure(scenario, document).write(&place.file(stem, "svg"))?;
-            }
-            Ok(())
-        })
-    }
+    make_parent(path)
 }
 
 impl Place {
@@ -236,9 +254,7 @@ impl Place {
         if scenarios > 1 {
             bail!("{option} {shown}: a file, but there are {scenarios} scenarios; name a folder");
         }
-        if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-            make(folder)?;
-        }
+        make_parent(path)?;
         Ok(Self::File(path.to_owned()))
     }
 
@@ -256,60 +272,21 @@ fn is_another_file(path: &Path) -> bool {
     path.extension().is_some() && !path.is_dir() && !asks
 }
 
+fn make_parent(file: &Path) -> anyhow::Result<()> {
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => make(folder),
+        _ => Ok(()),
+    }
+}
+
 fn make(folder: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(folder)
         .with_context(|| format!("{}: the folder cannot be made", folder.display()))
 }
 
-#[cfg(feature = "recording")]
-fn record(run: &Run, plan: &PlanDocument, file: &Path) -> anyhow::Result<()> {
-    Ok(searoom::recording::write(run, plan, file)?)
-}
-
-#[cfg(feature = "recording")]
-fn record_comparison(side: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
-    let document = json(&side.document)?;
-    let compared = searoom::recording::Compared {
-        scenario: side.scenario,
-        entries: side.entries,
-        table: &side.table,
-        document: &document,
-    };
-    Ok(searoom::recording::write_comparison(&compared, file)?)
-}
-
-#[cfg(feature = "recording")]
-fn record_simulation(
-    scenario: &Scenario,
-    simulation: &Simulation,
-    document: &SimulationDocument,
-    file: &Path,
-) -> anyhow::Result<()> {
-    let simulated = searoom::recording::Simulated {
-        scenario,
-        document,
-        plans: simulation.plans(),
-        text: &searoom::report::simulation_text(document, false),
-    };
-    Ok(searoom::recording::write_simulation(&simulated, file)?)
-}
-
-#[cfg(not(feature = "recording"))]
-fn record_simulation(
-    _: &Scenario,
-    _: &Simulation,
-    _: &SimulationDocument,
-    file: &Path,
-) -> anyhow::Result<()> {
-    bail!("{}: built without recordings", file.display())
-}
-
-#[cfg(not(feature = "recording"))]
-fn record_comparison(_: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
-    bail!("{}: built without recordings", file.display())
-}
-
-#[cfg(not(feature = "recording"))]
-fn record(_: &Run, _: &PlanDocument, file: &Path) -> anyhow::Result<()> {
-    bail!("{}: built without recordings", file.display())
+/// Adds a failure to a report, which shows files without the folders of this machine.
+pub fn report_failure(report: &mut HtmlReport, file: &Path, outcome: &str, error: &str) {
+    let name = shown(file);
+    let error = error.replace(&file.display().to_string(), &name);
+    report.add_failure(&name, outcome, &error);
 }

@@ -38,9 +38,7 @@ impl ExitStatus {
             (Some(_), _) => Self::InternalFault,
         }
     }
-}
 
-impl ExitStatus {
     /// Exit code of the process.
     pub fn code(self) -> u8 {
         match self {
@@ -72,10 +70,7 @@ mod tests {
     /// Modifies a valid plan, because no planner is known to produce such a plan.
     #[test]
     fn a_plan_that_fails_its_own_verification_ends_with_status_3() {
-        let file = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/scenarios/colregs/head-on.toml"
-        );
+        let file = "scenarios/colregs/head-on.toml";
         let sound = pipeline::run(Scenario::read(file.as_ref()).expect("no faults"));
         assert_eq!(ExitStatus::of(&sound).code(), 0);
         let mut spoilt = sound.clone();

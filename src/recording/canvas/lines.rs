@@ -5,7 +5,7 @@ use rerun::{Color, LineStrips2D, LineStrips3D, Points2D, Radius};
 use super::style;
 
 /// Lines of one entity.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Lines<const AXES: usize> {
     strips: Vec<Vec<[f32; AXES]>>,
     colors: Vec<Color>,
@@ -13,14 +13,6 @@ pub struct Lines<const AXES: usize> {
 }
 
 impl<const AXES: usize> Lines<AXES> {
-    pub fn new() -> Self {
-        Self {
-            strips: Vec::new(),
-            colors: Vec::new(),
-            radii: Vec::new(),
-        }
-    }
-
     /// Adds a line; `radius` is its half width in points of the screen.
     pub fn add(&mut self, strip: impl Into<Vec<[f32; AXES]>>, color: Color, radius: f32) {
         self.strips.push(strip.into());

@@ -7,7 +7,7 @@ mod motion;
 pub mod style;
 mod view_model;
 
-pub use closed_loop::ClosedLoop;
+pub use closed_loop::{AssumedTarget, ClosedLoop};
 pub use lines::{Lines, labelled};
 pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;

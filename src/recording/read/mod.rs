@@ -5,7 +5,7 @@ mod values;
 
 pub use table::{EntityRow, EntityTable};
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -215,19 +215,19 @@ fn fault(bytes: &[u8]) -> Option<&'static str> {
 }
 
 fn contents(path: &str, chunks: &[Chunk]) -> EntityContents {
-    let mut components: Vec<String> = chunks
-        .iter()
-        .flat_map(|chunk| chunk.components_identifiers())
-        .map(|component| component.to_string())
-        .collect();
-    components.sort();
-    components.dedup();
     EntityContents {
         path: path.to_owned(),
         rows: chunks.iter().map(Chunk::num_rows).sum(),
-        components,
+        components: components(chunks),
         timelines: span(chunks),
     }
+}
+
+/// The names of all components, sorted.
+fn components(chunks: &[Chunk]) -> Vec<String> {
+    let names = chunks.iter().flat_map(Chunk::components_identifiers);
+    let names: BTreeSet<String> = names.map(|name| name.to_string()).collect();
+    names.into_iter().collect()
 }
 
 /// The times of a chunk's rows, in seconds; none for what holds at all times.

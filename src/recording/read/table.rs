@@ -1,12 +1,10 @@
 //! The rows of an entity as JSON values.
 
-use std::collections::BTreeSet;
-
 use rerun::log::Chunk;
 use serde_json::Value;
 
-use super::seconds;
 use super::values::instances;
+use super::{components, seconds};
 use crate::recording::TIMELINE;
 
 /// The component that names the curves of a plot.
@@ -37,9 +35,7 @@ pub struct EntityRow {
 
 impl EntityTable {
     pub(super) fn of(chunks: &[Chunk]) -> Self {
-        let components = chunks.iter().flat_map(Chunk::components_identifiers);
-        let components: BTreeSet<String> = components.map(|c| c.to_string()).collect();
-        let components: Vec<String> = components.into_iter().collect();
+        let components = components(chunks);
         let mut rows: Vec<EntityRow> = Vec::new();
         for chunk in chunks {
             let begun = rows.len();

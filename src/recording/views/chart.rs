@@ -20,6 +20,9 @@ const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 /// A line of the chart.
 pub type Strip = Vec<[f32; 2]>;
 
+/// A polyline through `(position, time)`.
+pub type TimedLine = Vec<(Vector, f64)>;
+
 /// Logs everything of the chart that does not move.
 pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_waters(rec, model)?;
@@ -49,15 +52,9 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs lines every round number of metres, and the north arrow.
 fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Window { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
-    let spacing = grid_spacing(canvas);
-    let mut lines = Lines::new();
-    for east in multiples(low.x, high.x, spacing) {
-        let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
-        lines.add(ends.map(flat), style::GRID, 0.5);
-    }
-    for north in multiples(low.y, high.y, spacing) {
-        let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
+    let window = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
+    let mut lines = Lines::default();
+    for ends in grid_lines(canvas, &window) {
         lines.add(ends.map(flat), style::GRID, 0.5);
     }
     let unit = canvas.bounds.size().max() / 100.0;
@@ -79,6 +76,17 @@ pub fn grid_spacing(canvas: &Canvas) -> f64 {
     round_down(canvas.bounds.size().max() / 4.0)
 }
 
+/// The ends of the lines of the grid within a window, those to the north first.
+pub fn grid_lines(canvas: &Canvas, window: &Window) -> Vec<[Vector; 2]> {
+    let Window { low, high } = window;
+    let spacing = grid_spacing(canvas);
+    let northward = multiples(low.x, high.x, spacing)
+        .map(|east| [low.y, high.y].map(|north| Vector::new(east, north)));
+    let eastward = multiples(low.y, high.y, spacing)
+        .map(|north| [low.x, high.x].map(|east| Vector::new(east, north)));
+    northward.chain(eastward).collect()
+}
+
 /// Multiples of `step` within the interval.
 pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
@@ -88,7 +96,7 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 /// Logs the desired trajectory, dashed.
 fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let dash = canvas.bounds.size().max() / 120.0;
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for leg in canvas.scenario.desired.legs() {
         let mut along = 0.0;
         while along < leg.length {
@@ -106,7 +114,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for (pace, points) in planned_strips(model) {
         let strip: Strip = points.into_iter().map(|(p, _)| flat(p)).collect();
         lines.add(strip, pace.color(), pace.radius());
@@ -118,7 +126,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
 const PIECE_POINTS: usize = 4;
 
 /// The plan's segments, or pieces, as polylines through `(position, time)`. Empty without a plan.
-pub fn planned_strips(model: &ViewModel) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
+pub fn planned_strips(model: &ViewModel) -> Vec<(SpeedClass, TimedLine)> {
     match model.motion {
         ShownMotion::Planned(trajectory) => strips(model, trajectory),
         ShownMotion::Nominal(_) => Vec::new(),
@@ -126,7 +134,7 @@ pub fn planned_strips(model: &ViewModel) -> Vec<(SpeedClass, Vec<(Vector, f64)>)
 }
 
 /// The segments, or pieces, of a motion as polylines through `(position, time)`.
-pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
+pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, TimedLine)> {
     let desired = &canvas.scenario.desired;
     if let Some(motion) = trajectory.steered() {
         let strip = |piece: Cubic| {
@@ -148,7 +156,7 @@ pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, Vec<
 pub fn segment_strips(
     canvas: &Canvas,
     segments: &[Segment],
-) -> impl Iterator<Item = (SpeedClass, Vec<(Vector, f64)>)> {
+) -> impl Iterator<Item = (SpeedClass, TimedLine)> {
     let moving = segments.iter().filter(|segment| segment.duration > 0.0);
     moving.map(|segment| {
         let desired = desired_leg(&canvas.scenario.desired, segment.start_time).speed;
@@ -158,9 +166,9 @@ pub fn segment_strips(
 
 /// Joins strips of one speed class that follow one another: a strip costs more than a point.
 pub fn joined(
-    strips: impl Iterator<Item = (SpeedClass, Vec<(Vector, f64)>)>,
-) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
-    let mut all: Vec<(SpeedClass, Vec<(Vector, f64)>)> = Vec::new();
+    strips: impl Iterator<Item = (SpeedClass, TimedLine)>,
+) -> Vec<(SpeedClass, TimedLine)> {
+    let mut all: Vec<(SpeedClass, TimedLine)> = Vec::new();
     for (pace, points) in strips {
         match all.last_mut() {
             Some((before, line)) if *before == pace => line.extend(points.into_iter().skip(1)),
@@ -170,8 +178,18 @@ pub fn joined(
     all
 }
 
+/// Joins lines, each of which begins where the one before ends.
+pub fn one_line(lines: impl Iterator<Item = TimedLine>) -> TimedLine {
+    let mut all = TimedLine::new();
+    for line in lines {
+        let joint = usize::from(!all.is_empty());
+        all.extend(line.into_iter().skip(joint));
+    }
+    all
+}
+
 /// Points of a segment with their times: an arc every 3° at most.
-pub fn polyline(segment: &Segment) -> Vec<(Vector, f64)> {
+pub fn polyline(segment: &Segment) -> TimedLine {
     let turn = (segment.turn_rate * segment.duration).abs();
     let pieces = (turn / ARC_STEP).ceil().clamp(1.0, 1e3) as usize;
     (0..=pieces)
@@ -189,9 +207,8 @@ pub fn mark_step(canvas: &Canvas) -> f64 {
 
 /// Logs own ship's position every round number of seconds, with the time.
 fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
-    let times: Vec<f64> = multiples(0.0, model.end, mark_step(model))
-        .skip(1)
-        .collect();
+    let times = multiples(0.0, model.end, mark_step(model)).skip(1);
+    let times: Vec<f64> = times.collect();
     // a plan has no positions after arrival
     let times = model.motion.until_arrival(&times);
     let points = times.iter().map(|&t| model.motion.pose_at(t).position);
@@ -222,7 +239,7 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let mut labels = Vec::new();
     for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
         let own = model.motion.pose_at(passage.tcpa).position;

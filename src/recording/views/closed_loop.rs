@@ -6,9 +6,12 @@ use rerun::{LineStrips2D, Points2D, TimeColumn};
 use super::chart::{self, Strip};
 use super::curves::{self, CLEARANCE, Series};
 use super::ships::{self, outline};
-use crate::recording::canvas::{ClosedLoop, flat, labelled, style};
+use crate::colregs::SteadyShip;
+use crate::geometry::ConvexPolygon;
+use crate::recording::canvas::{AssumedTarget, ClosedLoop, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
+use crate::vessel::Hull;
 
 /// Distance from the plan that own ship follows.
 pub const OFF_PLAN: &str = "curves/off_plan_m";
@@ -49,53 +52,41 @@ fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
 
 /// Logs the targets as the plan at the cursor assumes them: their hulls and their hard sets.
 fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
-    let names = model
-        .simulation
-        .targets
-        .iter()
-        .map(|target| target.name.as_str());
-    let colors = (0..model.simulation.targets.len()).map(style::target);
+    let targets = &model.simulation.targets;
+    let names = targets.iter().map(|target| target.name.as_str());
+    let colors = (0..targets.len()).map(style::target);
     let sets = ships::set_style(style::CHART_TEXT, ships::HARD_RADIUS)
         .with_colors(colors)
         .with_labels(names.clone())
         .with_show_labels(false);
-    log_strips(rec, model, "hard_sets", &sets, |time| {
-        let plan = model.plan_at(time)?;
-        let sets = plan
-            .targets
-            .iter()
-            .map(|target| target.hard_at(time - plan.from));
-        Some(sets.map(|set| outline(&set)).collect())
-    })?;
+    let assumed = |at: fn(&AssumedTarget, f64) -> ConvexPolygon| {
+        move |time: f64| {
+            let plan = model.plan_at(time)?;
+            let targets = plan.targets.iter();
+            let polygons = targets.map(|target| at(target, time - plan.from));
+            Some(polygons.map(|polygon| outline(&polygon)).collect())
+        }
+    };
+    let hard = assumed(AssumedTarget::hard_at);
+    log_strips(rec, model, "hard_sets", &sets, hard)?;
     let hulls = ships::set_style(style::DESIRED, 1.0)
         .with_labels(names.map(|name| format!("{name}, estimate")))
         .with_show_labels(false);
-    log_strips(rec, model, "estimates", &hulls, |time| {
-        let plan = model.plan_at(time)?;
-        let hulls = plan
-            .targets
-            .iter()
-            .map(|target| target.hull_at(time - plan.from));
-        Some(hulls.map(|hull| outline(&hull)).collect())
-    })
+    let estimates = assumed(AssumedTarget::hull_at);
+    log_strips(rec, model, "estimates", &hulls, estimates)
 }
 
 /// Logs the true ships: hulls with speed vectors, names, and a dot per ship and cursor time.
 fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
-    let canvas = &model.canvas;
+    let (canvas, targets) = (&model.canvas, &model.simulation.targets);
     let colors: Vec<_> = std::iter::once(style::OWN_SHIP)
-        .chain((0..model.simulation.targets.len()).map(style::target))
+        .chain((0..targets.len()).map(style::target))
         .collect();
-    let ships = |time: f64| {
+    let ships = |time: f64| -> Option<Vec<(SteadyShip, Hull)>> {
         let own = Some((model.own_at(time), canvas.scenario.own_ship.hull));
-        let targets = model
-            .simulation
-            .targets
-            .iter()
-            .map(move |target| Some((target.at(time)?, target.hull())));
-        std::iter::once(own)
-            .chain(targets)
-            .collect::<Option<Vec<_>>>()
+        let others = targets.iter();
+        let others = others.map(|target| Some((target.at(time)?, target.hull())));
+        std::iter::once(own).chain(others).collect()
     };
     let style = LineStrips2D::update_fields()
         .with_colors(colors.iter().flat_map(|color| [*color; 2]))
@@ -121,11 +112,7 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
             .with_positions(places)
             .columns(vec![colors.len(); rows])
     };
-    let names = model
-        .simulation
-        .targets
-        .iter()
-        .map(|target| target.name.as_str());
+    let names = targets.iter().map(|target| target.name.as_str());
     let names = Points2D::update_fields()
         .with_colors(colors.iter().copied())
         .with_radii([style::points(0.0)])

@@ -4,8 +4,7 @@ use std::cell::OnceCell;
 
 use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
 
-use super::chart::polyline;
-use crate::frame::Vector;
+use super::chart::{TimedLine, one_line, polyline};
 use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
@@ -36,7 +35,7 @@ pub struct DrawnGraph {
 struct Kind {
     name: &'static str,
     color: Color,
-    strips: Vec<Vec<(Vector, f64)>>,
+    strips: Vec<TimedLine>,
     /// One per strip, or empty.
     reasons: Vec<String>,
 }
@@ -61,7 +60,10 @@ pub fn log_explored(
         kind(FREE, style::GRAPH_FREE),
         kind(BLOCKED, style::GRAPH_BLOCKED),
     ];
-    let judge = Judge::new(run);
+    let judge = Judge {
+        run,
+        land_obstacle: OnceCell::new(),
+    };
     let mut drawn = DrawnGraph::default();
     let mut points = 0;
     for edge in run.planned.explored.edge_weights() {
@@ -97,14 +99,7 @@ struct Judge<'a> {
     land_obstacle: OnceCell<LandObstacle>,
 }
 
-impl<'a> Judge<'a> {
-    fn new(run: &'a Run) -> Self {
-        Self {
-            run,
-            land_obstacle: OnceCell::new(),
-        }
-    }
-
+impl Judge<'_> {
     /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle` is
     /// an index of [`Run::targets`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
@@ -156,13 +151,9 @@ fn reason(what: &str, met: Option<f64>, limit: &str) -> String {
 }
 
 /// The line of an edge through its segments; empty for one that takes no time.
-fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
-    let mut line: Vec<(Vector, f64)> = Vec::new();
-    for segment in edge.segments.iter().filter(|s| s.duration > 0.0) {
-        let joint = usize::from(!line.is_empty());
-        line.extend(polyline(segment).into_iter().skip(joint));
-    }
-    line
+fn edge_line(edge: &ExploredEdge) -> TimedLine {
+    let moving = edge.segments.iter().filter(|s| s.duration > 0.0);
+    one_line(moving.map(polyline))
 }
 
 fn log_kind(rec: &mut Recorder, canvas: &Canvas, kind: Kind, folders: &[EntityPath; 2]) -> Logged {

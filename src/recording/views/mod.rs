@@ -1,6 +1,5 @@
 //! The views of a recording: each file logs the entities of one of them.
 
-mod body;
 pub mod chart;
 pub mod closed_loop;
 pub mod curves;

@@ -206,9 +206,8 @@ mod tests {
     use crate::scenario::{Compliance, Scenario};
 
     fn stand_on(compliance: Compliance) -> pipeline::Run {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        let file = file.join("scenarios/colregs/stand-on.toml");
-        let mut scenario = Scenario::read(&file).expect("valid");
+        let file = "scenarios/colregs/stand-on.toml";
+        let mut scenario = Scenario::read(file.as_ref()).expect("valid");
         scenario.compliance = compliance;
         pipeline::run(scenario)
     }

@@ -85,12 +85,21 @@ pub fn log_sections(
     set: &Obstacle,
     style: &LineStrips2D,
 ) -> Logged {
-    let outlines = canvas
-        .cursor_times
-        .iter()
-        .map(|&t| outline(&set.outer_section(t)));
+    log_outlines(rec, canvas, entity, style, |t| {
+        outline(&set.outer_section(t))
+    })
+}
+
+/// Logs a line at every cursor time.
+pub fn log_outlines(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: EntityPath,
+    style: &LineStrips2D,
+    at: impl Fn(f64) -> Strip,
+) -> Logged {
     let columns = LineStrips2D::update_fields()
-        .with_strips(outlines)
+        .with_strips(canvas.cursor_times.iter().map(|&time| at(time)))
         .columns_of_unit_batches()?;
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
@@ -106,7 +115,7 @@ pub fn outline(polygon: &ConvexPolygon) -> Strip {
 fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
         lines.add(outline(&ship.hull.polygon(&here)), color, 1.0);
@@ -152,27 +161,36 @@ fn log_places(
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
 
+/// The colours of own ships and targets.
+pub fn ship_colors(canvas: &Canvas, own: &[DrawnShip]) -> impl Iterator<Item = Color> {
+    let targets = 0..canvas.scenario.targets.len();
+    let others = targets.map(|index| canvas.target_color(index));
+    own.iter().map(|o| o.color).chain(others)
+}
+
+/// The places of own ships and targets at every cursor time, and their number at each.
+pub fn ship_places(canvas: &Canvas, own: &[DrawnShip]) -> (Vec<Vector>, Vec<usize>) {
+    let targets = &canvas.scenario.targets;
+    let mut places = Vec::new();
+    for &time in &canvas.cursor_times {
+        places.extend(own.iter().map(|o| o.motion.pose_at(time).position));
+        places.extend(targets.iter().map(|t| t.position_at(time)));
+    }
+    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
+    (places, lengths)
+}
+
 /// Logs a dot per ship and cursor time; the layout shows those up to the cursor. The last one marks
 /// the ship at any zoom.
 pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
-    let targets = &canvas.scenario.targets;
-    let entity = path(&[TRAILS]);
-    let others = (0..targets.len()).map(|index| canvas.target_color(index));
-    let colors = own.iter().map(|o| o.color).chain(others);
     let style = Points2D::update_fields()
-        .with_colors(colors)
+        .with_colors(ship_colors(canvas, own))
         .with_radii([style::points(2.4)]);
-    let mut dots = Vec::new();
-    for &time in &canvas.cursor_times {
-        let own = own.iter().map(|o| o.motion.pose_at(time).position);
-        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
-        dots.extend(all.map(flat));
-    }
-    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
+    let (places, lengths) = ship_places(canvas, own);
     let columns = Points2D::update_fields()
-        .with_positions(dots)
+        .with_positions(places.into_iter().map(flat))
         .columns(lengths)?;
-    rec.log_moving(entity, canvas.cursor_column(), &style, columns)
+    rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &style, columns)
 }
 
 /// Logs own ship's hull and speed vector, which turn with it.

@@ -1,11 +1,12 @@
 //! The space-time volume: east, north and, upward, time.
 
-use rerun::{AsComponents, Color, LineStrips3D, Points3D, Transform3D, ViewCoordinates};
+use std::f64::consts::TAU;
 
-use super::body::mesh;
-use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
-use super::ships::DrawnShip;
-use crate::frame::{Vector, to_port};
+use rerun::{AsComponents, Color, LineStrips3D, Mesh3D, Points3D, Transform3D, ViewCoordinates};
+
+use super::chart::{grid_lines, mark_step, multiples, planned_strips};
+use super::ships::{DrawnShip, ship_colors, ship_places};
+use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Canvas, Lines, ViewModel, style};
@@ -52,16 +53,9 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs the sea at t = 0 as a grid, and the time axis with its ticks.
 fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let Window { low, high } = canvas.bounds;
-    let spacing = grid_spacing(canvas);
-    let mut lines = Lines::new();
-    let ground = |east: f64, north: f64| canvas.lifted(Vector::new(east, north), 0.0);
-    for east in multiples(low.x, high.x, spacing) {
-        let ends = [ground(east, low.y), ground(east, high.y)];
-        lines.add(ends, style::GRID, 0.5);
-    }
-    for north in multiples(low.y, high.y, spacing) {
-        let ends = [ground(low.x, north), ground(high.x, north)];
+    let mut lines = Lines::default();
+    for ends in grid_lines(canvas, &canvas.bounds) {
+        let ends = ends.map(|end| canvas.lifted(end, 0.0));
         lines.add(ends, style::GRID, 0.5);
     }
     let text = style::CHART_TEXT;
@@ -78,7 +72,7 @@ fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
             format!("{time:.0} s")
         });
     }
-    let middle = canvas.bounds.center();
+    let (high, middle) = (canvas.bounds.high, canvas.bounds.center());
     for (place, name) in [
         (Vector::new(high.x, middle.y), "E"),
         (Vector::new(middle.x, high.y), "N"),
@@ -119,7 +113,7 @@ pub fn log_body(
     let body = mesh(canvas, set).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * canvas.end) {
         let section = set.outer_section(time);
         let ring = section.vertices().iter().chain(section.vertices().first());
@@ -131,12 +125,62 @@ pub fn log_body(
     rec.log_static(entity, &parts)
 }
 
+/// Directions in which the extreme points of a section are corners of the mesh.
+const SIDES: usize = 48;
+
+/// Sections between the start and the end, as an ellipsoid does not grow on straight lines.
+const STEPS: usize = 8;
+
+/// Times of the sections that the mesh joins, seconds.
+fn times(canvas: &Canvas, set: &Obstacle) -> Vec<f64> {
+    let step = canvas.end / STEPS as f64;
+    let mut times: Vec<f64> = (0..=STEPS).map(|k| step * k as f64).collect();
+    if let Obstacle::Slabs(slabs) = set {
+        let starts = slabs.slabs().iter().map(|slab| slab.start());
+        times.extend(starts.filter(|start| *start < canvas.end));
+    }
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+/// The body from t = 0 to the end, with the last section on top.
+fn mesh(canvas: &Canvas, set: &Obstacle) -> Mesh3D {
+    let normals = (0..SIDES).map(|k| direction(TAU * k as f64 / SIDES as f64));
+    let normals: Vec<Vector> = normals.collect();
+    let times = times(canvas, set);
+    let (mut corners, mut shades) = (Vec::new(), Vec::new());
+    for &time in &times {
+        let section = set.outer_section(time);
+        let extreme = |n: &Vector| {
+            let points = section.vertices().iter().copied();
+            points.max_by(|a, b| n.dot(a).total_cmp(&n.dot(b)))
+        };
+        let ring = normals.iter().filter_map(extreme);
+        corners.extend(ring.map(|point| canvas.lifted(point, time)));
+        shades.extend(normals.iter().map(|n| [n.x as f32, n.y as f32, 0.0]));
+    }
+    let sides = SIDES as u32;
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for base in (1..times.len() as u32).map(|layer| (layer - 1) * sides) {
+        for i in 0..sides {
+            let (here, next) = (base + i, base + (i + 1) % sides);
+            triangles.push([here, next, next + sides]);
+            triangles.push([here, next + sides, here + sides]);
+        }
+    }
+    let top = (times.len() as u32 - 1) * sides;
+    triangles.extend((2..sides).map(|i| [top, top + i - 1, top + i]));
+    Mesh3D::new(corners)
+        .with_vertex_normals(shades)
+        .with_triangle_indices(triangles)
+}
+
 /// Logs the plan, and its shadow on the sea.
 fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let shadow = style::toward_background(style::OWN_SHIP, SHADOW);
     for (pace, points) in planned_strips(model) {
         let risen = points.iter().map(|&(p, t)| model.lifted(p, t));
@@ -150,7 +194,7 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// Logs the desired motion and the expected ones of the targets.
 fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let desired = &canvas.scenario.desired;
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let mut strip: Vec<_> = desired
         .legs()
         .iter()
@@ -162,7 +206,7 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     if canvas.scenario.targets.is_empty() {
         return Ok(());
     }
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         let mut times = vec![0.0];
         times.extend(target.changes().into_iter().filter(|&t| t < canvas.end));
@@ -188,13 +232,10 @@ pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged
     let frame = LineStrips3D::new([frame])
         .with_colors([style::toward_background(style::OWN_SHIP, 0.5)])
         .with_radii([style::points(0.6)]);
-    let targets = &canvas.scenario.targets;
-    let others = (0..targets.len()).map(|index| canvas.target_color(index));
-    let colors = own.iter().map(|o| o.color).chain(others);
-    let others = targets.iter().map(|t| t.name.as_str());
+    let others = canvas.scenario.targets.iter().map(|t| t.name.as_str());
     let names = own.iter().map(|o| o.name.as_str()).chain(others);
     let ships = Points3D::update_fields()
-        .with_colors(colors)
+        .with_colors(ship_colors(canvas, own))
         .with_radii([style::points(5.0)])
         .with_labels(names)
         // names of several own ships would overlap: they are shown when one is pointed at
@@ -206,15 +247,9 @@ pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged
     let rises = Transform3D::update_fields()
         .with_many_translation(canvas.cursor_times.iter().map(|&t| plane(t)))
         .columns_of_unit_batches()?;
-    let mut places = Vec::new();
-    for &time in &canvas.cursor_times {
-        let own = own.iter().map(|o| o.motion.pose_at(time).position);
-        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
-        places.extend(all.map(|p| canvas.lifted(p, 0.0)));
-    }
-    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
+    let (places, lengths) = ship_places(canvas, own);
     let moves = Points3D::update_fields()
-        .with_positions(places)
+        .with_positions(places.into_iter().map(|p| canvas.lifted(p, 0.0)))
         .columns(lengths)?;
     let columns = rises.chain(moves);
     rec.log_moving(entity, canvas.cursor_column(), &style, columns)

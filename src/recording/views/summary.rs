@@ -1,29 +1,13 @@
 //! The verdict in words and figures, as markdown.
 
-use rerun::{MediaType, TextDocument};
-
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
 use crate::document::{PlanDocument, TIME_LINE, headline, plan_lines};
 use crate::evaluation::Evaluation;
 use crate::recording::canvas::{ShownMotion, ViewModel};
-use crate::recording::write::Recorder;
-use crate::recording::{Logged, SUMMARY};
 
-/// Logs the text, which holds at all times.
-pub fn log_summary(
-    rec: &mut Recorder,
-    model: &ViewModel,
-    plan: &PlanDocument,
-    drawn: DrawnGraph,
-) -> Logged {
-    rec.log_static(
-        SUMMARY,
-        &TextDocument::new(text(model, plan, drawn)).with_media_type(MediaType::MARKDOWN),
-    )
-}
-
-fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
+/// The text.
+pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     let lines = plan_lines(plan).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);

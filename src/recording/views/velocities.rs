@@ -1,9 +1,9 @@
 //! The plane of velocities at the cursor: own ship's velocity, velocity obstacles of the hard sets.
 
-use rerun::{AsComponents, LineStrips2D, Points2D, Transform3D};
+use rerun::{AsComponents, Points2D, Transform3D};
 
 use super::chart::Strip;
-use super::ships::{HARD_RADIUS, outline, set_style};
+use super::ships::{HARD_RADIUS, log_outlines, outline, set_style};
 use crate::frame::{Vector, direction};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -31,14 +31,9 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
     for (index, sets) in model.sets.iter().enumerate() {
         let entity = path(&[PLANE, "obstacles", sets.hard.name()]);
         let style = set_style(style::target(index), HARD_RADIUS);
-        let outlines = model
-            .cursor_times
-            .iter()
-            .map(|&t| region_outline(model, &sets.hard, t));
-        let columns = LineStrips2D::update_fields()
-            .with_strips(outlines)
-            .columns_of_unit_batches()?;
-        rec.log_moving(entity, model.cursor_column(), &style, columns)?;
+        log_outlines(rec, model, entity, &style, |t| {
+            region_outline(model, &sets.hard, t)
+        })?;
     }
     let entity = path(&[PLANE, "own_ship"]);
     let style = Points2D::update_fields()
@@ -48,11 +43,10 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
         .with_show_labels(true);
     let own = model.cursor_times.iter().map(|&t| {
         let pose = model.motion.pose_at(t);
-        [flat(pose.ahead() * model.motion.speed_at(t))]
+        flat(pose.ahead() * model.motion.speed_at(t))
     });
-    let places: Vec<[f32; 2]> = own.flatten().collect();
     let columns = Points2D::update_fields()
-        .with_positions(places)
+        .with_positions(own)
         .columns_of_unit_batches()?;
     rec.log_moving(entity, model.cursor_column(), &style, columns)
 }
@@ -60,7 +54,7 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// Logs the axes, and a circle for each of own ship's speeds.
 fn log_axes(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let limit = limit(model);
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {
         lines.add([-axis, axis].map(flat), style::GRID, 0.5);
     }

@@ -4,10 +4,9 @@
 use std::path::Path;
 
 use rerun::components::InterpolationMode::{Linear, StepAfter};
-use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, TextDocument};
+use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
 
 use super::{Recorder, RecordingError, put};
-use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
 use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
@@ -16,7 +15,7 @@ use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
 use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
-use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, SUMMARY, VOLUME, layout, path};
+use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, VOLUME, layout, path};
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Method, Stroke};
 
@@ -133,9 +132,7 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
         }
     }
     log_curves(rec, &canvas, &candidates)?;
-    let text = text(compared.table, &graphs);
-    let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
-    rec.log_static(SUMMARY, &text)?;
+    rec.log_summary(text(compared.table, &graphs))?;
     layout::of_comparison(&canvas)
 }
 
@@ -203,11 +200,8 @@ fn log_way(rec: &mut Recorder, canvas: &Canvas, candidate: &Candidate, order: f3
     let ShownMotion::Planned(trajectory) = own.motion else {
         return Ok(());
     };
-    let mut line: Vec<(Vector, f64)> = Vec::new();
-    for (_, strip) in chart::strips(canvas, trajectory) {
-        let joint = usize::from(!line.is_empty());
-        line.extend(strip.into_iter().skip(joint));
-    }
+    let strips = chart::strips(canvas, trajectory).into_iter();
+    let line = chart::one_line(strips.map(|(_, strip)| strip));
     let radius = style::points((RADIUS * style.width) as f32);
     let entity = |view: &str| -> EntityPath { path(&[view, METHODS, &own.name, "way"]) };
     let on_chart = LineStrips2D::new([line.iter().map(|&(p, _)| flat(p))])
@@ -258,13 +252,10 @@ fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> 
 }
 
 fn text(table: &str, graphs: &[String]) -> String {
-    let mut parts = vec![table.to_owned()];
-    parts.push(
-        "The plots name the colours; point at a line for its name. Grey sets are those of the \
-         scenario. A method that avoids others (ellipses around them, level sets of an accepted \
-         risk) has them in its colour."
-            .to_owned(),
-    );
+    let key = "The plots name the colours; point at a line for its name. Grey sets are those of the \
+               scenario. A method that avoids others (ellipses around them, level sets of an \
+               accepted risk) has them in its colour.";
+    let mut parts = vec![table.to_owned(), key.to_owned()];
     if !graphs.is_empty() {
         parts.push(format!(
             "Explored graphs are hidden, under `explored` on the chart and in the volume ({}). \

@@ -1,9 +1,11 @@
 //! Collects the chunks of a store, in the order in which they are logged.
 
-use crate::recording::Logged;
+use crate::recording::{Logged, SUMMARY};
 use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::log::{Chunk, ChunkId};
-use rerun::{AsComponents, EntityPath, SerializedComponentColumn, TimeColumn};
+use rerun::{
+    AsComponents, EntityPath, MediaType, SerializedComponentColumn, TextDocument, TimeColumn,
+};
 
 /// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
 /// environment variables that redirect it; this has none, so that the same run makes the same
@@ -22,6 +24,12 @@ impl Recorder {
     ) -> Logged {
         let columns = parts.as_serialized_batches().into_iter();
         self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
+    }
+
+    /// Logs the summary, a text in markdown.
+    pub fn log_summary(&mut self, text: String) -> Logged {
+        let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
+        self.log_static(SUMMARY, &text)
     }
 
     /// Logs `style`, which holds at all times, and `columns` with a row per time.

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use rerun::{MediaType, TextDocument, TextLog, TextLogLevel, TimeColumn};
+use rerun::{TextLog, TextLogLevel, TimeColumn};
 
 use super::{Recorder, RecordingError, encoding_error, put};
-use crate::document::{self, PlanDocument, SimulationDocument};
+use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, ships};
-use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
+use crate::recording::{EVENTS, Logged, SIMULATION, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 
 /// An alarm goes on where it is raised again within this many times between plans.
@@ -84,8 +84,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     } = *simulated;
     let model = ClosedLoop::new(scenario, document, plans);
     let text = format!("```\n{text}\n```\n\n{}", key(&model));
-    let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
-    rec.log_static(SUMMARY, &text)?;
+    rec.log_summary(text)?;
     land::log_outlines(rec, &model.canvas)?;
     closed_loop::log_chart(rec, &model)?;
     closed_loop::log_curves(rec, &model)?;
@@ -189,10 +188,9 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
 /// The alarms; one that goes on from plan to plan is there once.
 fn alarms(document: &SimulationDocument) -> impl Iterator<Item = Event> {
     let goes_on = GOES_ON * document.settings.replan_s;
-    let begins = move |(index, alarm): &(usize, &document::AlarmDocument)| {
+    let begins = move |(index, alarm): &(usize, &AlarmDocument)| {
         let mut earlier = document.alarms[..*index].iter().rev();
-        let same =
-            |a: &&document::AlarmDocument| (&a.alarm, &a.target) == (&alarm.alarm, &alarm.target);
+        let same = |a: &&AlarmDocument| (&a.alarm, &a.target) == (&alarm.alarm, &alarm.target);
         earlier
             .find(same)
             .is_none_or(|last| alarm.t_s - last.t_s > goes_on)

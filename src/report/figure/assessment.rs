@@ -1,10 +1,9 @@
 //! Figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
-use super::outline::{curve, mark};
-use super::panel::AREA;
+use super::outline::mark;
+use super::panel::{AREA, window_around};
 use super::sections::{seconds, sections_beside};
-use super::window::window_around;
 use super::{Figure, Panel, Stroke};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
@@ -34,7 +33,7 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
     let last = times.iter().copied().fold(0.0, f64::max);
     let track = [start, start + velocity * last];
     let mut sections = sections_beside("Sections", targets, times, &track);
-    sections.plots.push(curve(&track, false, OWN));
+    sections.curve(&track, false, OWN);
     sections.line_key("own course held", OWN);
     name(&mut sections, situation);
     let window = sections.window();
@@ -57,7 +56,7 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
         let title = format!("Risk at {} s", seconds(*time));
         let mut panel = risk_panel(&title, targets, *time, window);
         let now = start + velocity * *time;
-        panel.plots.push(curve(&[start, now], false, OWN_ON_FIELD));
+        panel.curve(&[start, now], false, OWN_ON_FIELD);
         panel.plots.push(mark(now, field::OWN));
         panel.point_key("own ship, course held", field::OWN);
         panel

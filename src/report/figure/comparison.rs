@@ -1,19 +1,17 @@
 //! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
 //! risk.
 
-use super::outline::{area, curve, marks, sampled_boundary};
-use super::path_time::{ProfileLine, path_time_panel};
+use super::outline::{marks, sampled_boundary};
+use super::panel::window_around;
+use super::path_time::run_panel;
 use super::plan::{DESIRED, LAND, land_areas, moments};
 use super::sections::PLAN;
-use super::window::window_around;
 use super::{Figure, Panel, Stroke};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
 use crate::geometry::Window;
-use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, Method};
+use crate::study::compare::{Candidate, Entry, Method};
 
 /// Colour of the targets' sets.
 const SETS: &str = "#888888";
@@ -46,30 +44,16 @@ pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) ->
 
 /// Builds the path-time diagrams of the candidates that have one.
 pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
-    entries
-        .iter()
-        .filter_map(|entry| {
-            let run = entry.run.as_deref()?;
-            Some((entry, run, run.planned.path_time.as_deref()?))
-        })
-        .map(|(entry, run, diagram)| {
-            let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
-            let method = entry.candidate.method;
-            let line = ProfileLine {
-                label: match run.planned.outcome.plan() {
-                    Some(_) => named(method, std::slice::from_ref(entry)),
-                    None => "no plan".to_owned(),
-                },
-                diagram,
-                stroke: Stroke::of(method),
-            };
-            let title = match entry.candidate.max_risk {
-                risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
-                _ => format!("Path and time: {method}"),
-            };
-            path_time_panel(&title, &names, &[line])
-        })
-        .collect()
+    let diagram = |entry: &Entry| {
+        let Candidate { method, max_risk } = entry.candidate;
+        let title = match max_risk {
+            risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
+            _ => format!("Path and time: {method}"),
+        };
+        let label = named(method, std::slice::from_ref(entry));
+        run_panel(&title, entry.run.as_deref()?, &label, Stroke::of(method))
+    };
+    entries.iter().filter_map(diagram).collect()
 }
 
 fn is_sweep(entries: &[Entry]) -> bool {
@@ -141,15 +125,12 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for boundary in &sets {
-        let polygon = ConvexPolygon::hull(boundary).ok();
-        panel
-            .plots
-            .extend(polygon.and_then(|p| area(&p, SETS, 0.18)));
+        panel.fill_hull(boundary, SETS, 0.18);
     }
-    panel.plots.push(curve(&waypoints, false, DESIRED));
+    panel.curve(&waypoints, false, DESIRED);
     // the first row on top
     for (stroke, way) in ways.iter().rev() {
-        panel.plots.push(curve(way, false, *stroke));
+        panel.curve(way, false, *stroke);
     }
     keys(&mut panel, entries);
     panel.line_key("desired", DESIRED);
@@ -192,7 +173,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let title = format!("{}: distance from the nearest target", scenario.title);
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
-        panel.plots.push(curve(line, false, *stroke));
+        panel.curve(line, false, *stroke);
     }
     panel
 }
@@ -231,7 +212,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut panel = Panel::free(title, axes, window);
     for (method, line) in lines.iter().rev() {
         let stroke = Stroke::of(*method);
-        panel.plots.push(curve(line, false, stroke));
+        panel.curve(line, false, stroke);
         panel.plots.push(marks(line, stroke.colour));
     }
     for (method, line) in &lines {
@@ -261,20 +242,17 @@ fn cost_within_risk(entry: &Entry) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::planner::path_time::PathTimePlanner;
     use crate::planner::space_time::SpaceTimePlanner;
     use crate::planner::{Planner, SearchKind};
-    use crate::study::compare::Candidate;
     use crate::target::Representation;
 
     /// In the head-on scenario no path is clear at any accepted risk.
     #[test]
     fn what_goes_beyond_the_risk_has_no_point() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let scenario = Scenario::read(&root.join("scenarios/colregs/head-on.toml")).expect("valid");
+        let read = |name: &str| Scenario::read(name.as_ref()).expect(name);
+        let scenario = read("scenarios/colregs/head-on.toml");
         let planners: [&dyn Planner; 2] = [&SpaceTimePlanner, &PathTimePlanner];
         let entries: Vec<Entry> = planners
             .into_iter()
@@ -294,7 +272,7 @@ mod tests {
         };
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
         // a plan that does not arrive has no point either
-        let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
+        let forces = read("scenarios/forces/give-way.toml");
         let along = Candidate {
             max_risk: 0.2,
             ..entries[2].candidate

@@ -5,12 +5,11 @@
 use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
-use super::outline::{Approaching, area, curve, mark, outer_velocities_within, sampled_boundary};
+use super::outline::{Approaching, mark, outer_velocities_within, sampled_boundary};
 use super::sections::PLAN;
 use super::{Panel, Stroke};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
-use crate::geometry::Window;
+use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// Number of bands of a risk field.
@@ -52,16 +51,12 @@ pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) 
         };
         for target in targets {
             let boundary = sampled_boundary(&target.at_risk(risk).section(time));
-            let set = ConvexPolygon::hull(&boundary).ok();
-            let colour = ColorMap::Viridis.map(shown);
-            panel
-                .plots
-                .extend(set.and_then(|set| area(&set, &colour, 1.0)));
+            panel.fill_hull(&boundary, &ColorMap::Viridis.map(shown), 1.0);
         }
     }
     for target in targets {
         let boundary = sampled_boundary(&target.section(time));
-        panel.plots.push(curve(&boundary, true, BOUNDARY));
+        panel.curve(&boundary, true, BOUNDARY);
     }
     panel
 }
@@ -102,23 +97,18 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     let top = step * count as f64;
     panel.plots.push(scale(window, top, "dCPA [m]"));
     let far = ColorMap::Viridis.map(1.0 - 0.5 / count as f64);
-    panel.plots.extend(area(
-        &ConvexPolygon::rectangle(Vector::zeros(), limit, limit),
-        &far,
-        1.0,
-    ));
+    let everywhere = ConvexPolygon::rectangle(Vector::zeros(), limit, limit);
+    panel.fill(&everywhere, &far, 1.0);
     for level in (0..count).rev() {
         for target in targets {
             let distance = step * level as f64;
             for set in outer_velocities_within(target, approach, distance, limit) {
                 if level > 0 {
                     let colour = ColorMap::Viridis.map((level as f64 - 0.5) / count as f64);
-                    panel.plots.extend(area(&set, &colour, 1.0));
+                    panel.fill(&set, &colour, 1.0);
                 } else {
-                    panel.plots.extend(area(&set, BOUNDARY.colour, 1.0));
-                    panel
-                        .plots
-                        .push(curve(set.vertices(), true, VELOCITY_OBSTACLE));
+                    panel.fill(&set, BOUNDARY.colour, 1.0);
+                    panel.curve(set.vertices(), true, VELOCITY_OBSTACLE);
                 }
             }
         }

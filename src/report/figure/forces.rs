@@ -1,7 +1,6 @@
 //! Velocities and forces over time of a plan under forces.
 
-use super::outline::curve;
-use super::window::window_around;
+use super::panel::window_around;
 use super::{Panel, Stroke};
 use crate::frame::{Vector, clockwise_deg_per_s};
 use crate::geometry::Window;
@@ -69,7 +68,7 @@ fn over_time(
     let axis = format!("{title} [{unit}]");
     let mut panel = Panel::free(title.to_owned(), ["Time [s]", &axis], window);
     for ((label, stroke, _), points) in quantities.iter().zip(&curves) {
-        panel.plots.push(curve(points, false, *stroke));
+        panel.curve(points, false, *stroke);
         panel.line_key(label, *stroke);
     }
     panel

@@ -14,7 +14,6 @@ mod plan;
 mod render;
 mod sections;
 mod simulation;
-mod window;
 
 pub use assessment::assessment_figure;
 pub use comparison::comparison_figure;

@@ -6,9 +6,9 @@ use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
 use super::Stroke;
-use super::window::with_ratio;
+use super::outline::{area, curve};
 use crate::frame::Vector;
-use crate::geometry::Window;
+use crate::geometry::{ConvexPolygon, Window};
 
 /// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
@@ -95,6 +95,23 @@ impl Panel {
         });
     }
 
+    /// Draws a filled polygon; without effect if its area is zero.
+    pub(super) fn fill(&mut self, polygon: &ConvexPolygon, colour: &str, opacity: f64) {
+        self.plots.extend(area(polygon, colour, opacity));
+    }
+
+    /// Fills the hull of points.
+    pub(super) fn fill_hull(&mut self, points: &[Vector], colour: &str, opacity: f64) {
+        if let Ok(hull) = ConvexPolygon::hull(points) {
+            self.fill(&hull, colour, opacity);
+        }
+    }
+
+    /// Draws a polyline, closed on request.
+    pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
+        self.plots.push(curve(points, closed, stroke));
+    }
+
     /// Adds a text at a position.
     pub(super) fn note(&mut self, text: &str, at: Vector) {
         let note = TextAnnotation::new(text, at.x, at.y).with_font_size(NOTE_SIZE);
@@ -169,4 +186,22 @@ impl Panel {
         }
         layout
     }
+}
+
+/// Bounding box of points, with a margin of `share` of its longer side. Without finite points, a
+/// window of size 1 around the origin.
+pub(super) fn window_around(points: impl IntoIterator<Item = Vector>, share: f64) -> Window {
+    let points: Vec<Vector> = points.into_iter().collect();
+    let finite = Window::around(&points).filter(|window| window.size().norm().is_finite());
+    let window = finite.unwrap_or_else(|| Window::at(Vector::zeros()).grown(0.5));
+    let side = window.size().max();
+    window.grown(if side > 0.0 { share * side } else { 0.5 })
+}
+
+/// Widens a window about its centre until width over height is `ratio`.
+fn with_ratio(window: Window, ratio: f64) -> Window {
+    let size = window.size();
+    let half = Vector::new(size.x.max(size.y * ratio), size.y.max(size.x / ratio)) * 0.5;
+    let middle = window.center();
+    Window::new(middle - half, middle + half)
 }

@@ -1,12 +1,11 @@
 //! Path-time diagram: distance along the path horizontally, time vertically, paper figures 5b and
 //! 6b.
 
-use super::outline::{area, curve};
 use super::{Panel, Stroke};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
 use crate::geometry::Window;
-use crate::obstacle::PathTime;
+use crate::obstacle::{PathTime, SpaceTimeObstacle};
+use crate::pipeline::Run;
 use crate::planner::path_time::PathTimeDiagram;
 
 /// Stroke at joints of legs.
@@ -33,6 +32,18 @@ pub struct ProfileLine<'a> {
     pub diagram: &'a PathTimeDiagram,
     /// Stroke of the profile.
     pub stroke: Stroke,
+}
+
+/// Draws the diagram of a run, if it has one; `planned` is the label of its profile.
+pub(super) fn run_panel(title: &str, run: &Run, planned: &str, stroke: Stroke) -> Option<Panel> {
+    let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
+    let plan = run.planned.outcome.plan();
+    let line = ProfileLine {
+        label: plan.map_or("no plan", |_| planned).to_owned(),
+        diagram: run.planned.path_time.as_deref()?,
+        stroke,
+    };
+    Some(path_time_panel(title, &names, &[line]))
 }
 
 /// Draws the obstacles of the first diagram, filled, and all profiles. `names` are the obstacle
@@ -62,23 +73,19 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     for seen in diagram.iter().flat_map(|d| &d.obstacles) {
         let corners: Vec<Vector> = seen.corners.iter().map(point).collect();
         let colour = target_colour(seen.obstacle);
-        let polygon = ConvexPolygon::hull(&corners).ok();
-        panel
-            .plots
-            .extend(polygon.and_then(|p| area(&p, colour, 0.35)));
-        let outline = Stroke::solid(colour, 1.0);
-        panel.plots.push(curve(&corners, true, outline));
+        panel.fill_hull(&corners, colour, 0.35);
+        panel.curve(&corners, true, Stroke::solid(colour, 1.0));
         if corners.iter().any(|c| c.y < top) {
             named.push(seen.obstacle);
         }
     }
     for leg in diagram.iter().flat_map(|d| &d.legs).skip(1) {
         let line = [Vector::new(leg.begin, 0.0), Vector::new(leg.begin, top)];
-        panel.plots.push(curve(&line, false, JOINT));
+        panel.curve(&line, false, JOINT);
     }
     for line in profiles {
         let points: Vec<Vector> = line.diagram.profile.iter().map(point).collect();
-        panel.plots.push(curve(&points, false, line.stroke));
+        panel.curve(&points, false, line.stroke);
         panel.line_key(&line.label, line.stroke);
     }
     named.sort_unstable();

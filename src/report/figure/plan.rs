@@ -5,9 +5,9 @@ use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
 use super::outline::{area, curve, mark, sampled_boundary};
-use super::path_time::{ProfileLine, path_time_panel, target_colour};
-use super::sections::{PLAN, seconds, sections_beside};
-use super::window::window_around;
+use super::panel::window_around;
+use super::path_time::{run_panel, target_colour};
+use super::sections::{PLAN, seconds_list, sections_beside};
 use super::{Figure, Panel, Stroke};
 use crate::document;
 use crate::evaluation::Safety;
@@ -68,21 +68,12 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
         panels.extend(force_panels(motion));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {
-        let names: Vec<&str> = run.obstacles().map(|o| o.name()).collect();
-        let line = ProfileLine {
-            label: match plan {
-                Some(_) => "planned".to_owned(),
-                None => "no plan".to_owned(),
-            },
-            diagram,
-            stroke: PLANNED,
-        };
         let title = if scenario.alternatives.is_empty() {
             "Path and time".to_owned()
         } else {
             format!("Path and time: {}", document::paths(diagram))
         };
-        panels.push(path_time_panel(&title, &names, &[line]));
+        panels.extend(run_panel(&title, run, "planned", PLANNED));
     }
     panels
 }
@@ -90,7 +81,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
 /// Draws sections of obstacles at `times` in seconds, and a path with waypoints in metres.
 pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Vector]) -> Panel {
     let mut panel = sections_beside(title, obstacles, times, path);
-    panel.plots.push(curve(path, false, PLANNED));
+    panel.curve(path, false, PLANNED);
     panel.line_key("path", PLANNED);
     panel
 }
@@ -174,37 +165,31 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
     for (index, k, boundary) in &areas {
         let colour = target_colour(*index);
         let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / traffic.times.len() as f64);
-        let polygon = ConvexPolygon::hull(boundary).ok();
-        panel
-            .plots
-            .extend(polygon.and_then(|p| area(&p, colour, opacity)));
+        panel.fill_hull(boundary, colour, opacity);
         let outline = Stroke {
             dashed: traffic.dashed && *k > 0,
             ..Stroke::solid(colour, 1.0)
         };
-        panel.plots.push(curve(boundary, true, outline));
+        panel.curve(boundary, true, outline);
     }
     for path in &scenario.alternatives {
-        panel.plots.push(curve(path, false, ALTERNATIVE));
+        panel.curve(path, false, ALTERNATIVE);
     }
     panel.plots.extend(traffic.others);
-    panel.plots.push(curve(&waypoints, false, DESIRED));
+    panel.curve(&waypoints, false, DESIRED);
     if !traffic.track.is_empty() {
-        panel.plots.push(curve(&traffic.track, false, PLANNED));
+        panel.curve(&traffic.track, false, PLANNED);
         for at in &traffic.own {
             panel.plots.push(mark(*at, PLANNED.colour));
         }
-        let list: Vec<String> = traffic.times.iter().map(|t| seconds(*t)).collect();
         panel.line_key(sailed, PLANNED);
-        panel.point_key(
-            &format!("own ship, and {all}, at {} s", list.join(", ")),
-            PLANNED.colour,
-        );
+        let list = seconds_list(&traffic.times);
+        let label = format!("own ship, and {all}, at {list} s");
+        panel.point_key(&label, PLANNED.colour);
     }
     panel.line_key("desired", DESIRED);
     if land.is_some() {
-        let stroke = Stroke::solid(LAND, 3.0);
-        panel.line_key("land", stroke);
+        panel.line_key("land", Stroke::solid(LAND, 3.0));
     }
     for (index, name) in traffic.targets.iter().enumerate() {
         let stroke = Stroke::solid(target_colour(index), 3.0);

@@ -1,11 +1,10 @@
 //! Figures of target sets: the two sets, and sections over time.
 
-use super::outline::{area, curve, sampled_boundary};
-use super::window::window_around;
+use super::outline::sampled_boundary;
+use super::panel::window_around;
 use super::{Panel, Stroke};
 use crate::frame::Vector;
-use crate::geometry::Window;
-use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::Obstacle;
 
 /// Axis labels of a chart.
@@ -35,12 +34,8 @@ pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
     let window = window_around(boundary.iter().copied(), 0.25);
     let mut panel = Panel::plan(title.to_owned(), axes, window);
-    panel.plots.extend(
-        ConvexPolygon::hull(&boundary)
-            .ok()
-            .and_then(|p| area(&p, INITIAL.colour, 0.25)),
-    );
-    panel.plots.push(curve(&boundary, true, INITIAL));
+    panel.fill_hull(&boundary, INITIAL.colour, 0.25);
+    panel.curve(&boundary, true, INITIAL);
     panel
 }
 
@@ -62,13 +57,13 @@ pub(super) fn sections_beside(
     let shown = covered.iter().flatten().chain(others).copied();
     let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, MARGIN));
     for boundary in &covered {
-        panel.plots.push(curve(boundary, true, COVERED));
+        panel.curve(boundary, true, COVERED);
     }
     for target in targets {
         for (i, time) in times.iter().enumerate().rev() {
             let stroke = if i == 0 { INITIAL } else { LATER };
             let boundary = sampled_boundary(&target.section(*time));
-            panel.plots.push(curve(&boundary, true, stroke));
+            panel.curve(&boundary, true, stroke);
         }
     }
     if let Some((first, later)) = times.split_first()
@@ -76,8 +71,7 @@ pub(super) fn sections_beside(
     {
         panel.line_key(&format!("section at {} s", seconds(*first)), INITIAL);
         if !later.is_empty() {
-            let list: Vec<String> = later.iter().map(|t| seconds(*t)).collect();
-            panel.line_key(&format!("sections at {} s", list.join(", ")), LATER);
+            panel.line_key(&format!("sections at {} s", seconds_list(later)), LATER);
         }
         panel.line_key(&format!("covered from 0 to {} s", seconds(last)), COVERED);
     }
@@ -112,12 +106,12 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
     let axes = ["East [m]", "Time [s]"];
     let mut panel = Panel::free(title.to_owned(), axes, window);
     for boundary in [&west, &east] {
-        panel.plots.push(curve(boundary, false, COVERED));
+        panel.curve(boundary, false, COVERED);
     }
     for (i, time) in times.iter().enumerate().rev() {
         let stroke = if i == 0 { INITIAL } else { LATER };
         let ends = reach(*time).map(|x| Vector::new(x, *time));
-        panel.plots.push(curve(&ends, false, stroke));
+        panel.curve(&ends, false, stroke);
     }
     panel
 }
@@ -152,4 +146,10 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
 /// Formats seconds, rounded to a tenth.
 pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
+}
+
+/// [`seconds`] of each time, with commas between them.
+pub(super) fn seconds_list(times: &[f64]) -> String {
+    let list: Vec<String> = times.iter().map(|time| seconds(*time)).collect();
+    list.join(", ")
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::comparison::{comparison_grid, remarks};
+use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
     Figure, Panel, comparison_panels, diagram_panels, plan_panels, simulation_panel,
 };
@@ -19,11 +19,11 @@ use super::simulation::{
     targets_grid,
 };
 use super::table::{Grid, Styled, Tone, verdict};
-use super::write::{WriteError, write_atomically};
 use crate::document::{
     PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteRunDocument, TIME_LINE,
     headline, plan_lines,
 };
+use crate::output::{WriteError, write_atomically};
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use crate::study::compare::Entry;
@@ -67,16 +67,12 @@ impl HtmlReport {
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
         self.row(SuiteRunDocument::of(file, plan, Vec::new()));
-        let lines = plan_lines(plan).into_iter();
-        let lines = lines.filter(|(name, _)| *name != TIME_LINE);
         let figures = self.draw(subject, plan_panels(run));
         let legs = legs_grid(plan);
         self.section(html! {
             h2 { (headline(plan)) }
             (origin(subject))
-            dl {
-                @for (name, value) in lines { dt { (name) } dd { (value) } }
-            }
+            (named_lines(plan_lines(plan), TIME_LINE))
             (figures)
             @if !legs.rows.is_empty() { (table(legs, &[])) }
         });
@@ -101,8 +97,7 @@ impl HtmlReport {
         scenario: &Scenario,
         entries: &[Entry],
     ) {
-        let sweep = (entries.iter()).any(|e| e.candidate.max_risk != entries[0].candidate.max_risk);
-        let mut panels = comparison_panels(scenario, entries, sweep);
+        let mut panels = comparison_panels(scenario, entries, is_sweep(&compared.entries));
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
         let remarks = remarks(compared);
@@ -125,16 +120,12 @@ impl HtmlReport {
         scenario: &Scenario,
         simulation: &SimulationDocument,
     ) {
-        let lines = conduct_lines(simulation).into_iter();
-        let lines = lines.filter(|(name, _)| *name != TIMES);
         let figures = self.draw(subject, vec![simulation_panel(scenario, simulation)]);
         let targets = &simulation.targets;
         self.section(html! {
             h2 { (simulation_headline(simulation)) }
             (origin(subject))
-            dl {
-                @for (name, value) in lines { dt { (name) } dd { (value) } }
-            }
+            (named_lines(conduct_lines(simulation), TIMES))
             (figures)
             @if !targets.is_empty() {
                 h3 { "Targets" }
@@ -224,6 +215,16 @@ fn origin(subject: &Subject) -> Markup {
             @for (name, address) in &subject.links {
                 " · " a href=(address) { (name) }
             }
+        }
+    }
+}
+
+/// Renders named lines without that of the planning time.
+fn named_lines(lines: Vec<(&'static str, String)>, time: &str) -> Markup {
+    let lines = lines.into_iter().filter(|(name, _)| *name != time);
+    html! {
+        dl {
+            @for (name, value) in lines { dt { (name) } dd { (value) } }
         }
     }
 }

@@ -27,12 +27,15 @@ pub(super) const HORIZON_ROUTES: f64 = 2.0;
 /// Values that a scenario needs and imported files do not have. Defaults as in `docs/formats.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
-    speed_spread: f64,
-    course_spread: f64,
+    /// m/s.
+    pub(super) speed_spread: f64,
+    /// Radians.
+    pub(super) course_spread: f64,
     safety_margin: Option<f64>,
     length: Option<f64>,
     beam: Option<f64>,
-    variants: bool,
+    /// True if variants are read too.
+    pub(super) variants: bool,
 }
 
 impl Default for Assumed {
@@ -106,21 +109,6 @@ impl Assumed {
     pub fn with_variants(mut self, variants: bool) -> Self {
         self.variants = variants;
         self
-    }
-
-    /// True if variants are read too.
-    pub fn variants(&self) -> bool {
-        self.variants
-    }
-
-    /// m/s.
-    pub(super) fn speed_spread(&self) -> f64 {
-        self.speed_spread
-    }
-
-    /// Radians.
-    pub(super) fn course_spread(&self) -> f64 {
-        self.course_spread
     }
 
     /// Metres, for an own ship of this length.

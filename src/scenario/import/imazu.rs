@@ -3,7 +3,7 @@
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
 use super::track::Track;
 use crate::frame::{Pose, Side, Vector, heading_from_course_deg, wrap};
-use crate::input::{Fault, Faults, Field};
+use crate::input::{Fault, Faults, Field, every};
 use crate::scenario::limits;
 
 /// Cases of one file.
@@ -49,8 +49,7 @@ fn own(field: &Field) -> Option<Own> {
     let goal = point(field, ["goal_east_m", "goal_north_m"]);
     let (start, goal, speed) = (start?, goal?, speed?);
     if !((goal - start).norm() >= limits::LENGTH.low) {
-        field.fault("a goal where own ship is", "a goal ahead of it");
-        return None;
+        return field.reject("a goal where own ship is", "a goal ahead of it");
     }
     Some(Own {
         pose: Pose::new(start, heading?),
@@ -71,13 +70,8 @@ fn case(field: &Field, own: &Own) -> Result<Situation, Vec<Fault>> {
     let others = field
         .require("targets", "a list of ships")
         .and_then(|list| list.list(0..=limits::SHIPS, "ships"))
-        .map(|list| {
-            let ships = list.iter().enumerate();
-            let ships: Vec<_> = ships.map(|(index, field)| ship(index, field)).collect();
-            ships.into_iter().collect::<Option<Vec<_>>>()
-        });
-    let (Some(id), Some(Some(others)), true) = (id.map(str::trim), others, faults.is_empty())
-    else {
+        .and_then(|list| every(list.iter().enumerate().map(ship)));
+    let (Some(id), Some(others), true) = (id.map(str::trim), others, faults.is_empty()) else {
         return Err(faults.take());
     };
     Ok(Situation {
@@ -112,7 +106,7 @@ fn declared(field: &Field, own: &Own) -> Declared {
     }
 }
 
-fn ship(index: usize, field: &Field) -> Option<Other> {
+fn ship((index, field): (usize, &Field)) -> Option<Other> {
     let start = point(field, ["east_m", "north_m"]);
     let heading = course(field);
     let speed = field.required_number("speed_mps", limits::SHIP_SPEED);

@@ -75,7 +75,7 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
         return Ok(Contents::Situations(vec![situation]));
     }
     if has("cases") || has("own_ship") {
-        let situations = imazu::situations(&root, &faults, assumed.variants())?;
+        let situations = imazu::situations(&root, &faults, assumed.variants)?;
         return Ok(Contents::Situations(situations));
     }
     if text_at("format").starts_with("searoom-") || (has("runs") && has("summary")) {

@@ -25,8 +25,15 @@ impl Situation {
     /// The scenario with its assumptions. Faults name the field of the imported file, or of the
     /// scenario file if only the whole is wrong.
     pub fn scenario(&self, assumed: &Assumed) -> Result<Imported, Vec<Fault>> {
-        let mut writing = Writing::new(self, assumed);
-        writing.situation();
+        let mut writing = Writing {
+            assumed,
+            text: String::new(),
+            notes: self.notes.clone(),
+            faults: Vec::new(),
+            sizeless: Vec::new(),
+            taken: None,
+        };
+        writing.situation(self);
         let Writing {
             text,
             mut notes,
@@ -56,7 +63,6 @@ impl Situation {
 
 /// The text so far.
 struct Writing<'a> {
-    situation: &'a Situation,
     assumed: &'a Assumed,
     text: String,
     notes: Vec<String>,
@@ -66,25 +72,12 @@ struct Writing<'a> {
     taken: Option<Hull>,
 }
 
-impl<'a> Writing<'a> {
-    fn new(situation: &'a Situation, assumed: &'a Assumed) -> Self {
-        Self {
-            situation,
-            assumed,
-            text: String::new(),
-            notes: situation.notes.clone(),
-            faults: Vec::new(),
-            sizeless: Vec::new(),
-            taken: None,
-        }
-    }
-
+impl Writing<'_> {
     fn add(&mut self, text: &str) {
         self.text += text;
     }
 
-    fn situation(&mut self) {
-        let situation = self.situation;
+    fn situation(&mut self, situation: &Situation) {
         let own = &situation.own;
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
         let name = quoted(&situation.name);
@@ -99,12 +92,14 @@ impl<'a> Writing<'a> {
             return;
         };
         self.own_ship(own, hull);
+        let margin = self.assumed.safety_margin(hull.length);
+        // from a set to own ship's centre on any heading
+        let clearance = |margin: f64| hull.half_diagonal() + margin;
         for other in &situation.others {
             match other {
                 Other::Ship { name, hull, track } => {
                     if let Some(theirs) = self.hull(name, hull) {
-                        let clearance = hull_clearance(&hull_of(own, self.assumed), self.assumed);
-                        self.ship(name, theirs, track, clearance, horizon);
+                        self.ship(name, theirs, track, clearance(margin), horizon);
                     }
                 }
                 Other::Fixed {
@@ -112,13 +107,8 @@ impl<'a> Writing<'a> {
                     shape,
                     ground,
                 } => {
-                    let own = hull_of(own, self.assumed);
-                    let margin = if *ground {
-                        0.0
-                    } else {
-                        self.assumed.safety_margin(own.length)
-                    };
-                    let disc = outer_disc(own.half_diagonal() + margin, 0.0);
+                    let margin = if *ground { 0.0 } else { margin };
+                    let disc = outer_disc(clearance(margin), 0.0);
                     let set = vertices(&shape.minkowski_sum(&disc));
                     self.add(&format!(
                         "\n[[targets]]\nname = {}\ninitial_set = {{ vertices_m = {set} }}\n\
@@ -161,38 +151,29 @@ impl<'a> Writing<'a> {
 
     /// The given or assumed hull; a fault if there is none.
     fn hull(&mut self, whose: &str, said: &GivenHull) -> Option<Hull> {
-        match said {
-            GivenHull::Known(hull) => Some(*hull),
-            GivenHull::NotInFormat => {
-                let hull = self.assumed.usual_hull();
-                self.assume(whose, hull);
-                Some(hull)
-            }
-            GivenHull::Missing(path) => match self.assumed.asked_hull() {
-                Some(hull) => {
-                    self.assume(whose, hull);
-                    Some(hull)
-                }
-                None => {
+        let hull = match said {
+            GivenHull::Known(hull) => return Some(*hull),
+            GivenHull::NotInFormat => self.assumed.usual_hull(),
+            GivenHull::Missing(path) => {
+                let asked = self.assumed.asked_hull();
+                if asked.is_none() {
                     let allowed = "the length and the breadth of the ship; or --length-m and \
                                    --beam-m for those without";
                     self.faults
                         .push(Fault::new(path.as_str(), "nothing", allowed));
-                    None
                 }
-            },
-        }
-    }
-
-    fn assume(&mut self, whose: &str, hull: Hull) {
+                asked?
+            }
+        };
         self.sizeless.push(whose.to_owned());
         self.taken = Some(hull);
+        Some(hull)
     }
 
     fn ship(&mut self, name: &str, hull: Hull, track: &Track, clearance: f64, horizon: f64) {
         let spread = Spread {
-            speed: self.assumed.speed_spread(),
-            course: self.assumed.course_spread(),
+            speed: self.assumed.speed_spread,
+            course: self.assumed.course_spread,
         };
         self.add(&format!("\n[[targets]]\nname = {}\n", quoted(name)));
         if let Some(steady) = track.steady(&spread) {
@@ -208,7 +189,7 @@ impl<'a> Writing<'a> {
         } else {
             // explicit sets have no hull: the initial set contains both hulls and the margin
             let around = outer_disc(hull.half_diagonal() + clearance, 0.0);
-            let initial = vertices(&around.translated(track.start()));
+            let initial = vertices(&around.translated(track.start));
             self.add(&format!(
                 "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = [\n"
             ));
@@ -237,18 +218,6 @@ impl<'a> Writing<'a> {
     }
 }
 
-fn hull_of(own: &Own, assumed: &Assumed) -> Hull {
-    match own.hull {
-        GivenHull::Known(hull) => hull,
-        GivenHull::NotInFormat | GivenHull::Missing(_) => assumed.usual_hull(),
-    }
-}
-
-/// Metres between a set and own ship's centre on any heading.
-fn hull_clearance(own: &Hull, assumed: &Assumed) -> f64 {
-    own.half_diagonal() + assumed.safety_margin(own.length)
-}
-
 /// A TOML string: TOML has the escapes of JSON.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
@@ -267,10 +236,7 @@ fn under_way(pose: &Pose, speed: f64) -> String {
 }
 
 fn vertices(polygon: &ConvexPolygon) -> String {
-    let points: Vec<[f64; 2]> = polygon
-        .vertices()
-        .iter()
-        .map(|v| [v.x + 0.0, v.y + 0.0])
-        .collect();
+    let points = polygon.vertices().iter();
+    let points: Vec<[f64; 2]> = points.map(|v| [v.x + 0.0, v.y + 0.0]).collect();
     format!("{points:?}")
 }

@@ -10,13 +10,15 @@ use super::track::Track;
 /// scenario of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Situation {
-    pub(super) name: String,
+    /// The title.
+    pub name: String,
     /// Name of its outputs, if a file has several situations.
-    pub(super) id: Option<String>,
+    pub id: Option<String>,
     pub(super) own: Own,
     pub(super) others: Vec<Other>,
     pub(super) earth: Option<Georeference>,
-    pub(super) declared: Declared,
+    /// Statements of the file about the situation.
+    pub declared: Declared,
     /// Assumptions and unused parts of the file, in sentences.
     pub(super) notes: Vec<String>,
 }
@@ -101,22 +103,5 @@ impl Own {
     pub(super) fn duration(&self) -> f64 {
         let lengths = self.route.windows(2).map(|pair| (pair[1] - pair[0]).norm());
         lengths.zip(&self.leg_speeds).map(|(l, v)| l / v).sum()
-    }
-}
-
-impl Situation {
-    /// The title.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Name of its outputs, if a file has several situations.
-    pub fn id(&self) -> Option<&str> {
-        self.id.as_deref()
-    }
-
-    /// Statements of the file about the situation.
-    pub fn declared(&self) -> &Declared {
-        &self.declared
     }
 }

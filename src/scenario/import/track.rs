@@ -124,7 +124,8 @@ pub(super) enum TrackError {
 /// point without a radius it turns on the spot, or on an arc of any radius up to the assumed one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Track {
-    start: Vector,
+    /// First position, metres.
+    pub(super) start: Vector,
     appears: f64,
     stretches: Vec<Stretch>,
 }
@@ -246,11 +247,6 @@ impl Track {
         }
     }
 
-    /// First position, metres.
-    pub(super) fn start(&self) -> Vector {
-        self.start
-    }
-
     /// Time at the end of the track at the mean speed of every stretch, seconds; infinite if the
     /// track has no end.
     pub(super) fn end(&self) -> f64 {
@@ -358,12 +354,9 @@ impl Track {
 fn joined_stretches(stretches: Vec<Stretch>) -> Vec<Stretch> {
     let mut joined: Vec<Stretch> = Vec::new();
     for stretch in stretches {
-        match joined.last_mut().and_then(|last| last.joined(&stretch)) {
-            Some(both) => {
-                if let Some(last) = joined.last_mut() {
-                    *last = both;
-                }
-            }
+        let last = joined.last_mut();
+        match last.and_then(|last| Some((last.joined(&stretch)?, last))) {
+            Some((both, last)) => *last = both,
             None => joined.push(stretch),
         }
     }

@@ -107,6 +107,12 @@ impl<'a> Xml<'a> {
         });
     }
 
+    /// Notes a fault at this place, without which there would be a value.
+    pub(super) fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
+        self.fault(found, allowed);
+        None
+    }
+
     /// The elements in it, in the order of the file.
     pub(super) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
         let (path, faults) = (self.path.clone(), self.faults);
@@ -165,13 +171,10 @@ impl<'a> Xml<'a> {
     pub(super) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
         match self.attribute(name) {
             Some(text) => self.parsed(text, range),
-            None => {
-                self.fault(
-                    format_args!("no attribute {name}"),
-                    format_args!("{name}: {range}"),
-                );
-                None
-            }
+            None => self.reject(
+                format_args!("no attribute {name}"),
+                format_args!("{name}: {range}"),
+            ),
         }
     }
 
@@ -186,11 +189,6 @@ impl<'a> Xml<'a> {
     /// The number of an element that must be there.
     pub(super) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
         self.require(name, range)?.number(range)
-    }
-
-    /// The number in `exact` of an element that must be there.
-    pub(super) fn required_exact(&self, name: &str, range: Range) -> Option<f64> {
-        self.require(name, range)?.exact(range)
     }
 
     /// The number in the element `exact`; an interval is not a number.

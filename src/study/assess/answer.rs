@@ -3,7 +3,8 @@
 use super::{OwnSituation, least_alteration};
 use crate::document::{
     AlterationDocument, ApproachDocument, AssessmentDocument, HeldDocument, HoldCourseDocument,
-    PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
+    InitialSetDocument, PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument,
+    VelocityDocument,
 };
 use crate::frame::{Vector, deg_from_radians};
 use crate::geometry::ConvexSet;
@@ -46,7 +47,10 @@ pub fn assess(
         name: target.name().to_owned(),
         representation: target.representation().to_owned(),
         sections: (query.sections.iter())
-            .map(|time| section(*time, &target.section(*time)))
+            .map(|&t_s| SectionDocument {
+                t_s,
+                set: section(&target.section(t_s)),
+            })
             .collect(),
     });
     let points = query.points.iter().map(|point| PointDocument {
@@ -109,17 +113,15 @@ fn approach(situation: &OwnSituation, target: &Obstacle, velocity: Vector) -> Ap
     }
 }
 
-fn section(time: f64, section: &ConvexSet) -> SectionDocument {
+fn section(set: &ConvexSet) -> InitialSetDocument {
     let pair = |p: &Vector| [p.x, p.y];
-    match section {
-        ConvexSet::Polygon(polygon) => SectionDocument::Polygon {
-            t_s: time,
+    match set {
+        ConvexSet::Polygon(polygon) => InitialSetDocument::Polygon {
             vertices_m: polygon.vertices().iter().map(pair).collect(),
         },
         ConvexSet::Ellipse(ellipse) => {
             let q = ellipse.shape();
-            SectionDocument::Ellipse {
-                t_s: time,
+            InitialSetDocument::Ellipse {
                 center_m: pair(&ellipse.center()),
                 shape_m2: [[q[(0, 0)], q[(0, 1)]], [q[(1, 0)], q[(1, 1)]]],
             }

@@ -7,8 +7,43 @@
 
 mod alteration;
 mod answer;
-mod situation;
 
 pub use alteration::{Alteration, least_alteration};
 pub use answer::{Query, SpaceTimePoint, assess};
-pub use situation::OwnSituation;
+
+use crate::frame::{Pose, Vector, direction};
+use crate::obstacle::Obstacle;
+use crate::trajectory::Segment;
+
+/// Own ship at t = 0 and the obstacles around it.
+#[derive(Debug, Clone, Copy)]
+pub struct OwnSituation<'a> {
+    /// Position, metres, and heading, radians; the course is the heading.
+    pub pose: Pose,
+    /// Speed in m/s, non-negative.
+    pub speed: f64,
+    /// Maximum speed of an alteration, m/s; at least `speed` is used.
+    pub max_speed: f64,
+    /// End of the time interval `[0, horizon]` in seconds. It may be infinite except for the risk
+    /// of holding course.
+    pub horizon: f64,
+    /// Obstacles, including own ship's footprint.
+    pub obstacles: &'a [Obstacle],
+}
+
+impl OwnSituation<'_> {
+    /// Velocity at constant course and speed, m/s.
+    pub fn velocity(&self) -> Vector {
+        self.velocity_on(self.pose.heading, self.speed)
+    }
+
+    /// Velocity for a heading in radians and a speed in m/s.
+    fn velocity_on(&self, heading: f64, speed: f64) -> Vector {
+        direction(heading) * speed
+    }
+
+    /// Motion at constant course and speed over the horizon.
+    pub fn held(&self) -> Segment {
+        Segment::straight(self.pose, 0.0, self.horizon, self.speed)
+    }
+}

@@ -1,7 +1,5 @@
 //! Tests of baselines against closed-form results, and of candidates against single runs.
 
-use std::path::Path;
-
 use super::*;
 use crate::evaluation::counted_error;
 use crate::frame::{Side, wrap};
@@ -11,8 +9,7 @@ use crate::planner::{DEFAULT_PLANNER, PLANNERS, Planner, SearchKind};
 use crate::target::Representation;
 
 fn scenario(name: &str) -> Scenario {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
-    Scenario::read(&file).expect(name)
+    Scenario::read(format!("scenarios/{name}.toml").as_ref()).expect(name)
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::super::xml::Xml;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
-use crate::input::Range;
+use crate::input::{Range, every};
 use crate::scenario::limits;
 use crate::vessel::Hull;
 
@@ -33,12 +33,10 @@ pub(super) fn point(entry: &Xml) -> Option<Vector> {
 
 /// The shapes in an element, at least one.
 pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
-    let parts: Vec<Option<Shape>> = entry.elements().map(|shape| one(&shape)).collect();
-    if parts.is_empty() {
-        entry.fault("no shape", "a rectangle, a circle or a polygon");
-        return None;
+    if entry.elements().next().is_none() {
+        return entry.reject("no shape", "a rectangle, a circle or a polygon");
     }
-    parts.into_iter().collect()
+    every(entry.elements().map(|shape| one(&shape)))
 }
 
 fn one(entry: &Xml) -> Option<Shape> {
@@ -62,19 +60,16 @@ fn one(entry: &Xml) -> Option<Shape> {
             outer_disc(radius, 0.0).translated(center)
         }
         "polygon" => {
-            let points: Vec<Option<Vector>> = entry.all("point").map(|p| point(&p)).collect();
+            let points = every(entry.all("point").map(|p| point(&p)))?;
             let count = points.len();
-            let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
             if !(3..=limits::TRACK_POINTS).contains(&count) {
-                entry.fault(format_args!("{count} points"), "at least 3");
-                return None;
+                return entry.reject(format_args!("{count} points"), "at least 3");
             }
             // an outer approximation: a bay becomes land
             ConvexPolygon::hull(&points).ok()?
         }
         other => {
-            entry.fault(other, "a rectangle, a circle or a polygon");
-            return None;
+            return entry.reject(other, "a rectangle, a circle or a polygon");
         }
     };
     let reach = |axis: Vector| 2.0 * outline.support(axis).max(outline.support(-axis));
@@ -115,7 +110,8 @@ pub(super) fn state(entry: &Xml) -> Option<State> {
         Some(angle) => angle.exact(HEADING.in_unit("rad")),
         None => Some(0.0),
     };
-    let time = entry.required_exact("time", STEPS.in_unit("steps"));
+    let steps = STEPS.in_unit("steps");
+    let time = entry.require("time", steps).and_then(|t| t.exact(steps));
     let velocity = match entry.take("velocity") {
         Some(velocity) => velocity.exact(VELOCITY.in_unit("m/s")).map(Some),
         None => Some(None),

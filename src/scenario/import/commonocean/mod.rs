@@ -73,13 +73,10 @@ pub(super) fn situations(
     let step = root.attribute_number("timeStepSize", STEP.in_unit("s"));
     let name = match root.attribute("benchmarkID") {
         Some(id) if is_line(id) => Some(id.trim()),
-        Some(id) => {
-            root.fault(
-                format_args!("benchmarkID {}", abbreviated(id)),
-                "a name on one line",
-            );
-            None
-        }
+        Some(id) => root.reject(
+            format_args!("benchmarkID {}", abbreviated(id)),
+            "a name on one line",
+        ),
         None => Some("CommonOcean scenario"),
     };
     let mut notes = Vec::new();
@@ -185,11 +182,10 @@ fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> 
         ));
     }
     if others.len() > limits::SHIPS {
-        root.fault(
+        return root.reject(
             format_args!("{} obstacles and shallows", others.len()),
             format_args!("at most {}", limits::SHIPS),
         );
-        return None;
     }
     sound.then_some(others)
 }
@@ -200,11 +196,10 @@ fn kind<'a>(element: &Xml<'a>) -> Option<&'a str> {
     if TYPES.contains(&kind) {
         return Some(kind);
     }
-    entry.fault(
+    entry.reject(
         abbreviated(kind),
         format_args!("one of {}", TYPES.join(", ")),
-    );
-    None
+    )
 }
 
 fn named(element: &Xml, kind: &str, part: Option<usize>) -> String {
@@ -260,8 +255,7 @@ fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
         .require("initialState", "position, orientation, time, velocity")
         .and_then(|entry| state(&entry));
     if let Some(sets) = element.take("occupancySet") {
-        sets.fault("occupancies", "a trajectory of states");
-        return None;
+        return sets.reject("occupancies", "a trajectory of states");
     }
     let states: Option<Vec<State>> = element
         .take("trajectory")
@@ -276,11 +270,10 @@ fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
 
 fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
     let [only] = parts else {
-        entry.fault(
+        return entry.reject(
             format_args!("{} shapes", parts.len()),
             "one shape, the hull of the ship",
         );
-        return None;
     };
     Some(GivenHull::Known(Hull::new(only.length, only.width)))
 }
@@ -295,11 +288,10 @@ fn track(
     notes: &mut Vec<String>,
 ) -> Option<Track> {
     if states.len() > limits::TRACK_POINTS {
-        element.fault(
+        return element.reject(
             format_args!("{} states", states.len()),
             format_args!("at most {}", limits::TRACK_POINTS),
         );
-        return None;
     }
     let appears = initial.time * step;
     let mut points = vec![RoutePoint {
@@ -312,22 +304,20 @@ fn track(
         let took = (state.time - last.time) * step;
         let way = (state.position - last.position).norm();
         if !(took > 0.0) {
-            element.fault(
+            return element.reject(
                 format_args!(
                     "a state of step {} after one of step {}",
                     state.time, last.time
                 ),
                 "states whose times increase",
             );
-            return None;
         }
         let speed = way / took;
         if !limits::SHIP_SPEED.contains(speed) {
-            element.fault(
+            return element.reject(
                 format_args!("{way:.1} m from step {} to step {}", last.time, state.time),
                 format_args!("at most {} m/s between two states", limits::SHIP_SPEED.high),
             );
-            return None;
         }
         if way >= limits::LENGTH.low {
             points.push(RoutePoint {

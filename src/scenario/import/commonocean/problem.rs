@@ -32,11 +32,10 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
         .collect();
     let (initial, (goal, [earliest, latest]), through) = (initial?, goal?, through?);
     if initial.time > 0.0 {
-        entry.fault(
+        return entry.reject(
             format_args!("own ship at step {}", initial.time),
             "own ship from step 0",
         );
-        return None;
     }
     let mut route = vec![initial.position];
     route.extend(through);
@@ -45,14 +44,13 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
         .windows(2)
         .position(|pair| !((pair[1] - pair[0]).norm() >= limits::LENGTH.low))
     {
-        entry.fault(
+        return entry.reject(
             format_args!(
                 "point {} of the route where the one before it is",
                 index + 1
             ),
             "places of their own",
         );
-        return None;
     }
     let length: f64 = route
         .windows(2)
@@ -60,8 +58,7 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
         .sum();
     let speed = initial.velocity.unwrap_or(0.0);
     if !(speed >= 0.0) {
-        entry.fault(format_args!("own ship at {speed} m/s"), "a speed ahead");
-        return None;
+        return entry.reject(format_args!("own ship at {speed} m/s"), "a speed ahead");
     }
     let took = if speed > 0.0 {
         length / speed
@@ -71,11 +68,10 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
     let took = took.min(latest).max(earliest.max(0.0));
     let desired = length / took;
     if !limits::SHIP_WAY.contains(desired) {
-        entry.fault(
+        return entry.reject(
             format_args!("{length:.0} m to the goal in {took:.0} s"),
             "a speed at the start, or a goal in time, so that a ship can run it",
         );
-        return None;
     }
     notes.push(format!(
         "{}: of the goal its middle and its time are used",
@@ -97,11 +93,10 @@ fn middle(place: &Xml) -> Option<Vector> {
         return point(&at);
     }
     if let Some(water) = place.take("water") {
-        water.fault(
+        return water.reject(
             "a goal in a waterway",
             "a point, a rectangle, a circle or a polygon",
         );
-        return None;
     }
     Some(shapes(place)?.first()?.outline.centroid())
 }
@@ -119,11 +114,10 @@ fn times(goal: &Xml, step: f64) -> Option<[f64; 2]> {
     let end = entry.required_number("intervalEnd", STEPS.in_unit("steps"));
     let [start, end] = [start?, end?];
     if !(end > 0.0 && end >= start) {
-        entry.fault(
+        return entry.reject(
             format_args!("steps {start} to {end}"),
             "an interval that ends after the start",
         );
-        return None;
     }
     Some([start * step, end * step])
 }

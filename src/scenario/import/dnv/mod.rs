@@ -158,11 +158,10 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
     let route = fields.and_then(|fields| route(&fields, &known, earth, notes));
     let (initial, fixed, route) = (initial?, fixed?, route?);
     if fixed.delay > 0.0 {
-        field.fault(
+        return field.reject(
             format_args!("own ship {} s late (static.initDelay)", fixed.delay),
             "own ship from the start",
         );
-        return None;
     }
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
         notes.push(format!(
@@ -239,13 +238,10 @@ fn steady(field: &Field, start: Vector, initial: &Initial) -> Option<Track> {
             Some(Track::straight(start, course.unwrap_or(0.0), speed))
         }
         (Some(speed), Some(course)) => Some(Track::straight(start, course, speed)),
-        _ => {
-            field.fault(
-                "one waypoint, and no speed and course at the start",
-                "two waypoints, or initial.sog and initial.cog",
-            );
-            None
-        }
+        _ => field.reject(
+            "one waypoint, and no speed and course at the start",
+            "two waypoints, or initial.sog and initial.cog",
+        ),
     }
 }
 
@@ -275,11 +271,10 @@ fn along(
         for ((side, speed), metres) in sides.into_iter().zip(blend) {
             let length = (route.points[side + 1].position - route.points[side].position).norm();
             if !(*metres <= length) {
-                fields[leg + 1].fault(
+                return fields[leg + 1].reject(
                     format_args!("a change of speed over {metres:.0} m of a leg of {length:.0} m"),
                     "changes within the legs beside the waypoint",
                 );
-                return None;
             }
             if *metres > 0.0 {
                 reach(side, speed);
@@ -295,11 +290,10 @@ fn along(
         Ok(track) => Some(track),
         Err(TrackError::Turn { point, begins }) => {
             let place = fields.get(point).unwrap_or(field);
-            place.fault(
+            place.reject(
                 format_args!("a turnRadius whose turn begins {begins:.0} m before the waypoint"),
                 "a turn that fits into the legs beside it",
-            );
-            None
+            )
         }
     }
 }
@@ -395,8 +389,7 @@ fn leg(
         (Some(speed), _) => knots(&speed, limits::SHIP_WAY)?,
         (None, Some(speed)) if limits::SHIP_WAY.contains(speed) => speed,
         (None, _) => {
-            waypoint.fault("no speed of the leg that ends here", "leg.sog in knots");
-            return None;
+            return waypoint.reject("no speed of the leg that ends here", "leg.sog in knots");
         }
     };
     Some((speed, [0.0; 2]))

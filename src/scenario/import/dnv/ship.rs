@@ -48,14 +48,8 @@ pub(super) fn initial(
         return Some(Initial::default());
     };
     unused(&field, &INITIAL_KEYS, notes);
-    let position = match field.get("position") {
-        Some(place) => near(&place, earth).map(Some),
-        None => Some(None),
-    };
-    let speed = match field.get("sog") {
-        Some(speed) => knots(&speed, limits::SHIP_SPEED).map(Some),
-        None => Some(None),
-    };
+    let position = field.optional("position", |place| near(place, earth));
+    let speed = field.optional("sog", |speed| knots(speed, limits::SHIP_SPEED));
     let [cog, heading] = ["cog", "heading"].map(|key| {
         let course = field.optional_number(key, limits::COURSE.in_unit("degrees"))?;
         Some(course.map(heading_from_course_deg))
@@ -88,10 +82,9 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
         });
     };
     unused(&field, &STATIC_KEYS, notes);
-    let name = match field.get("name") {
-        Some(name) => name.line_of_text().map(|text| Some(text.trim().to_owned())),
-        None => Some(None),
-    };
+    let name = field.optional("name", |name| {
+        name.line_of_text().map(|text| text.trim().to_owned())
+    });
     let hull = match field.get("dimensions") {
         Some(dimensions) => hull(&dimensions, notes),
         None => Some(missing()),
@@ -124,8 +117,7 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
             && !((fore + aft - size).abs() <= LENGTH_ROUNDED)
         {
             let found = format_args!("a {whole} of {size} m, of which {fore} and {aft} m are to either side");
-            field.fault(found, "distances from the reference point that add up to it");
-            return None;
+            return field.reject(found, "distances from the reference point that add up to it");
         }
         if fore == aft {
             return Some(size.or(Some(2.0 * fore)));
