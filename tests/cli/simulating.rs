@@ -40,8 +40,11 @@ fn a_contact_ends_with_status_1_and_is_named() {
     );
     let found = document(&searoom(&["simulate", &file, "--json"]).code(1));
     assert_eq!(found["contact"], true);
-    let time = found["targets"][0]["contact_t_s"].as_f64().expect("a time");
+    assert_eq!(found["safe"], false);
+    let target = &found["targets"][0];
+    let time = target["contact_t_s"].as_f64().expect("a time");
     assert!((5.0..19.0).contains(&time), "{time}");
+    assert!(target["least_clearance_m"].as_f64() < Some(0.0));
 }
 
 #[test]

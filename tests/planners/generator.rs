@@ -7,13 +7,9 @@ use crate::campaigns::encounter_generator::{
 };
 
 fn all(count: u64) -> Vec<RandomEncounter> {
-    let mut drawn = Vec::new();
-    for kind in EncounterKind::ALL {
-        for seed in 0..count {
-            drawn.push(random_encounter(kind, seed, Placement::Origin).expect("drawn"));
-        }
-    }
-    drawn
+    EncounterKind::with_seeds(0..count)
+        .map(|(kind, seed)| random_encounter(kind, seed, Placement::Origin).expect("drawn"))
+        .collect()
 }
 
 #[test]
