@@ -239,7 +239,7 @@ fn report(
             Err(error) => report_failure(&mut report, &c.file, UNREADABLE, error),
         }
         for fault in &c.faults {
-            report.add_failure(&shown(&c.file), INTERNAL_FAULT, fault);
+            report_failure(&mut report, &c.file, INTERNAL_FAULT, fault);
         }
     }
     let lead = "Every planner that applies and two baselines on the same targets.";

@@ -298,11 +298,12 @@ fn least(
 
 #[cfg(test)]
 mod tests {
-    use super::super::role::tests::{fixtures, ship};
+    use super::super::role::tests::{fixtures as ships, ship};
     use super::*;
     use crate::geometry::ConvexPolygon;
     use crate::target::{DomainKind, Representation, Uncertainty};
-    use crate::vessel::Hull;
+    use crate::trajectory::fixtures::desired;
+    use crate::vessel::{Hull, fixtures};
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use std::f64::consts::PI;
@@ -322,40 +323,29 @@ mod tests {
 
     fn own_ship() -> OwnShip {
         OwnShip {
-            pose: Pose::new(Vector::zeros(), 0.0),
             speed: 6.0,
             hull: Hull::new(50.0, 10.0),
-            turning_radius: 100.0,
-            speeds: vec![3.0, 6.0],
-            safety_margin: 20.0,
-            tracking_margin: 0.0,
+            ..fixtures::own_ship(&[3.0, 6.0])
         }
     }
 
-    fn line(points: &[(f64, f64)], speed: f64) -> DesiredTrajectory {
-        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        DesiredTrajectory::new(&points, &vec![speed; points.len() - 1]).expect("valid")
-    }
-
-    fn named(track: ShipTrack) -> Target {
-        Target {
+    /// The encounter with a target on a trajectory at 6 m/s.
+    fn met(through: &[(f64, f64)], motion: Motion, horizon: f64) -> Encounter {
+        let target = Target {
             name: "other".to_owned(),
-            motion: Motion::Ship(track),
+            motion,
             representation: Representation::Polytope,
-        }
+        };
+        let desired = desired(through, &vec![6.0; through.len() - 1]);
+        let standard = &Thresholds::STANDARD;
+        encounter(&own_ship(), &desired, &target, horizon, standard)
     }
 
     #[test]
     fn the_fixtures_collide_after_120_seconds() {
-        let (own, desired) = (own_ship(), line(&[(0.0, 0.0), (2000.0, 0.0)], 6.0));
-        for (other, role, _) in fixtures() {
-            let found = encounter(
-                &own,
-                &desired,
-                &named(track(&other, 50.0)),
-                400.0,
-                &Thresholds::STANDARD,
-            );
+        for (other, role, _) in ships() {
+            let way = [(0.0, 0.0), (2000.0, 0.0)];
+            let found = met(&way, Motion::Ship(track(&other, 50.0)), 400.0);
             assert_eq!(found.role, role);
             // the hulls overlap most when the centres meet
             assert!(found.undisturbed_dcpa <= -10.0 + 1e-6, "{found:?}");
@@ -371,7 +361,7 @@ mod tests {
         for _ in 0..1500 {
             let mut within = |r: f64| rng.random_range(-r..r);
             let points = [(0.0, 0.0), (700.0, within(300.0)), (1200.0, within(600.0))];
-            let desired = line(&points, 6.0);
+            let desired = desired(&points, &[6.0; 2]);
             let other = track(&anywhere(&mut within), 50.0);
             let horizon = 200.0;
             let risk = first_risk(&own, &desired, &other, horizon, &Thresholds::STANDARD);
@@ -391,9 +381,8 @@ mod tests {
                 (Some(risk), Some(scan)) => {
                     found_some += 1;
                     assert!((risk.time - scan).abs() <= 0.011, "{risk:?} {scan}");
-                    assert!(
-                        (risk.own.pose.position - desired.position_at(risk.time)).norm() < 1e-9
-                    );
+                    let place = desired.position_at(risk.time);
+                    assert!((risk.own.pose.position - place).norm() < 1e-9);
                 }
                 other => panic!("{other:?}"),
             }
@@ -404,18 +393,12 @@ mod tests {
     #[test]
     fn the_undisturbed_distance_matches_a_dense_scan() {
         let mut rng = ChaCha8Rng::seed_from_u64(6);
-        let own = own_ship();
-        let desired = line(&[(0.0, 0.0), (600.0, 100.0), (1200.0, -100.0)], 6.0);
+        let way = [(0.0, 0.0), (600.0, 100.0), (1200.0, -100.0)];
+        let (own, desired) = (own_ship(), desired(&way, &[6.0; 2]));
         for _ in 0..60 {
             let mut within = |r: f64| rng.random_range(-r..r);
             let other = track(&anywhere(&mut within), 80.0);
-            let found = encounter(
-                &own,
-                &desired,
-                &named(other.clone()),
-                150.0,
-                &Thresholds::STANDARD,
-            );
+            let found = met(&way, Motion::Ship(other.clone()), 150.0);
             let scan = (0..=15_000)
                 .map(|i| {
                     let t = f64::from(i) * 0.01;
@@ -425,34 +408,17 @@ mod tests {
                     own.hull.polygon(&pose).separation(&hull)
                 })
                 .fold(f64::INFINITY, f64::min);
-            assert!(
-                found.undisturbed_dcpa <= scan + 1e-6 && scan - found.undisturbed_dcpa < 0.2,
-                "{found:?} {scan}"
-            );
+            let more = scan - found.undisturbed_dcpa;
+            assert!((-1e-6..0.2).contains(&more), "{found:?} {scan}");
         }
     }
 
     #[test]
     fn explicit_sets_have_no_role_and_a_distance_to_the_set() {
-        let square = |r: f64| {
-            ConvexPolygon::hull(&[
-                Vector::new(-r, -r),
-                Vector::new(r, -r),
-                Vector::new(r, r),
-                Vector::new(-r, r),
-            ])
-            .expect("finite")
-        };
-        let target = Target {
-            name: "box".to_owned(),
-            motion: Motion::Sets(Uncertainty::constant(
-                square(10.0).translated(Vector::new(300.0, 100.0)),
-                square(0.5),
-            )),
-            representation: Representation::Polytope,
-        };
-        let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
-        let found = encounter(&own_ship(), &desired, &target, 400.0, &Thresholds::STANDARD);
+        let square = |center, half: f64| ConvexPolygon::rectangle(center, half, half);
+        let initial = square(Vector::new(300.0, 100.0), 10.0);
+        let sets = Uncertainty::constant(initial, square(Vector::zeros(), 0.5));
+        let found = met(&[(0.0, 0.0), (600.0, 0.0)], Motion::Sets(sets), 400.0);
         assert_eq!(found.role, Role::None);
         // past its growing corner, which comes nearer still: own way relative to the corner is a
         // line

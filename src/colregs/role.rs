@@ -250,10 +250,8 @@ pub(super) mod tests {
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;
-            let (ahead, abeam) = (
-                from.pose.ahead(),
-                crate::frame::to_starboard(from.pose.ahead()),
-            );
+            let ahead = from.pose.ahead();
+            let abeam = crate::frame::to_starboard(ahead);
             abeam.dot(&p).atan2(ahead.dot(&p))
         };
         let (beta, alpha) = (seen(own, other), seen(other, own));
@@ -319,11 +317,8 @@ pub(super) mod tests {
             let grid = i % 2 == 0;
             let mut angle = || {
                 let a: f64 = rng.random_range(-PI..PI);
-                if grid {
-                    (a * 6.0 / PI).round() * PI / 6.0
-                } else {
-                    a
-                }
+                let rounded = (a * 6.0 / PI).round() * PI / 6.0;
+                if grid { rounded } else { a }
             };
             let (bearing, own_heading, heading) = (angle(), angle(), angle());
             let p = direction(bearing) * rng.random_range(1.0..5000.0);
@@ -332,11 +327,7 @@ pub(super) mod tests {
             let here = raw_role(&own, &other).expect("finite");
             let there = raw_role(&other, &own).expect("finite");
             seen.insert(here);
-            let pair = if here <= there {
-                (here, there)
-            } else {
-                (there, here)
-            };
+            let pair = (here.min(there), here.max(there));
             let consistent = matches!(
                 pair,
                 (Role::HeadOn, Role::HeadOn)
@@ -350,10 +341,8 @@ pub(super) mod tests {
             let resting = matches!(pair, (Role::Static, Role::Static | Role::None));
             let sectors = Sectors::STANDARD;
             let at_rest = own.speed < sectors.at_rest || other.speed < sectors.at_rest;
-            assert!(
-                if at_rest { resting } else { consistent },
-                "{own:?} {other:?}: {pair:?}"
-            );
+            let agrees = if at_rest { resting } else { consistent };
+            assert!(agrees, "{own:?} {other:?}: {pair:?}");
             let mirror = raw_role(&mirrored(&own), &mirrored(&other)).expect("finite");
             let expected = match here {
                 Role::GiveWay => Role::StandOn,

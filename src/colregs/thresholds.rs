@@ -381,34 +381,29 @@ fn parse(text: &str, faults: &Faults) -> Option<Thresholds> {
         .and_then(|like| like.choice(&published))
         .unwrap_or(&PUBLISHED[0])
         .clone();
+    let mut field = |key, range| match like {
+        Some(_) => table.take(key),
+        None => table.require(key, range),
+    };
     for (key, range, place) in NUMBERS {
-        let field = match like {
-            Some(_) => table.take(key),
-            None => table.require(key, range),
-        };
-        if let Some(number) = field.and_then(|field| field.number(range)) {
-            let in_degrees = key.contains("_deg");
-            *place(&mut read) = if in_degrees {
-                radians_from_deg(number)
-            } else {
-                number
+        if let Some(number) = field(key, range).and_then(|field| field.number(range)) {
+            *place(&mut read) = match key.contains("_deg") {
+                true => radians_from_deg(number),
+                false => number,
             };
         }
     }
     for (key, range, place) in COUNTS {
-        let field = match like {
-            Some(_) => table.take(key),
-            None => table.require(key, range),
-        };
-        if let Some(count) = field.and_then(|field| field.whole_number(range)) {
+        if let Some(count) = field(key, range).and_then(|field| field.whole_number(range)) {
             *place(&mut read) = count;
         }
     }
     table.finish();
-    if let Some(name) = name
-        .as_ref()
-        .filter(|name| name.any_text().is_some_and(is_published))
-    {
+    let is_published = |name: &&Field| {
+        name.any_text()
+            .is_some_and(|n| Thresholds::named(n).is_some())
+    };
+    if let Some(name) = name.as_ref().filter(is_published) {
         let names: Vec<&str> = published.iter().map(|(name, _)| *name).collect();
         name.refuse::<()>(format_args!("another name than {}", names.join(", ")));
     }
@@ -418,10 +413,6 @@ fn parse(text: &str, faults: &Faults) -> Option<Thresholds> {
         disagreements(&read, faults);
     }
     Some(read)
-}
-
-fn is_published(name: &str) -> bool {
-    Thresholds::named(name).is_some()
 }
 
 /// Notes numbers that are allowed each, but not together.
@@ -436,19 +427,13 @@ fn disagreements(read: &Thresholds, faults: &Faults) {
     for pair in increasing.windows(2) {
         let [(lower, low), (upper, high)] = [pair[0], pair[1]];
         if !(low < high) {
-            faults.note(Fault::new(
-                upper,
-                high,
-                format_args!("more than {lower} = {low}"),
-            ));
+            let allowed = format_args!("more than {lower} = {low}");
+            faults.note(Fault::new(upper, high, allowed));
         }
     }
     if !(s.stage_4_lengths < s.stage_3_lengths) {
-        faults.note(Fault::new(
-            "stage_3_lengths",
-            s.stage_3_lengths,
-            format_args!("more than stage_4_lengths = {}", s.stage_4_lengths),
-        ));
+        let allowed = format_args!("more than stage_4_lengths = {}", s.stage_4_lengths);
+        faults.note(Fault::new("stage_3_lengths", s.stage_3_lengths, allowed));
     }
     let sum = s.weight_least + s.weight_near_miss + s.weight_collision;
     if !((sum - 1.0).abs() <= WEIGHT_SUM_ERROR) {
@@ -465,16 +450,12 @@ mod tests {
     /// A set as the text of a file with every key.
     fn written(set: &Thresholds) -> Vec<String> {
         let mut set = set.clone();
-        let mut lines = vec![
-            "name = 'mine'".to_owned(),
-            format!("source = \"{}\"", set.source),
-        ];
+        let source = format!("source = \"{}\"", set.source);
+        let mut lines = vec!["name = 'mine'".to_owned(), source];
         for (key, _, place) in NUMBERS {
-            let value = *place(&mut set);
-            let value = if key.contains("_deg") {
-                deg_from_radians(value)
-            } else {
-                value
+            let value = match key.contains("_deg") {
+                true => deg_from_radians(*place(&mut set)),
+                false => *place(&mut set),
             };
             lines.push(format!("{key} = {value:?}"));
         }
@@ -493,10 +474,8 @@ mod tests {
                 ..set.clone()
             };
             for (key, _, place) in NUMBERS {
-                assert!(
-                    (*place(&mut read) - *place(&mut set)).abs() < 1e-12,
-                    "{key}"
-                );
+                let off = *place(&mut read) - *place(&mut set);
+                assert!(off.abs() < 1e-12, "{key}");
                 // conversion to degrees and back rounds
                 *place(&mut read) = *place(&mut set);
             }
@@ -533,11 +512,8 @@ mod tests {
         for written in [r"a\nb", r"\u001b[31mred", r"\u202eback", " "] {
             let found = faults(&format!("name = \"{written}\""));
             assert_eq!(found.len(), 1);
-            assert!(found[0].ends_with(LINE), "{found:?}");
-            assert!(
-                !found[0].contains(['\n', '\u{1b}', '\u{202e}']),
-                "{found:?}"
-            );
+            let acts = found[0].contains(['\n', '\u{1b}', '\u{202e}']);
+            assert!(found[0].ends_with(LINE) && !acts, "{found:?}");
         }
         let key = faults("name = 'm'\n\"a\\u001b\" = 1");
         assert!(key[0].starts_with(r"line 4: a\u001b: found"), "{key:?}");
@@ -552,11 +528,8 @@ mod tests {
         let unknown =
             Thresholds::parse("name = 'm'\nsource = 'a'\nlike = 'nobody'").expect_err("faulty");
         assert_eq!(unknown.len(), 1);
-        assert!(
-            unknown[0]
-                .allowed
-                .starts_with("\"searoom\", \"dnv-trafficgen\"")
-        );
+        let names = "\"searoom\", \"dnv-trafficgen\"";
+        assert!(unknown[0].allowed.starts_with(names));
         let broken = Thresholds::parse("name = 'm'\nsource =").expect_err("no TOML");
         assert_eq!(broken[0].line, Some(2));
     }

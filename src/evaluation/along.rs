@@ -41,17 +41,13 @@ pub(super) fn check(
         let fastest = own.max_speed();
         // Negated on purpose: a NaN speed is too fast.
         if !(s.speed <= fastest * (1.0 + tolerance::LIMIT)) {
-            let what = format!(
-                "speed in segment {index}: {} m/s, allowed 0 to {fastest}",
-                s.speed
-            );
+            let found = s.speed;
+            let what = format!("speed in segment {index}: {found} m/s, allowed 0 to {fastest}");
             add(s.start_time, what);
         }
         if s.turn_rate != 0.0 {
-            let what = format!(
-                "turn rate in segment {index}: {} rad/s, allowed 0",
-                s.turn_rate
-            );
+            let found = s.turn_rate;
+            let what = format!("turn rate in segment {index}: {found} rad/s, allowed 0");
             add(s.start_time, what);
         }
         if !(s.length() > 0.0) {
@@ -87,10 +83,8 @@ pub(super) fn check(
             at.distance >= length - tolerance::ARRIVAL_M
         });
         if !arrived {
-            add(
-                last.end_time(),
-                "arrival: short of the end of the path".to_owned(),
-            );
+            let what = "arrival: short of the end of the path";
+            add(last.end_time(), what.to_owned());
         }
     }
     found
@@ -150,45 +144,37 @@ fn sailed(points: &[Vector], from: f64, s: &Segment) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::frame::{Pose, heading_of};
+    use crate::geometry::fixtures::places;
     use crate::vessel::fixtures::own_ship;
 
     fn own() -> OwnShip {
         own_ship(&[2.5, 6.0])
     }
 
-    fn points(list: &[(f64, f64)]) -> Vec<Vector> {
-        list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
-    }
-
     /// Straight segments between places, all at one speed.
-    fn chain(places: &[(f64, f64)], speed: f64) -> Vec<Segment> {
-        let places = points(places);
+    fn chain(through: &[(f64, f64)], speed: f64) -> Vec<Segment> {
         let (mut time, mut heading) = (0.0, 0.0);
-        places
+        places(through)
             .windows(2)
             .map(|p| {
                 let way = p[1] - p[0];
                 let waits = way.norm() == 0.0;
                 heading = if waits { heading } else { heading_of(way) };
                 let duration = if waits { 10.0 } else { way.norm() / speed };
+                let speed = if waits { 0.0 } else { speed };
                 time += duration;
-                Segment::straight(
-                    Pose::new(p[0], heading),
-                    time - duration,
-                    duration,
-                    if waits { 0.0 } else { speed },
-                )
+                Segment::straight(Pose::new(p[0], heading), time - duration, duration, speed)
             })
             .collect()
     }
 
     #[test]
     fn what_keeps_to_the_paths_passes_and_what_does_not_is_found() {
-        let main = points(&[(0.0, 0.0), (100.0, 0.0), (100.0, 80.0), (0.0, 0.0)]);
-        let other = points(&[(40.0, 0.0), (60.0, -20.0), (80.0, 0.0)]);
+        let main = places(&[(0.0, 0.0), (100.0, 0.0), (100.0, 80.0), (0.0, 0.0)]);
+        let other = places(&[(40.0, 0.0), (60.0, -20.0), (80.0, 0.0)]);
         let paths = [main, other];
-        let found = |places: &[(f64, f64)], speed: f64| {
-            check(&chain(places, speed), &own(), &paths, false).len()
+        let found = |through: &[(f64, f64)], speed: f64| {
+            check(&chain(through, speed), &own(), &paths, false).len()
         };
         let round = [
             (0.0, 0.0),

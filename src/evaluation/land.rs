@@ -86,6 +86,7 @@ impl<'a> LandBodies<'a> {
 mod tests {
     use super::*;
     use crate::frame::Pose;
+    use crate::geometry::fixtures::places;
     use crate::trajectory::Segment;
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
@@ -97,8 +98,7 @@ mod tests {
             .collect();
         ring.push(Vector::new(150.0, 90.0));
         ring.push(Vector::new(0.0, 90.0));
-        let hole = [(60.0, 60.0), (90.0, 60.0), (75.0, 80.0)];
-        let hole = hole.map(|(x, y)| Vector::new(x, y)).to_vec();
+        let hole = places(&[(60.0, 60.0), (90.0, 60.0), (75.0, 80.0)]);
         Polygon::new(&[ring, hole]).expect("valid")
     }
 
@@ -110,14 +110,9 @@ mod tests {
         let (mut clear, mut aground) = (0, 0);
         for case in 0..150 {
             let land = comb(&mut rng);
+            let [x, y] = [-50.0..200.0, -120.0..20.0].map(|range| rng.random_range(range));
             let s = Segment::new(
-                Pose::new(
-                    Vector::new(
-                        rng.random_range(-50.0..200.0),
-                        rng.random_range(-120.0..20.0),
-                    ),
-                    rng.random_range(-3.0..3.0),
-                ),
+                Pose::new(Vector::new(x, y), rng.random_range(-3.0..3.0)),
                 3.0,
                 rng.random_range(1.0..30.0),
                 4.0,
@@ -152,8 +147,8 @@ mod tests {
 
     #[test]
     fn a_hull_that_never_leaves_the_inside_is_aground() {
-        let ring = [(0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0)];
-        let land = [Polygon::new(&[ring.map(|(x, y)| Vector::new(x, y)).to_vec()]).expect("valid")];
+        let ring = places(&[(0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0)]);
+        let land = [Polygon::new(&[ring]).expect("valid")];
         let hull = Hull::new(20.0, 6.0);
         let inland = Segment::straight(Pose::new(Vector::new(400.0, 500.0), 0.0), 0.0, 10.0, 5.0);
         let found = LandBodies::new(&land).least_distance(&[inland], Body::hull(&hull), 11.0);

@@ -213,15 +213,12 @@ fn least_of(passages: &[Passage], figure: impl Fn(&Passage) -> f64) -> f64 {
 /// Least signed distance to each set of a request along its segments, metres, certified. Minus
 /// infinity where the search did not prove the value.
 pub fn least_margins(request: &Request) -> Vec<f64> {
-    let proven = |least: Least| {
-        if least.certified {
-            least.value
-        } else {
-            f64::NEG_INFINITY
-        }
-    };
     let sets = request.sets.iter();
-    sets.map(|set| proven(set.least_distance(request.segments)))
+    sets.map(|set| set.least_distance(request.segments))
+        .map(|least| match least.certified {
+            true => least.value,
+            false => f64::NEG_INFINITY,
+        })
         .collect()
 }
 

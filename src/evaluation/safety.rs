@@ -160,6 +160,7 @@ mod tests {
     use super::Safety;
     use crate::evaluation::{Evaluation, Freedom, Request, SpaceTimeSet, evaluate};
     use crate::frame::Vector;
+    use crate::geometry::fixtures::places;
     use crate::geometry::{ConvexPolygon, Polygon};
     use crate::scenario::Scenario;
     use crate::target::{Motion, Uncertainty};
@@ -266,11 +267,8 @@ mod tests {
             let still = ConvexPolygon::point(Vector::zeros());
             let sets = Uncertainty::constant(box_around(half), still);
             scene.scenario.targets[0].motion = Motion::Sets(sets);
-            assert_eq!(
-                judged(&scene, &[], 0.0, &[], 0.0).safety,
-                expected,
-                "{half} m"
-            );
+            let found = judged(&scene, &[], 0.0, &[], 0.0);
+            assert_eq!(found.safety, expected, "{half} m");
         }
     }
 
@@ -279,8 +277,7 @@ mod tests {
     #[test]
     fn land_and_motions_that_are_none_are_told() {
         let mut scene = scene(500.0, 0.0);
-        let outline = [(700.0, 14.0), (800.0, 14.0), (750.0, 90.0)];
-        let outline: Vec<Vector> = outline.map(|(x, y)| Vector::new(x, y)).to_vec();
+        let outline = places(&[(700.0, 14.0), (800.0, 14.0), (750.0, 90.0)]);
         let land = [Polygon::new(&[outline]).expect("a polygon")];
         for (margin, expected) in [(9.9, Safety::Safe), (10.1, Safety::Unsafe)] {
             let found = judged(&scene, &[], 0.0, &land, margin);
@@ -288,16 +285,11 @@ mod tests {
         }
         scene.scenario.own_ship.pose.position.y = 12.0;
         scene.held.start.position.y = 12.0;
-        assert_eq!(
-            judged(&scene, &[], 0.0, &land, 0.0).safety,
-            Safety::Collides
-        );
+        let aground = judged(&scene, &[], 0.0, &land, 0.0);
+        assert_eq!(aground.safety, Safety::Collides);
         scene.held.start.position.x += 1.0;
-        assert_eq!(
-            judged(&scene, &[], 0.0, &[], 0.0).safety,
-            Safety::Unsafe,
-            "another start"
-        );
+        let elsewhere = judged(&scene, &[], 0.0, &[], 0.0);
+        assert_eq!(elsewhere.safety, Safety::Unsafe);
         scene.held.duration = f64::NAN;
         assert!(!judged(&scene, &[], 0.0, &[], 0.0).safe());
     }

@@ -115,11 +115,8 @@ fn check(request: &Request, steering: &Steering) -> Vec<Violation> {
         let reached = integrated(steering.vessel, &state(from), &force, to.time - from.time);
         let off = (reached - state(to)).component_div(&scales.state);
         // The maximum norm would lose a NaN.
-        let off = if off.sum().is_finite() {
-            off.amax()
-        } else {
-            f64::NAN
-        };
+        let finite = off.sum().is_finite();
+        let off = if finite { off.amax() } else { f64::NAN };
         found.time = to.time;
         let what = format!("vessel state off the plan after interval {index}");
         found.limit(&what, "of its units", off, tolerance::DEFECT);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
-use crate::geometry::fixtures::random_vector;
+use crate::geometry::fixtures::{places, random_vector};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use crate::trajectory::DesiredTrajectory;
@@ -63,18 +63,16 @@ fn lowest() -> f64 {
 
 /// A set whose upper side is fixed while its ends move.
 fn below(upper: f64) -> SpaceTimeSet {
-    let corners = [
+    let corners = places(&[
         (200.0, -900.0),
         (1200.0, -900.0),
         (1200.0, upper),
         (200.0, upper),
-    ];
-    let speeds = [(-0.5, 0.0), (1.0, 0.0), (0.0, -1.0)];
-    let set = |points: &[(f64, f64)]| {
-        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    };
-    SpaceTimeSet::constant("below", set(&corners), set(&speeds))
+    ]);
+    let speeds = places(&[(-0.5, 0.0), (1.0, 0.0), (0.0, -1.0)]);
+    let [initial, velocities] =
+        [corners, speeds].map(|points| ConvexPolygon::hull(&points).expect("finite"));
+    SpaceTimeSet::constant("below", initial, velocities)
 }
 
 fn ship(y: f64, speed: f64) -> Target {
@@ -94,6 +92,14 @@ fn ship(y: f64, speed: f64) -> Target {
     }
 }
 
+/// A ship of which nothing is unknown, with another pose and hull.
+fn known(mut target: Target, pose: Pose, hull: Hull) -> Target {
+    if let Motion::Ship(track) = &mut target.motion {
+        *track = ShipTrack::exact(pose, track.speed, hull);
+    }
+    target
+}
+
 /// Own ship turns on the spot beside an anchored ship and is clear of it before and after. During
 /// the turn, own bow sweeps over the other hull.
 #[test]
@@ -103,13 +109,8 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
     let mut onward = segments[0];
     onward.start = Pose::new(segments[0].end().position, 1.5);
     onward.start_time = segments[0].end_time();
-    let mut other = ship(0.0, 0.0);
-    if let Motion::Ship(track) = &mut other.motion {
-        let place = segments[0].end().position + crate::frame::direction(0.75) * 14.0;
-        track.pose = Pose::new(place, 2.3);
-        (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
-        track.hull = Hull::new(6.0, 1.0);
-    }
+    let place = segments[0].end().position + crate::frame::direction(0.75) * 14.0;
+    let other = known(ship(0.0, 0.0), Pose::new(place, 2.3), Hull::new(6.0, 1.0));
     let along = judge(&segments, &[], std::slice::from_ref(&other));
     assert!(along.min_clearance > 1.0, "{}", along.min_clearance);
     segments.push(onward);

@@ -1,10 +1,15 @@
-//! Random sets of tests.
+//! Places and random sets of tests.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::ConvexPolygon;
 use crate::frame::Vector;
+
+/// Places by their coordinates.
+pub fn places(list: &[(f64, f64)]) -> Vec<Vector> {
+    list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
+}
 
 /// A vector with both components below `most`.
 pub fn random_vector(rng: &mut ChaCha8Rng, most: f64) -> Vector {

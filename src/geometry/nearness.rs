@@ -54,6 +54,7 @@ pub fn stretch_near(set: &ConvexPolygon, [a, b]: [Vector; 2], distance: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::fixtures::random_vector;
     use rand::{Rng, SeedableRng};
 
     /// Compares with the distance, sampled.
@@ -63,7 +64,7 @@ mod tests {
         let (mut near, mut far) = (0, 0);
         for case in 0..3000 {
             let mut at = || {
-                let p = Vector::new(rng.random_range(-9.0..9.0), rng.random_range(-9.0..9.0));
+                let p = random_vector(&mut rng, 9.0);
                 if case % 3 == 0 { p.map(f64::round) } else { p }
             };
             let points: Vec<Vector> = (0..1 + case % 7).map(|_| at() * 0.5).collect();

@@ -35,17 +35,22 @@ impl ClosestApproach {
     }
 }
 
-/// The horizon, at least 0; infinite for a NaN. `None` where position or velocity is not finite,
+/// [`from_zero`]; `None` where position or velocity is not finite,
 /// which counts as contact at once.
 pub(super) fn usable_horizon(position: Vector, velocity: Vector, horizon: f64) -> Option<f64> {
     let finite = [position.x, position.y, velocity.x, velocity.y]
         .iter()
         .all(|v| v.is_finite());
-    finite.then_some(if horizon.is_nan() {
+    finite.then_some(from_zero(horizon))
+}
+
+/// The horizon, at least 0; infinite for a NaN.
+pub(super) fn from_zero(horizon: f64) -> f64 {
+    if horizon.is_nan() {
         f64::INFINITY
     } else {
         horizon.max(0.0)
-    })
+    }
 }
 
 /// The smallest and the second smallest candidate.
@@ -124,7 +129,7 @@ fn each_candidate(
     horizon: f64,
     mut offer: impl FnMut(f64, f64),
 ) {
-    let moving = obstacle.moving();
+    let moving = obstacle.moving_vertices();
     for vertex in moving {
         let (arm, relative) = (position - vertex.origin, velocity - vertex.velocity);
         let closing = -arm.dot(&relative);

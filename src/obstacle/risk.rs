@@ -121,6 +121,16 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// The motion from `origin` at t = 0 to `end` seconds.
+    pub(super) fn ahead(origin: Vector, velocity: Vector, end: f64) -> Self {
+        Self {
+            origin,
+            velocity,
+            start: 0.0,
+            end,
+        }
+    }
+
     /// The motion of a straight segment, from t = 0 on.
     pub(super) fn of(segment: &Segment) -> Self {
         let velocity = segment.start.ahead() * segment.speed;

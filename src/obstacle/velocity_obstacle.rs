@@ -1,6 +1,7 @@
 //! The velocity obstacle of polytopes as a set of half-planes: paper eq. (26), docs/theory.md
 //! section 5.3.
 
+use super::closest_approach::from_zero;
 use super::{HalfSpace, PolytopeObstacle, Slab, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::{ConvexPolygon, clipped};
@@ -49,11 +50,7 @@ impl VelocityObstacle {
                 port = ray;
             }
         }
-        let horizon = if horizon.is_nan() {
-            f64::INFINITY
-        } else {
-            horizon.max(0.0)
-        };
+        let horizon = from_zero(horizon);
         let half_plane = |face: &HalfSpace| {
             let reach = face.initial_support - face.normal.dot(&position);
             HalfPlane {
@@ -140,11 +137,7 @@ impl SlabObstacle {
         position: Vector,
         horizon: f64,
     ) -> Vec<VelocityObstacle> {
-        let horizon = if horizon.is_nan() {
-            f64::INFINITY
-        } else {
-            horizon.max(0.0)
-        };
+        let horizon = from_zero(horizon);
         let within = self.slabs().iter().filter(|slab| slab.start() <= horizon);
         within
             .map(|slab: &Slab| {

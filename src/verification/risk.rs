@@ -198,14 +198,11 @@ fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Vector;
+    use crate::geometry::fixtures::places;
 
     #[test]
     fn a_set_is_what_it_was_before_it_was_left() {
-        let polygon = |points: &[(f64, f64)]| {
-            let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-            ConvexPolygon::hull(&points).expect("finite")
-        };
+        let polygon = |corners| ConvexPolygon::hull(&places(corners)).expect("finite");
         let hull = polygon(&[(0.0, 0.0), (40.0, 3.0), (40.0, 10.0), (0.0, 10.0)]);
         let velocities = polygon(&[(4.0, -0.5), (5.0, -0.6), (5.0, 0.6), (4.0, 0.5)]);
         let point = polygon(&[(3.0, 1.0)]);

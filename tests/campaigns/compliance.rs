@@ -97,6 +97,8 @@ fn one_kind(kind: EncounterKind, seeds: Seeds, meeting: &Meeting, report: &mut R
     let values = |of: &dyn Fn(&Seen) -> Option<f64>| -> Vec<f64> {
         all.iter().filter_map(|(_, s)| of(s)).collect()
     };
+    let numbers = |of: &dyn Fn(&Seen) -> usize| values(&|s| Some(of(s) as f64));
+    let turns = values(&|s| s.smallest_turn.map(f64::to_degrees));
     let content = count(&|s| s.broken.is_empty());
     let score = all.iter().map(|(_, s)| s.least_score).sum::<f64>() / all.len() as f64;
     let cells = [
@@ -104,17 +106,9 @@ fn one_kind(kind: EncounterKind, seeds: Seeds, meeting: &Meeting, report: &mut R
         format!("{score:.2}"),
         quantiles(&values(&|s| Some(s.cost)), [0.5], 0),
         quantiles(&values(&|s| s.lead), [0.05, 0.5, 0.95], 0),
-        quantiles(&values(&|s| Some(s.turns as f64)), [0.5, 0.95, 1.0], 0),
-        quantiles(
-            &values(&|s| Some(s.speed_changes as f64)),
-            [0.5, 0.95, 1.0],
-            0,
-        ),
-        quantiles(
-            &values(&|s| s.smallest_turn.map(f64::to_degrees)),
-            [0.05],
-            0,
-        ),
+        quantiles(&numbers(&|s| s.turns), [0.5, 0.95, 1.0], 0),
+        quantiles(&numbers(&|s| s.speed_changes), [0.5, 0.95, 1.0], 0),
+        quantiles(&turns, [0.05], 0),
         quantiles(&values(&|s| Some(s.lengths)), [0.01, 0.05, 0.5], 1),
         quantiles(&values(&|s| Some(s.off_path)), [0.5, 0.95], 0),
         count(&|s| s.short > 0).to_string(),

@@ -41,6 +41,13 @@ pub fn is_caught(document: &Value) -> bool {
     }
 }
 
+/// Own ship gives way, and may take a risk.
+pub fn give_way_at_risk(max_risk: f64) -> Value {
+    let mut scenario = scenario("colregs/give-way.toml");
+    scenario.max_risk = max_risk;
+    document(scenario)
+}
+
 /// Own ship stands on, holds course and speed, and escapes.
 pub fn stand_on() -> Value {
     let mut scenario = scenario("colregs/stand-on.toml");
@@ -50,8 +57,7 @@ pub fn stand_on() -> Value {
 
 /// Own ship starts inside the set of a ship that it must avoid, and leaves it.
 pub fn inside() -> Value {
-    let text = std::fs::read_to_string(file("colregs/head-on.toml")).expect("a scenario");
-    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    let mut scenario = scenario("colregs/head-on.toml");
     scenario.own_ship.safety_margin = 80.0;
     let Motion::Ship(ship) = &mut scenario.targets[0].motion else {
         panic!("a ship");
@@ -87,8 +93,6 @@ pub fn barred() -> Value {
 /// One document of each kind: space-time, land, slabs, ellipses, accepted risk, path-time, forces,
 /// stand-on, and a start inside a set.
 pub fn documents() -> Vec<(&'static str, Value)> {
-    let mut risky = scenario("colregs/give-way.toml");
-    risky.max_risk = 0.4;
     let mut round = scenario("colregs/head-on.toml");
     round.targets[0].representation = Representation::Ellipsoid;
     let mut quick = scenario("harbour/ferry-crossing.toml");
@@ -97,7 +101,7 @@ pub fn documents() -> Vec<(&'static str, Value)> {
     one.targets.truncate(1);
     vec![
         ("head-on", document(scenario("colregs/head-on.toml"))),
-        ("at a risk", document(risky)),
+        ("at a risk", give_way_at_risk(0.4)),
         ("ellipsoid", document(round)),
         ("munkholmen", document(scenario("harbour/munkholmen.toml"))),
         ("turning", document(scenario("uncertainty/turning.toml"))),

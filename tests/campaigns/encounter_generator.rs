@@ -109,6 +109,12 @@ impl EncounterKind {
         Self::Overtaken,
     ];
 
+    /// Every kind with every seed.
+    pub fn with_seeds(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (Self, u64)> {
+        let each = move |kind| seeds.clone().map(move |seed| (kind, seed));
+        Self::ALL.into_iter().flat_map(each)
+    }
+
     /// The kinds of random traffic.
     const TRAFFIC: [Self; 4] = [Self::HeadOn, Self::GiveWay, Self::StandOn, Self::Overtaking];
 

@@ -22,12 +22,14 @@ use super::behaviour::{Behaviour, Signal};
 use super::encounter_generator::{
     EncounterKind, Placement, RandomEncounter, random_encounter, random_traffic,
 };
-use super::passing::crosses_ahead;
 use super::statistics::{quantile, spread};
 use super::{Report, Seeds};
 
 /// Angle in radians (2°) below which a turn is not an alteration of course.
 const ALTERATION: f64 = std::f64::consts::PI / 90.0;
+
+/// Seconds between the samples at which own ship may cross the target's course line.
+const SAMPLE_S: f64 = 0.5;
 
 /// Fraction of plans that may pass on the side opposite to the rules. Ship domains make the correct
 /// side cheaper, but do not forbid the other.
@@ -169,6 +171,16 @@ fn first_turn(plan: &Trajectory) -> Option<Side> {
         .iter()
         .find(|s| (s.turn_rate * s.duration).abs() > ALTERATION)?;
     Side::of_turn(turn.turn_rate)
+}
+
+/// True when own ship, seen from the target's estimate, crosses its course line ahead of it.
+fn crosses_ahead(plan: &Trajectory, ship: &ShipTrack) -> bool {
+    let times = plan.sample_times(SAMPLE_S, u32::MAX).into_iter();
+    let seen = times.map(|t| ship.pose_at(t).body_coordinates(plan.pose_at(t).position));
+    seen.collect::<Vec<_>>()
+        .windows(2)
+        .find(|w| (w[0].y > 0.0) != (w[1].y > 0.0))
+        .is_some_and(|w| w[0].x > 0.0)
 }
 
 pub fn claims_of(record: &Record, least: f64) -> Vec<String> {

@@ -14,7 +14,6 @@ pub mod encounters;
 pub mod harbour;
 pub mod invariance;
 pub mod mutations;
-pub mod passing;
 pub mod path_grid;
 pub mod path_time;
 pub mod replanning;

@@ -50,28 +50,17 @@ impl Path {
             }
         }
         stops.push(to);
-        let time = |s: f64| {
-            if to > from {
-                start + duration * (s - from) / (to - from)
-            } else {
-                start
-            }
-        };
+        let time = |s: f64| start + duration * (s - from) / (to - from);
         stops
             .windows(2)
             .map(|s| {
                 let (a, b) = (self.at(s[0]).1, self.at(s[1]).1);
-                let end = if to > from {
-                    time(s[1])
-                } else {
-                    start + duration
+                let (begins, lasts) = match to > from {
+                    true => (time(s[0]), time(s[1]) - time(s[0])),
+                    false => (start, duration),
                 };
-                Segment::straight(
-                    Pose::new(a, heading_of(b - a)),
-                    time(s[0]),
-                    end - time(s[0]),
-                    (b - a).norm() / (end - time(s[0])),
-                )
+                let pose = Pose::new(a, heading_of(b - a));
+                Segment::straight(pose, begins, lasts, (b - a).norm() / lasts)
             })
             .collect()
     }

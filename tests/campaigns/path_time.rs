@@ -46,6 +46,12 @@ pub struct Drawn {
 }
 
 impl Drawn {
+    /// The path at four fifths of the speed.
+    fn desired(&self) -> DesiredTrajectory {
+        let legs = vec![self.speed * 0.8; self.path.points.len() - 1];
+        DesiredTrajectory::new(&self.path.points, &legs).expect("valid")
+    }
+
     fn earliest_on_grid(&self, cells: usize, shrunk: bool) -> Option<f64> {
         let (path, obstacles) = (&self.path, &self.obstacles);
         earliest(path, obstacles, self.speed, self.horizon, cells, shrunk)
@@ -150,8 +156,7 @@ pub fn plan_within(
     deadline: Duration,
 ) -> Planned {
     let own = own(&drawn.path, drawn.speed);
-    let legs = vec![drawn.speed * 0.8; drawn.path.points.len() - 1];
-    let desired = DesiredTrajectory::new(&drawn.path.points, &legs).expect("valid");
+    let desired = drawn.desired();
     path_time::plan(&Problem {
         objective,
         time_weight: 25.0,
@@ -259,8 +264,7 @@ fn space_time_error(seeds: Seeds, report: &mut Report) {
     for seed in seeds {
         let drawn = draw(seed, Kinds::Exact);
         let planned = plan(&drawn, SearchKind::AStar, Objective::SpaceTimeError);
-        let legs = vec![drawn.speed * 0.8; drawn.path.points.len() - 1];
-        let desired = DesiredTrajectory::new(&drawn.path.points, &legs).expect("valid");
+        let desired = drawn.desired();
         let (path, obstacles) = (&drawn.path, &drawn.obstacles);
         let (speed, horizon) = (drawn.speed, drawn.horizon);
         let grid = least_error(path, obstacles, &desired, 25.0, speed, horizon, 400);
@@ -270,10 +274,8 @@ fn space_time_error(seeds: Seeds, report: &mut Report) {
         };
         assert_sound(&drawn, found.trajectory.segments(), seed);
         let dijkstra = plan(&drawn, SearchKind::Dijkstra, Objective::SpaceTimeError);
-        let (other, cost) = (
-            dijkstra.outcome.plan().expect("a plan too").cost,
-            found.cost,
-        );
+        let other = dijkstra.outcome.plan().expect("a plan too").cost;
+        let cost = found.cost;
         let same = (other - cost).abs() <= 1e-8 * (1.0 + other);
         assert!(same, "{seed}: {cost}, Dijkstra {other}");
         expanded[0] += planned.stats.expanded;

@@ -79,6 +79,16 @@ pub struct How {
     pub memory: bool,
 }
 
+impl How {
+    /// Own ship on its plan among targets that keep course and speed and are seen as they are.
+    pub const STEADY: Self = Self {
+        behaviour: Behaviour::Constant,
+        off: 0.0,
+        noise: false,
+        memory: true,
+    };
+}
+
 /// Result of one encounter.
 pub struct Sailed {
     pub seed: u64,

@@ -204,11 +204,8 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         least.fold(f64::INFINITY, f64::min)
     };
     let wide = count(&|s| {
-        let length = s
-            .targets
-            .iter()
-            .map(|t| t.length_m)
-            .fold(s.settings.own_length_m, f64::max);
+        let lengths = s.targets.iter().map(|t| t.length_m);
+        let length = lengths.fold(s.settings.own_length_m, f64::max);
         usize::from(clearance(s) >= 0.5 * length)
     });
     let lost = count(&|s| s.conduct.lost_remainders);
@@ -221,6 +218,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
     let times: Vec<f64> = (all.iter())
         .flat_map(|(_, s)| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3))
         .collect();
+    let speed_changes = values(&|s| s.conduct.speed_changes as f64);
     let bound = 100.0 * failure_bound(contacts, all.len());
     let cells = [
         format!("{contacts}/{} | {bound:.2} %", all.len()),
@@ -231,11 +229,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         quantiles(&values(&clearance), [0.0], 1),
         format!("{:.2} %", 100.0 * wide as f64 / all.len() as f64),
         quantiles(&values(&|s| s.conduct.turns as f64), [0.5, 0.95, 1.0], 0),
-        quantiles(
-            &values(&|s| s.conduct.speed_changes as f64),
-            [0.5, 0.95, 1.0],
-            0,
-        ),
+        quantiles(&speed_changes, [0.5, 0.95, 1.0], 0),
         count(&|s| s.conduct.replaced_manoeuvres).to_string(),
         count(&|s| s.conduct.side_switches).to_string(),
         quantiles(&values(&cost), [0.5, 0.95], 2),

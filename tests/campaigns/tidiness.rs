@@ -43,9 +43,7 @@ pub fn run(seeds: Seeds) -> Report {
 }
 
 fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut Report) {
-    let each = |kind| seeds.clone().map(move |seed| (kind, seed));
-    let scenes: Vec<(EncounterKind, u64)> = EncounterKind::ALL.into_iter().flat_map(each).collect();
-    let found: Vec<[Planned; 2]> = (scenes.into_iter())
+    let found: Vec<[Planned; 2]> = EncounterKind::with_seeds(seeds)
         .filter_map(|(kind, seed)| {
             let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
             let mut scenario = drawn.scenario;
@@ -80,22 +78,14 @@ fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut 
             .map(|plans| value(&plans[0].tidiness))
             .collect()
     };
+    let speed_changes = quantile(&values(&|t| t.speed_changes as f64), 0.95);
+    let turns = quantile(&values(&|t| t.turns as f64), 0.95);
+    let ratio = quantile(&ratios, 0.5);
+    let most_speed_changes = MOST_SPEED_CHANGES[compliance as usize];
     for (what, most, allowed) in [
-        (
-            "changes of speed",
-            quantile(&values(&|t| t.speed_changes as f64), 0.95),
-            MOST_SPEED_CHANGES[compliance as usize],
-        ),
-        (
-            "turns",
-            quantile(&values(&|t| t.turns as f64), 0.95),
-            MOST_TURNS,
-        ),
-        (
-            "median of J over the least",
-            quantile(&ratios, 0.5),
-            MEDIAN_RATIO,
-        ),
+        ("changes of speed", speed_changes, most_speed_changes),
+        ("turns", turns, MOST_TURNS),
+        ("median of J over the least", ratio, MEDIAN_RATIO),
     ] {
         report.require(most <= allowed, || format!("{word}: {what}: {most}"));
     }

@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use super::program::{Folder, HEAD_ON, assert_values, document, json, run, searoom, stdout, text};
+use super::program::{
+    Folder, HEAD_ON, assert_values, document, json, list, number, run, searoom, stdout,
+};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
@@ -42,16 +44,14 @@ fn an_assessment_document_has_what_the_contract_names() {
     let assessment = document(&assert);
     assert_values(&assessment, ASSESSMENT);
     assert_eq!(stdout(&assert), stdout(&run(&asked)), "the same bytes");
-    let area = |document: &Value| {
-        let vertices = document["targets"][0]["sections"][0]["vertices_m"].as_array();
-        let norths = vertices.expect("a list").iter().map(|v| v[1].as_f64());
-        let norths: Vec<f64> = norths.map(|n| n.expect("a number")).collect();
-        let [least, most] =
-            [f64::min as fn(f64, f64) -> f64, f64::max].map(|f| norths.iter().copied().reduce(f));
-        most.expect("vertices") - least.expect("vertices")
+    let width = |document: &Value| {
+        let vertices = list(&document["targets"][0]["sections"][0]["vertices_m"]);
+        let norths = vertices.iter().map(|vertex| number(&vertex[1]));
+        let most = norths.clone().fold(f64::NEG_INFINITY, f64::max);
+        most - norths.fold(f64::INFINITY, f64::min)
     };
     let with_domain = json(&format!("{asked} --domains"));
-    assert!(area(&with_domain) > area(&assessment));
+    assert!(width(&with_domain) > width(&assessment));
 }
 
 /// The velocity that the document recommends is in no velocity obstacle, and one a little less far
@@ -70,21 +70,16 @@ fn a_recommended_alteration_leaves_every_velocity_obstacle() {
         let (speed, heading) = (scenario.own_ship.speed, scenario.own_ship.pose.heading);
         let free = |heading: f64, speed: f64| {
             let found = assessed([heading.cos() * speed, heading.sin() * speed]);
-            let targets = found["velocities"][0]["targets"]
-                .as_array()
-                .expect("a list")
-                .clone();
-            targets.iter().all(|t| t["in_velocity_obstacle"] == false)
+            let mut targets = list(&found["velocities"][0]["targets"]).iter();
+            targets.all(|t| t["in_velocity_obstacle"] == false)
         };
         let alteration = assessed([0.0, 0.0])["alteration"].clone();
         for (key, sign) in [("starboard_deg", -1.0), ("port_deg", 1.0)] {
             if let Some(turn) = alteration[key].as_f64() {
                 let turned = |share: f64| heading + sign * share * turn.to_radians();
                 assert!(free(turned(1.0), speed), "{name} {key} {turn}");
-                assert!(
-                    turn == 0.0 || !free(turned(0.999), speed),
-                    "{name} {key} {turn}"
-                );
+                let least = turn == 0.0 || !free(turned(0.999), speed);
+                assert!(least, "{name} {key} {turn}");
             }
         }
         if let Some(change) = alteration["speed_mps"].as_f64() {
@@ -140,14 +135,10 @@ fn an_assessment_can_be_drawn() {
     let folder = Folder::new();
     let scenario = "scenarios/colregs/give-way.toml";
     let drawn = |name: &str| {
-        let file = folder.path().join(name);
-        run(&format!(
-            "assess {scenario} --section 0 --section 100 --figure {}",
-            text(&file)
-        ))
-        .success()
-        .stderr(is_empty())
-        .stdout(contains("Give-way"));
+        let file = folder.at(name);
+        let asked = format!("assess {scenario} --section 0 --section 100 --figure {file}");
+        let drawn = run(&asked).success().stderr(is_empty());
+        drawn.stdout(contains("Give-way"));
         fs::read(&file).expect("written")
     };
     let svg = drawn("new/a.svg");

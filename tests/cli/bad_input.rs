@@ -1,7 +1,9 @@
 //! Regressions with unusual files and options, run as a user runs them. Each test is named after
 //! the behaviour that holds now.
 
-use super::program::{Folder, HEAD_ON, document, json, rows, run, says, searoom, stderr, text};
+use super::program::{
+    Folder, HEAD_ON, document, json, list, number, rows, run, says, searoom, stderr, text,
+};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 
@@ -25,14 +27,16 @@ fn waypoints_on_a_line_change_nothing() {
     for count in [1, 2, 99] {
         let file = folder.write("legs.toml", in_legs(count));
         let plan = json(&format!("plan {file} --json"));
+        // the document has the route as it was given
         assert_eq!(
-            plan["mission"]["waypoints"].as_array().map(Vec::len),
-            Some(count as usize + 1),
-            "the document has the route as it was given"
+            list(&plan["mission"]["waypoints"]).len(),
+            count as usize + 1
         );
         let cost = &plan["cost"];
-        let number = |key: &str| cost[key].as_f64().expect("a number");
-        costs.push((number("objective"), number("space_time_error_m2")));
+        costs.push((
+            number(&cost["objective"]),
+            number(&cost["space_time_error_m2"]),
+        ));
     }
     for (found, judged) in &costs {
         assert!((found - costs[0].0).abs() < 1e-6, "{costs:?}");
@@ -49,13 +53,8 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
          speed_mps = 5.0\nlength_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\nspeeds_mps = [2.5, 5.0, 6.0]\n[planner]\ncompliance = \"shape\"\ndeadline_s = 0.4\n",
     );
     let zigzag: Vec<String> = (0..100)
-        .map(|i| {
-            format!(
-                "{{ east_m = {}.0, north_m = {}.0 }}",
-                200 * i,
-                i * 37 % 80 - 40
-            )
-        })
+        .map(|i| (200 * i, i * 37 % 80 - 40))
+        .map(|(east, north)| format!("{{ east_m = {east}.0, north_m = {north}.0 }}"))
         .collect();
     scenario += &format!("[mission]\nwaypoints = [{}]\n", zigzag.join(", "));
     for k in 0..60 {
@@ -77,7 +76,7 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
     let plan = document(&ended);
     assert_eq!(plan["outcome"], "deadline");
     assert_eq!(plan["safe"] == true, ended.get_output().status.success());
-    let took = plan["timing"]["plan_s"].as_f64().expect("seconds");
+    let took = number(&plan["timing"]["plan_s"]);
     // far more than is left over, for a machine with other things to do
     assert!((0.4..1.2).contains(&took), "{took}");
 }
@@ -103,11 +102,8 @@ fn the_first_error_of_the_grammar_is_the_only_fault() {
 fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
     let folder = Folder::new();
     let file = folder.write("one.toml", HEAD_ON);
-    let plans = folder.path().join("plans");
     run(&format!(
-        "suite {file} {file} {} --plans {}",
-        text(folder.path()),
-        text(&plans)
+        "suite {file} {file} {folder} --plans {folder}/plans"
     ))
     .success()
     .stdout(contains("1 scenario: 1 solved"))
@@ -121,25 +117,20 @@ fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
 fn no_folder_is_made_of_the_name_of_a_file() {
     let folder = Folder::new();
     let file = folder.write("one.toml", HEAD_ON);
-    let options: &[(&str, &str)] = if cfg!(feature = "recording") {
-        &[("--rrd", "foo.txt"), ("--rrd", "foo.svg")]
-    } else {
-        &[]
-    };
-    for (option, name) in options
-        .iter()
-        .chain(&[("--figure", "foo.txt"), ("--plans", "foo.json")])
-    {
+    let mut options = vec![("--figure", "foo.txt"), ("--plans", "foo.json")];
+    if cfg!(feature = "recording") {
+        options.extend([("--rrd", "foo.txt"), ("--rrd", "foo.svg")]);
+    }
+    for (option, name) in options {
         let path = folder.path().join(name);
         searoom(&["suite", &file, option, text(&path)])
             .code(2)
             .stdout(is_empty())
-            .stderr(contains(*name).and(contains(*option)));
+            .stderr(contains(name).and(contains(option)));
         assert!(!path.exists(), "{option}");
     }
     // a slash asks for it
-    let named = format!("{}/v1.2/", text(folder.path()));
-    searoom(&["suite", &file, "--plans", &named]).success();
+    run(&format!("suite {file} --plans {folder}/v1.2/")).success();
     assert!(folder.path().join("v1.2/one.json").is_file());
 }
 
@@ -148,18 +139,12 @@ fn no_folder_is_made_of_the_name_of_a_file() {
 #[test]
 fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
     let folder = Folder::new();
-    let file = folder.write(
-        "short.toml",
-        HEAD_ON
-            .replace("turning_radius_m = 100.0", "turning_radius_m = 1e6")
-            .replace(
-                "{ east_m = 1500.0, north_m = 0.0 }]",
-                "{ east_m = 1.0, north_m = 0.0 }]",
-            ),
-    );
-    searoom(&["plan", &file])
-        .success()
-        .stdout(contains("verified"));
+    let scenario = HEAD_ON
+        .replace("turning_radius_m = 100.0", "turning_radius_m = 1e6")
+        .replace("1500.0, north_m = 0.0 }]", "1.0, north_m = 0.0 }]");
+    let file = folder.write("short.toml", scenario);
+    let planned = searoom(&["plan", &file]).success();
+    planned.stdout(contains("verified"));
 }
 
 /// A replacement of the intervals of figure 9, and the message.

@@ -13,27 +13,17 @@ fn targets() -> Vec<Obstacle> {
     let velocities = ConvexPolygon::rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
     let shape = nalgebra::Matrix2::new(900.0, 0.0, 0.0, 400.0);
     let spread = nalgebra::Matrix2::new(0.04, 0.01, 0.01, 0.09);
-    let timed = [(60.0, 0.2), (f64::INFINITY, 0.6)].map(|(until, wide)| {
-        TimedVelocitySet::new(
-            until,
-            ConvexPolygon::rectangle(Vector::new(0.0, -1.5), wide, wide),
-        )
-    });
+    let square = |wide| ConvexPolygon::rectangle(Vector::new(0.0, -1.5), wide, wide);
+    let timed = [(60.0, 0.2), (f64::INFINITY, 0.6)]
+        .map(|(until, wide)| TimedVelocitySet::new(until, square(wide)));
     let initial = ConvexPolygon::rectangle(Vector::new(200.0, 500.0), 20.0, 20.0);
     let changing = Uncertainty::new(initial, timed.to_vec());
+    let ellipse = |center, shape| Ellipse::new(center, shape).expect("a shape");
+    let velocity = ellipse(Vector::new(1.0, 0.5), spread);
+    let polygon = ConvexPolygon::rectangle(place, 30.0, 12.0);
     vec![
-        PolytopeObstacle::new(
-            "polygons",
-            ConvexPolygon::rectangle(place, 30.0, 12.0),
-            velocities,
-        )
-        .into(),
-        EllipsoidObstacle::new(
-            "ellipses",
-            Ellipse::new(-place, shape).expect("a shape"),
-            Ellipse::new(Vector::new(1.0, 0.5), spread).expect("a shape"),
-        )
-        .into(),
+        PolytopeObstacle::new("polygons", polygon, velocities).into(),
+        EllipsoidObstacle::new("ellipses", ellipse(-place, shape), velocity).into(),
         Obstacle::new("slabs", changing).expect("increasing"),
     ]
 }
@@ -61,10 +51,7 @@ fn the_same_figure_is_the_same_bytes() {
     for text in texts.split("; ") {
         assert!(svg.contains(text), "{text}");
     }
-    assert!(
-        !svg.contains("NaN") && !svg.contains("inf"),
-        "a number that is none"
-    );
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
 
 /// Tests that a title is above the panels, and that a long one is truncated visibly.
@@ -84,20 +71,13 @@ fn a_title_is_drawn_and_fits() {
 fn every_situation_can_be_drawn() {
     let all = targets();
     let point = ConvexPolygon::point;
-    let still: Obstacle =
-        PolytopeObstacle::new("buoy", point(Vector::new(9.0, 9.0)), point(Vector::zeros())).into();
-    let over: Obstacle = PolytopeObstacle::new(
-        "over",
-        ConvexPolygon::rectangle(Vector::zeros(), 9.0, 9.0),
-        point(Vector::zeros()),
-    )
-    .into();
-    let needle: Obstacle = EllipsoidObstacle::new(
-        "needle",
-        Ellipse::point(Vector::new(50.0, 0.0)),
-        Ellipse::point(Vector::new(-1.0, 0.0)),
-    )
-    .into();
+    let at_rest = |name: &str, set| -> Obstacle {
+        PolytopeObstacle::new(name, set, point(Vector::zeros())).into()
+    };
+    let still = at_rest("buoy", point(Vector::new(9.0, 9.0)));
+    let over = at_rest("over", ConvexPolygon::rectangle(Vector::zeros(), 9.0, 9.0));
+    let [place, velocity] = [50.0, -1.0].map(|east| Ellipse::point(Vector::new(east, 0.0)));
+    let needle: Obstacle = EllipsoidObstacle::new("needle", place, velocity).into();
     for obstacles in [&[][..], &all[..1], &all[1..], &[still], &[over], &[needle]] {
         for times in [
             &[][..],

@@ -3,7 +3,9 @@
 use std::fs::{self, File};
 use std::time::Instant;
 
-use super::program::{Folder, HEAD_ON, document, json, run, searoom, stderr, text, untimed};
+use super::program::{
+    Folder, HEAD_ON, document, json, list, number, run, searoom, stderr, text, untimed,
+};
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -23,26 +25,16 @@ fn a_folder_may_mix_formats_and_faults() {
     at("e/cut.json", &DNV[..DNV.len() / 2]);
     at("f/plan.json", "{\"format\": \"searoom-plan/1\"}");
     let cases: Vec<&str> = IMAZU.split("\"id\": ").collect();
-    let two = format!("{}\"id\": {}\"id\": {}", cases[0], cases[1], cases[2]);
-    let two = format!(
-        "{}]}}",
-        two.trim_end().trim_end_matches(['{', ',', ' ', '\n'])
-    );
-    at(
-        "g/two.json",
-        &two.replacen("\"course_deg\": 270.0", "\"course_deg\": 999", 1),
-    );
+    let two = cases[..3].join("\"id\": ");
+    let two = two.trim_end().trim_end_matches(['{', ',', ' ', '\n']);
+    let two = two.replacen("\"course_deg\": 270.0", "\"course_deg\": 999", 1);
+    at("g/two.json", &format!("{two}]}}"));
     // no more of it is read than is allowed
-    let large = folder.path().join("h.json");
     let begun = Instant::now();
-    File::create(&large)
-        .and_then(|f| f.set_len(1 << 30))
-        .expect("made");
-    let plans = folder.path().join("plans.out/");
+    let large = File::create(folder.at("h.json"));
+    large.and_then(|f| f.set_len(1 << 30)).expect("made");
     let assert = run(&format!(
-        "suite {} --json --plans {}",
-        text(folder.path()),
-        text(&plans)
+        "suite {folder} --json --plans {folder}/plans.out/"
     ))
     .code(2);
     assert!(begun.elapsed().as_secs() < 60);
@@ -78,9 +70,7 @@ fn options_say_what_foreign_files_do_not() {
     let asked = of("--margin-m 300 --speed-spread-mps 0.25 --course-spread-deg 3");
     assert_eq!(asked["own_ship"]["safety_margin_m"], 300.0);
     assert_eq!(asked["targets"][0]["ship"]["speed_spread_mps"], 0.25);
-    let spread = asked["targets"][0]["ship"]["course_spread_deg"]
-        .as_f64()
-        .expect("degrees");
+    let spread = number(&asked["targets"][0]["ship"]["course_spread_deg"]);
     assert!((spread - 3.0).abs() < 1e-9);
     searoom(&["plan", &file, "--speed-spread-mps=-1"])
         .code(2)
@@ -114,11 +104,10 @@ fn foreign_files_are_compared_and_assessed() {
     let folder = Folder::new();
     folder.write("a.toml", HEAD_ON);
     folder.write("b.json", DNV);
-    let folder = text(folder.path());
     let asked = "--planner space-time --search a-star --margin-m 300 --json";
     let compared = json(&format!("compare {folder} {asked}"));
-    let compared = compared["comparisons"].as_array().expect("a list").clone();
-    let titles: Vec<&Value> = compared.iter().map(|c| &c["scenario"]).collect();
+    let compared = list(&compared["comparisons"]).iter();
+    let titles: Vec<&Value> = compared.map(|c| &c["scenario"]).collect();
     assert_eq!(titles, ["Head-on", "HO"]);
     run(&format!("assess {folder}/b.json --margin-m 300"))
         .success()
@@ -132,40 +121,32 @@ fn foreign_files_are_compared_and_assessed() {
 #[test]
 fn imported_files_run_as_their_originals() {
     let folder = Folder::new();
-    let out = folder.path().join("scenarios");
+    let out = folder.at("scenarios");
     let sources = ["scenarios/imazu/imazu.json", "scenarios/commonocean"];
     let options = ["--safety-margin-m", "300", "--course-spread-deg", "3"];
-    let assert = searoom(&[&["import"], &sources[..], &options, &["--out", text(&out)]].concat());
+    let assert = searoom(&[&["import"], &sources[..], &options, &["--out", &out]].concat());
     assert.success().stdout(contains("imazu-22.toml"));
-    let head = fs::read_to_string(out.join("imazu-05.toml")).expect("there");
-    assert!(
-        head.starts_with("# own ship, target 1, target 2: no size in the file"),
-        "{head}"
-    );
+    let head = fs::read_to_string(format!("{out}/imazu-05.toml")).expect("there");
+    let said = "# own ship, target 1, target 2: no size in the file";
+    assert!(head.starts_with(said), "{head}");
     let bare = |args: &[&str]| {
         let mut suite = untimed(document(&searoom(args)));
-        let mut runs: Vec<Value> = suite["runs"].as_array_mut().expect("runs").clone();
-        for run in &mut runs {
-            let run = run.as_object_mut().expect("an object");
-            run.remove("file");
-            run.remove("notes");
+        let mut runs = suite["runs"].as_array_mut().expect("runs").clone();
+        for run in runs.iter_mut().filter_map(Value::as_object_mut) {
+            run.retain(|key, _| key != "file" && key != "notes");
         }
         runs.sort_by_key(|run| run["scenario"].to_string());
         runs
     };
     let original = bare(&[&["suite", "--json"], &sources[..], &options].concat());
-    let again = bare(&["suite", "--json", text(&out)]);
+    let again = bare(&["suite", "--json", &out]);
     assert_eq!(original.len(), 24);
     assert_eq!(original, again);
     // a scenario file is one already, and what cannot be read is said
-    run(&format!(
-        "import {} no.json --out {}",
-        text(&out),
-        text(folder.path())
-    ))
-    .code(2)
-    .stderr(contains("imazu-01.toml: a scenario file already, left out"))
-    .stderr(contains("no.json: cannot be read"));
+    run(&format!("import {out} no.json --out {folder}"))
+        .code(2)
+        .stderr(contains("imazu-01.toml: a scenario file already, left out"))
+        .stderr(contains("no.json: cannot be read"));
 }
 
 fn lint(path: &str) -> Value {
@@ -173,13 +154,10 @@ fn lint(path: &str) -> Value {
 }
 
 fn findings(document: &Value, scenario: &str) -> Vec<String> {
-    let all = document["scenarios"].as_array().expect("scenarios");
-    let one = all
-        .iter()
-        .find(|s| s["scenario"] == scenario)
-        .expect("there");
-    let list = one["findings"].as_array().expect("a list");
-    list.iter()
+    let all = list(&document["scenarios"]);
+    let one = all.iter().find(|s| s["scenario"] == scenario);
+    let findings = list(&one.expect("there")["findings"]).iter();
+    findings
         .map(|f| f.as_str().expect("a text").to_owned())
         .collect()
 }
@@ -189,28 +167,24 @@ fn a_lint_says_what_is_odd_about_the_published_cases() {
     let imazu = lint("scenarios/imazu/imazu.json");
     assert_eq!(imazu["summary"]["scenarios"], 22);
     assert_eq!(imazu["summary"]["targets"], 50);
-    assert_eq!(
-        findings(&imazu, "imazu-12")[0],
-        "ships are missing: 3 declared, 2 found"
-    );
+    let missing = "ships are missing: 3 declared, 2 found";
+    assert_eq!(findings(&imazu, "imazu-12")[0], missing);
     assert_eq!(imazu["summary"]["findings"], 1);
-    for scenario in imazu["scenarios"].as_array().expect("scenarios") {
-        for target in scenario["targets"].as_array().expect("targets") {
+    for scenario in list(&imazu["scenarios"]) {
+        for target in list(&scenario["targets"]) {
             let [dcpa, tcpa] =
-                ["undisturbed_dcpa_m", "undisturbed_tcpa_s"].map(|k| target[k].as_f64().expect(k));
+                ["undisturbed_dcpa_m", "undisturbed_tcpa_s"].map(|k| number(&target[k]));
             assert!(dcpa <= 0.0 && (1700.0..1900.0).contains(&tcpa), "{target}");
             assert_eq!(target["matters"], "meets");
         }
     }
     let dnv = lint("scenarios/dnv");
     assert_eq!(dnv["summary"]["targets"], 71);
-    for scenario in dnv["scenarios"].as_array().expect("scenarios") {
-        for finding in scenario["findings"].as_array().expect("a list") {
+    for scenario in list(&dnv["scenarios"]) {
+        for finding in list(&scenario["findings"]) {
             let finding = finding.as_str().expect("a text");
-            assert!(
-                !finding.contains("missing") && !finding.contains("mirrored?"),
-                "{finding}"
-            );
+            let odd = finding.contains("missing") || finding.contains("mirrored?");
+            assert!(!odd, "{finding}");
         }
     }
 }
@@ -226,12 +200,10 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
         .as_array_mut()
         .expect("a list")
     {
-        let lon = place["position"]["lon"].as_f64().expect("degrees");
+        let lon = number(&place["position"]["lon"]);
         place["position"]["lon"] = (2.0 * 10.490654 - lon).into();
     }
-    let heading = mirror["targetShips"][0]["initial"]["heading"]
-        .as_f64()
-        .expect("degrees");
+    let heading = number(&mirror["targetShips"][0]["initial"]["heading"]);
     mirror["targetShips"][0]["initial"]["heading"] = (360.0 - heading).into();
     mirror["title"] = "CR-SO, HO".into();
     folder.write("b.json", mirror.to_string());
@@ -246,13 +218,10 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
     let found = document(&assert);
     let said = findings(&found, "CR-SO, HO");
     assert_eq!(said[0], "ships are missing: 2 declared, 1 found");
-    assert!(
-        said[1].ends_with("declared to port, found to starboard: mirrored?"),
-        "{said:?}"
-    );
-    assert!(
-        findings(&found, "Head-on")[0].ends_with("never matters, out of reach within the horizon")
-    );
+    let mirrored = "declared to port, found to starboard: mirrored?";
+    assert!(said[1].ends_with(mirrored), "{said:?}");
+    let never = "never matters, out of reach within the horizon";
+    assert!(findings(&found, "Head-on")[0].ends_with(never));
     assert_eq!(found["summary"]["unreadable"], 1);
     searoom(&["suite", "--lint", text(folder.path())])
         .code(2)

@@ -1,11 +1,10 @@
 //! Commands that check and plan.
 
 use std::fs;
-use std::path::Path;
 
 use super::program::{
-    Folder, HEAD_ON, assert_values, document, head_on_without_planner, json, rows, run, says,
-    searoom, stdout, text, untimed,
+    Folder, HEAD_ON, assert_values, document, head_on_without_planner, json, list, number, rows,
+    run, says, searoom, stdout, text, untimed,
 };
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -58,21 +57,20 @@ fn every_fault_of_a_file_is_reported_at_once() {
 #[test]
 fn rules_are_kept_by_the_space_time_planner_alone() {
     let folder = Folder::new();
-    let ruled = HEAD_ON;
-    let file = folder.write("ruled.toml", ruled);
+    let file = folder.write("ruled.toml", HEAD_ON);
     searoom(&["plan", &file])
         .code(0)
         .stdout(contains("relaxed").not());
     // another planner on the command line keeps the domains in their place
     let other = searoom(&["plan", &file, "--planner", "path-time", "--json"]);
     assert_eq!(document(&other)["compliance"], "shape");
-    let asked = ruled.replacen("[planner]", "[planner]\nkind = \"path-time\"", 1);
+    let asked = HEAD_ON.replacen("[planner]", "[planner]\nkind = \"path-time\"", 1);
     let asked = folder.write("asked.toml", asked);
     searoom(&["plan", &asked])
         .code(2)
         .stdout(is_empty())
         .stderr(contains("planner.compliance").and(contains("path-time")));
-    let unknown = folder.write("unknown.toml", ruled.replacen("rules", "rule", 1));
+    let unknown = folder.write("unknown.toml", HEAD_ON.replacen("rules", "rule", 1));
     searoom(&["plan", &unknown])
         .code(2)
         .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
@@ -159,6 +157,17 @@ fn files_that_are_none_are_named() {
     }
 }
 
+/// Values of the document of a suite with a broken file.
+const BROKEN_SUITE: &str = r#"
+/runs/0/outcome "solved"
+/runs/1/outcome "unreadable"
+/runs/2/scenario "Last"
+/summary/scenarios 3
+/summary/solved 2
+/summary/unreadable 1
+/summary/verified 2
+"#;
+
 #[test]
 fn a_suite_goes_on_after_a_broken_file() {
     let folder = Folder::new();
@@ -168,31 +177,15 @@ fn a_suite_goes_on_after_a_broken_file() {
     folder.write(".hidden/x.toml", "");
     folder.write("notes.txt", "");
     let plans = Folder::new();
-    let assert = run(&format!(
-        "suite {} --json --plans {}",
-        text(folder.path()),
-        text(plans.path())
-    ))
-    .code(2)
-    .stderr(contains("a.toml: ").and(contains("title: found 3")));
+    let assert = run(&format!("suite {folder} --json --plans {plans}"))
+        .code(2)
+        .stderr(contains("a.toml: ").and(contains("title: found 3")));
     let suite = document(&assert);
-    let runs = suite["runs"].as_array().expect("a list");
-    let files: Vec<_> = runs
-        .iter()
-        .map(|run| {
-            let file = Path::new(run["file"].as_str().expect("text"));
-            let relative = file.strip_prefix(folder.path()).expect("below the folder");
-            text(relative).to_owned()
-        })
-        .collect();
-    assert_eq!(files, ["a/good.toml", "a.toml", "z.toml"]);
-    assert_eq!(runs[0]["outcome"], "solved");
-    assert_eq!(runs[1]["outcome"], "unreadable");
-    assert_eq!(runs[2]["scenario"], "Last");
-    assert_eq!(suite["summary"]["scenarios"], 3);
-    assert_eq!(suite["summary"]["solved"], 2);
-    assert_eq!(suite["summary"]["unreadable"], 1);
-    assert_eq!(suite["summary"]["verified"], 2);
+    let runs = list(&suite["runs"]);
+    let files: Vec<_> = runs.iter().map(|run| run["file"].as_str()).collect();
+    let expected = ["a/good.toml", "a.toml", "z.toml"].map(|name| folder.at(name));
+    assert_eq!(files, expected.each_ref().map(|file| Some(file.as_str())));
+    assert_values(&suite, BROKEN_SUITE);
     assert_eq!(plans.names(""), ["a__good.json", "z.json"]);
     searoom(&["suite", text(folder.path())])
         .code(2)
@@ -204,12 +197,11 @@ fn two_results_never_share_a_file() {
     let folder = Folder::new();
     let a = folder.write("a/same.toml", HEAD_ON);
     let b = folder.write("b/same.toml", HEAD_ON);
-    let plans = folder.path().join("plans");
-    searoom(&["suite", &a, &b, "--plans", text(&plans)])
+    searoom(&["suite", &a, &b, "--plans", &folder.at("plans")])
         .code(2)
         .stdout(is_empty())
         .stderr(contains("'same'"));
-    assert!(!plans.exists());
+    assert!(!folder.path().join("plans").exists());
 }
 
 /// Values of the plan document of the head-on scenario.
@@ -237,16 +229,16 @@ fn a_plan_document_has_what_the_contract_names() {
     assert_values(&plan, PLAN);
     assert_eq!(plan["encounters"][0]["scores"].get("rule_15"), None);
     // own ship goes east and turns to starboard first: positive, toward the south
-    let segments = plan["trajectory"]["segments"].as_array().expect("a list");
+    let segments = list(&plan["trajectory"]["segments"]);
     let rates = segments
         .iter()
         .filter_map(|s| s["turn_rate_deg_per_s"].as_f64());
     let first = rates.into_iter().find(|rate| *rate != 0.0);
     assert!(first.is_some_and(|rate| rate > 0.0), "{first:?}");
-    let samples = plan["trajectory"]["samples"].as_array().expect("a list");
-    let north = |s: &Value| s["north_m"].as_f64().expect("a number");
+    let samples = list(&plan["trajectory"]["samples"]);
+    let north = |s: &Value| number(&s["north_m"]);
     assert!(samples.iter().map(north).fold(0.0, f64::min) < -10.0);
-    let course = |s: &Value| s["course_deg"].as_f64().expect("a number");
+    let course = |s: &Value| number(&s["course_deg"]);
     assert!(samples.iter().map(course).fold(0.0, f64::max) > 95.0);
 }
 
@@ -300,7 +292,7 @@ fn no_plan_is_an_answer() {
     let given_up = &plan["relaxation"];
     assert_eq!(given_up["kind"], "risk");
     assert_eq!(given_up["amount"], 1.0);
-    let until = given_up["until_s"].as_f64().expect("when it is left");
+    let until = number(&given_up["until_s"]);
     let valid = &plan["obstacles"][0]["valid_s"];
     assert_eq!(valid[0].as_f64(), Some(until));
     says(plan["reason"].as_str().expect("a text"), "starts inside");
@@ -322,11 +314,9 @@ fn no_plan_is_an_answer() {
         .code(1)
         .stdout(contains("outcome"));
     let mut small = plan.clone();
-    for p in small["obstacles"][0]["initial_set"]["vertices_m"]
-        .as_array_mut()
-        .expect("vertices")
-    {
-        p[0] = Value::from(p[0].as_f64().expect("a number") + 1.0);
+    let vertices = &mut small["obstacles"][0]["initial_set"]["vertices_m"];
+    for p in vertices.as_array_mut().expect("vertices") {
+        p[0] = Value::from(number(&p[0]) + 1.0);
     }
     check(&small.to_string())
         .code(1)
@@ -406,14 +396,12 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
 #[cfg(not(feature = "recording"))]
 #[test]
 fn recordings_need_their_feature() {
-    searoom(&["suite", "scenarios/colregs", "--rrd", "recordings"])
-        .code(2)
-        .stdout(is_empty())
-        .stderr(contains("built without recordings"));
-    searoom(&["simulate", "scenarios/colregs", "--rrd", "recordings/"])
-        .code(2)
-        .stdout(is_empty())
-        .stderr(contains("built without recordings"));
+    for command in ["suite", "simulate"] {
+        searoom(&[command, "scenarios/colregs", "--rrd", "recordings/"])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains("built without recordings"));
+    }
 }
 
 #[cfg(feature = "recording")]
@@ -426,14 +414,10 @@ fn recordings_are_named_after_their_scenarios() {
     searoom(&["suite", &below, "--rrd", text(folder.path())]).success();
     let recording = folder.path().join("colregs__head-on.rrd");
     assert!(fs::metadata(recording).expect("a recording").len() > 1000);
-    let file = folder.path().join("one.rrd");
-    run(&format!(
-        "plan scenarios/colregs/head-on.toml --rrd {}",
-        text(&file)
-    ))
-    .success();
-    assert!(file.is_file());
-    searoom(&["suite", "scenarios/colregs", "--rrd", text(&file)])
+    let file = folder.at("one.rrd");
+    run(&format!("plan scenarios/colregs/head-on.toml --rrd {file}")).success();
+    assert!(fs::metadata(&file).expect("a recording").is_file());
+    searoom(&["suite", "scenarios/colregs", "--rrd", &file])
         .code(2)
         .stderr(contains("4 scenarios"));
 }
@@ -490,7 +474,7 @@ fn legs_shorter_than_a_turn_are_cut_short_and_too_many_are_refused() {
     let file = folder.write("zigzag.toml", zigzag(99));
     let document = json(&format!("plan {file} --json"));
     assert_eq!(document["verified"], true);
-    assert!(document["cost"]["length_m"].as_f64().expect("a length") < 1600.0);
+    assert!(number(&document["cost"]["length_m"]) < 1600.0);
     let file = folder.write("many.toml", zigzag(200));
     let refused = searoom(&["check", &file]).code(2);
     refused.stderr(contains("mission.waypoints: found 200 positions"));
@@ -499,11 +483,8 @@ fn legs_shorter_than_a_turn_are_cut_short_and_too_many_are_refused() {
 #[test]
 fn sets_of_one_point_block_too() {
     let folder = Folder::new();
-    let text = HEAD_ON
-        .split("[[targets]]")
-        .next()
-        .expect("before the targets")
-        .to_owned()
+    let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
+    let text = alone.to_owned()
         + "[[targets]]\nname = \"buoy\"\ninitial_set = { vertices_m = [[700.0, 0.0]] }\n\
            velocity_set = { vertices_mps = [[-1.0, 0.0]] }\n";
     let file = folder.write("point.toml", text);
@@ -536,9 +517,8 @@ fn sets_are_of_the_kind_that_was_asked_for() {
     ] {
         let text = HEAD_ON.replacen("beam_m = 12.0", &format!("beam_m = 12.0\n{change}"), 1);
         let file = folder.write("kind.toml", text);
-        let said = searoom(&["plan", &file, "--json"]).success();
-        let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
-        let obstacles = plan["obstacles"].as_array().expect("a list");
+        let plan = json(&format!("plan {file} --json"));
+        let obstacles = list(&plan["obstacles"]);
         assert_eq!(obstacles.len(), entries, "{change}");
         assert!(obstacles.iter().all(|o| o["initial_set"][key].is_array()));
         assert_eq!(plan["cost"]["max_risk"], 0.0);
@@ -546,29 +526,24 @@ fn sets_are_of_the_kind_that_was_asked_for() {
 }
 
 /// The head-on scene some whole seconds later, own ship metres beside its plan.
-fn later_on(scenario: &str, plan: &Value, seconds: u32, beside: f64) -> String {
-    let samples = plan["trajectory"]["samples"].as_array().expect("samples");
+fn later_on(plan: &Value, seconds: u32, beside: f64) -> String {
+    let samples = list(&plan["trajectory"]["samples"]);
     let elapsed = f64::from(seconds) - plan["time_s"].as_f64().unwrap_or(0.0);
     let now = samples.iter().find(|s| s["t_s"] == elapsed);
     let now = now.expect("a sample");
     let place = "position = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0";
     let there = format!(
         "position = {{ east_m = {}, north_m = {} }}\ncourse_deg = {}",
-        now["east_m"].as_f64().expect("metres") + beside,
+        number(&now["east_m"]) + beside,
         now["north_m"],
         now["course_deg"]
     );
-    let later = scenario
+    let target = format!("position = {{ east_m = {}.0", 1500 - 5 * seconds);
+    let later = HEAD_ON
         .replace("horizon_s", &format!("time_s = {seconds}.0\nhorizon_s"))
         .replace(place, &there)
         .replace("[mission]", "[mission]\nstart_s = 0.0")
-        .replace(
-            "position = { east_m = 1500.0, north_m = 0.0 }",
-            &format!(
-                "position = {{ east_m = {}.0, north_m = 0.0 }}",
-                1500 - 5 * seconds
-            ),
-        );
+        .replace("position = { east_m = 1500.0", &target);
     assert!(later.contains(&there));
     later
 }
@@ -576,15 +551,14 @@ fn later_on(scenario: &str, plan: &Value, seconds: u32, beside: f64) -> String {
 #[test]
 fn a_plan_goes_on_from_the_previous_one() {
     let folder = Folder::new();
-    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let first = json("plan scenarios/colregs/head-on.toml --json");
     let previous = folder.write("first.json", first.to_string());
-    let later = later_on(&scenario, &first, 60, 0.0);
+    let later = later_on(&first, 60, 0.0);
     let file = folder.write("later.toml", later.clone());
     let go_on = |file: &str| searoom(&["plan", file, "--previous", &previous, "--json"]);
     let second = document(&go_on(&file).success());
     // the same manoeuvre, not a turn back
-    let begins = |plan: &Value| plan["manoeuvres"][0]["begins_s"].as_f64().expect("a time");
+    let begins = |plan: &Value| number(&plan["manoeuvres"][0]["begins_s"]);
     assert!((begins(&first) - 60.0 - begins(&second)).abs() < 1e-9);
     assert_eq!(second["encounters"][0]["roles"][0]["from_s"], -60.0);
     assert_eq!(second["encounters"][0]["violations"], Value::Array(vec![]));
@@ -597,7 +571,7 @@ fn a_plan_goes_on_from_the_previous_one() {
     searoom(&["verify", &verified]).success();
 
     // a metre beside the plan its remainder is of no use, but the manoeuvre goes on
-    let beside = folder.write("beside.toml", later_on(&scenario, &first, 60, 1.0));
+    let beside = folder.write("beside.toml", later_on(&first, 60, 1.0));
     let third = document(&go_on(&beside).success());
     assert!((begins(&first) - 60.0 - begins(&third)).abs() < 1e-9);
     assert_eq!(third["memory"]["keeps_plan"], false);
@@ -605,7 +579,7 @@ fn a_plan_goes_on_from_the_previous_one() {
 
     // within its tracking margin own ship goes on from the plan
     let first_ship = |margin: &str, beside| {
-        let text = later_on(&scenario, &first, 60, beside);
+        let text = later_on(&first, 60, beside);
         let own = format!("[own_ship]\ntracking_margin_m = {margin}");
         let text = text.replace("[own_ship]", &own);
         folder.write("near.toml", text)
@@ -618,14 +592,13 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert_eq!(far["memory"]["off_plan_m"], Value::Null);
     assert_eq!(far["memory"]["keeps_plan"], false);
     let refused = searoom(&["check", &first_ship("31.0", 1.0)]).code(2);
-    refused.stderr(contains(
-        "own_ship.tracking_margin_m: found 31; allowed: at most 20",
-    ));
+    let fault = "own_ship.tracking_margin_m: found 31; allowed: at most 20";
+    refused.stderr(contains(fault));
 
     // on the way back a little beside the plan, it sails no circle
     let times = (160..=224).step_by(4);
     for (seconds, beside) in times.flat_map(|s| [3e-4, -4e-4, 0.01].map(|beside| (s, beside))) {
-        let file = later_on(&scenario, &second, seconds, beside);
+        let file = later_on(&second, seconds, beside);
         let file = folder.write("back.toml", file);
         let back = searoom(&["plan", &file, "--previous", &verified, "--json"]).success();
         let delay = document(&back)["cost"]["delay_s"].as_f64();
@@ -656,9 +629,8 @@ fn a_plan_goes_on_from_the_previous_one() {
     let renamed = later.replace("name = \"target\"", "name = \"other\"");
     let renamed = folder.write("renamed.toml", renamed);
     let renamed = searoom(&["plan", &renamed, "--previous", &previous]);
-    renamed.stdout(contains(
-        "'target' of the previous plan is not in this file",
-    ));
+    let unknown = "'target' of the previous plan is not in this file";
+    renamed.stdout(contains(unknown));
 }
 
 /// A text of the scenario, what replaces it, and why the previous plan does not fit.
@@ -671,13 +643,12 @@ course_deg = 1 | course_deg = 2 | allowed: at most 30 m, own length, and 20 degr
 #[test]
 fn a_previous_plan_that_does_not_fit_is_named() {
     let folder = Folder::new();
-    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let first = json("plan scenarios/colregs/head-on.toml --json");
     let previous = folder.write("first.json", first.to_string());
     let mut altered = first.clone();
     altered["own_ship"]["length_m"] = 31.0.into();
     let altered = folder.write("altered.json", altered.to_string());
-    let later = later_on(&scenario, &first, 60, 0.0);
+    let later = later_on(&first, 60, 0.0);
     for [old, new, message] in rows(UNFIT_PREVIOUS) {
         let changed = later.replace(&old, &new);
         assert_ne!(changed, later);
@@ -736,9 +707,8 @@ role_since_s = 5.0 | targets[0].role_since_s: found 5
 #[test]
 fn roles_of_a_file_last() {
     let folder = Folder::new();
-    let scenario = fs::read_to_string("scenarios/colregs/head-on.toml").expect("a scenario");
     let with = |keys: &str| {
-        let text = scenario.replace("name = \"target\"", &format!("name = \"target\"\n{keys}"));
+        let text = HEAD_ON.replace("name = \"target\"", &format!("name = \"target\"\n{keys}"));
         let text = text.replace("horizon_s", "time_s = 90.0\nhorizon_s");
         folder.write("roles.toml", text)
     };

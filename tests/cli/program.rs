@@ -1,5 +1,6 @@
 //! The program as a user runs it, and what it says.
 
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::Path;
 
@@ -33,8 +34,14 @@ pub fn text(path: &Path) -> &str {
     path.to_str().expect("a path that is text")
 }
 
-/// An empty folder for the files of a test.
+/// An empty folder for the files of a test; it is displayed as its path.
 pub struct Folder(TempDir);
+
+impl Display for Folder {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(text(self.path()))
+    }
+}
 
 impl Folder {
     pub fn new() -> Self {
@@ -106,6 +113,16 @@ pub fn json(words: &str) -> Value {
 
 pub fn document(assert: &Assert) -> Value {
     serde_json::from_str(&stdout(assert)).expect("one JSON document")
+}
+
+/// The entries of a list of a document.
+pub fn list(value: &Value) -> &[Value] {
+    value.as_array().expect("a list")
+}
+
+/// A number of a document.
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
 }
 
 /// The document without its only wall-clock figures.

@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use super::program::{Folder, document, json, run, says, searoom, stdout, text, untimed};
+use super::program::{
+    Folder, document, json, list, number, run, says, searoom, stdout, text, untimed,
+};
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -38,16 +40,14 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
     // the highest status of all wins, and every file is answered
     let broken = file("broken");
     fs::write(&broken, &good[..good.len() / 2]).expect("written");
+    let first = &four[0];
     let all = run(&format!(
-        "verify --json {broken} {altered} {} no-such.json",
-        four[0]
+        "verify --json {broken} {altered} {first} no-such.json"
     ))
     .code(2)
     .stderr(contains("broken.json: ").and(contains("no-such.json: cannot be read")));
     let found = document(&all);
-    let verdicts: Vec<_> = found["plans"]
-        .as_array()
-        .expect("a list")
+    let verdicts: Vec<_> = list(&found["plans"])
         .iter()
         .map(|p| &p["verified"])
         .collect();
@@ -75,25 +75,16 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     let folder = Folder::new();
     let csv = folder.at("rows.csv");
     let figure = folder.at("compared.svg");
-    let table = run(&format!(
-        "compare scenarios/colregs --csv {csv} --figure {figure}"
-    ))
-    .success()
-    .stderr(is_empty());
-    let shown = stdout(&table);
-    says(
-        &shown,
-        "Head-on\n | space-time, Dijkstra, ellipsoids | hold course | COLLIDES | optimal control",
-    );
+    let asked = format!("compare scenarios/colregs --csv {csv} --figure {figure}");
+    let shown = stdout(&run(&asked).success().stderr(is_empty()));
+    let methods = "space-time, Dijkstra, ellipsoids | hold course | COLLIDES | optimal control";
+    says(&shown, &format!("Head-on\n | {methods}"));
     let rows = fs::read_to_string(&csv).expect("rows");
     assert_eq!(rows.lines().count(), 1 + 4 * 9);
     assert!(rows.starts_with("file,scenario,method,max_risk,"));
     let drawn = fs::read_to_string(&figure).expect("a figure");
-    assert!(
-        drawn.contains("Overtaking: trajectories")
-            && drawn.contains("space-time, A*")
-            && !drawn.contains("NaN")
-    );
+    says(&drawn, "Overtaking: trajectories | space-time, A*");
+    assert!(!drawn.contains("NaN"));
     // the same whatever runs at the same time, but for the times
     let json = |threads: &str| {
         let assert = Command::new(env!("CARGO_BIN_EXE_searoom"))
@@ -106,36 +97,26 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     };
     let found = json("1");
     assert_eq!(found, json("4"));
-    let entries = found["comparisons"][0]["entries"]
-        .as_array()
-        .expect("entries");
+    let entries = list(&found["comparisons"][0]["entries"]);
     assert_eq!(entries.len(), 8 * 2 + 1);
     assert_eq!(entries[1]["max_risk"], 0.2);
     assert_eq!(entries[14]["method"], "hold course");
     assert_eq!(entries[14]["verified"], false);
-    assert!(
-        entries
-            .iter()
-            .all(|e| e["track"].as_array().is_some_and(|t| t.len() > 10))
-    );
+    assert!(entries.iter().all(|e| list(&e["track"]).len() > 10));
 }
 
 #[test]
 fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     let folder = Folder::new();
-    let bad = folder.at("bad.toml");
-    fs::write(&bad, "title = 3").expect("written");
+    let bad = folder.write("bad.toml", "title = 3");
     let head_on = "scenarios/colregs/head-on.toml";
     run(&format!(
         "compare {bad} {head_on} --planner space-time --search a-star"
     ))
     .code(2)
     .stderr(contains("bad.toml: "))
-    .stdout(
-        contains("Head-on")
-            .and(contains("Dijkstra").not())
-            .and(contains("path-time").not()),
-    );
+    .stdout(contains("Head-on"))
+    .stdout(contains("Dijkstra").not().and(contains("path-time").not()));
     // on the path alone nothing is clear
     searoom(&["compare", head_on, "--planner", "path-time"])
         .code(1)
@@ -161,7 +142,7 @@ fn a_baseline_that_takes_an_accepted_risk_is_relaxed() {
         .filter(|entry| entry["method"] == "constant velocity")
         .map(|entry| {
             assert_eq!(entry["verified"], true);
-            let risk = entry["cost"]["max_risk"].as_f64().expect("a risk");
+            let risk = number(&entry["cost"]["max_risk"]);
             (entry["outcome"].as_str().expect("a word"), risk)
         })
         .collect();
@@ -221,10 +202,8 @@ fn shells_know_every_command() {
                 .success()
                 .stderr(is_empty()),
         );
-        assert!(
-            commands.iter().all(|c| text.contains(c)) && text.contains("max-risk"),
-            "{shell}"
-        );
+        let all = commands.iter().all(|c| text.contains(c)) && text.contains("max-risk");
+        assert!(all, "{shell}");
     }
     searoom(&["completions", "csh"]).code(2);
 }
@@ -232,10 +211,8 @@ fn shells_know_every_command() {
 #[test]
 fn a_report_is_one_page_with_its_figures() {
     let folder = Folder::new();
-    let at = |name: &str| folder.at(name);
-    let (suite, plans) = (at("suite"), at("plans"));
-    let broken = at("broken.toml");
-    fs::write(&broken, "title = \"<b>\"\n").expect("written");
+    let broken = folder.write("broken.toml", "title = \"<b>\"\n");
+    let (suite, plans) = (folder.at("suite"), folder.at("plans"));
     run(&format!(
         "suite scenarios/colregs {broken} --report {suite} --plans {plans}"
     ))
@@ -255,17 +232,15 @@ fn a_report_is_one_page_with_its_figures() {
 /// Recordings are written and read by the default features alone.
 #[cfg(feature = "recording")]
 mod recordings {
-    use std::path::Path;
-
-    use serde_json::Value;
+    use std::path::PathBuf;
 
     use super::*;
 
     const HEAD_ON: &str = "scenarios/colregs/head-on.toml";
     const GIVE_WAY: &str = "scenarios/colregs/give-way.toml";
 
-    fn recorded(folder: &Path, name: &str, scenario: &str) -> (String, String) {
-        let file = text(&folder.join(name)).to_owned();
+    fn recorded(folder: &Folder, name: &str, scenario: &str) -> (String, String) {
+        let file = folder.at(name);
         let plan = searoom(&["plan", scenario, "--json", "--rrd", &file]).success();
         (file, stdout(&plan))
     }
@@ -273,7 +248,7 @@ mod recordings {
     #[test]
     fn a_recording_gives_back_what_it_was_made_from() {
         let folder = Folder::new();
-        let (file, plan) = recorded(folder.path(), "head-on.rrd", HEAD_ON);
+        let (file, plan) = recorded(&folder, "head-on.rrd", HEAD_ON);
         searoom(&["verify", &file])
             .success()
             .stdout(contains(": verified"));
@@ -284,12 +259,11 @@ mod recordings {
         );
         let found = document(&searoom(&["inspect", "--json", &file]).success());
         let plan: Value = serde_json::from_str(&plan).expect("a plan");
-        assert_eq!(
-            (&found["scenario"], &found["cost"]),
-            (&plan["scenario"], &plan["cost"])
-        );
-        let last = found["timelines"][0]["last"].as_f64().expect("a time");
-        let arrival = plan["cost"]["duration_s"].as_f64().expect("a time");
+        for key in ["scenario", "cost"] {
+            assert_eq!(found[key], plan[key]);
+        }
+        let last = number(&found["timelines"][0]["last"]);
+        let arrival = number(&plan["cost"]["duration_s"]);
         assert!((last - arrival).abs() < 1e-6, "{last} {arrival}");
     }
 
@@ -298,27 +272,27 @@ mod recordings {
     #[test]
     fn inspect_tells_what_the_rules_say() {
         let folder = Folder::new();
-        let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-        let scenario = scenarios.join("colregs/stand-on.toml");
-        let file = folder.path().join("rules.rrd");
-        let (scenario, file) = (text(&scenario), text(&file));
-        searoom(&["plan", scenario, "--compliance", "shape", "--rrd", file]).success();
-        let said = stdout(&searoom(&["inspect", file]).success());
+        let file = folder.at("rules.rrd");
+        let plan = |compliance: &str| {
+            let asked = format!("plan scenarios/colregs/stand-on.toml --compliance {compliance}");
+            run(&format!("{asked} --rrd {file}")).success();
+            let said = stdout(&run(&format!("inspect {file}")).success());
+            let lanes = run(&format!("inspect --csv rules/roles {file}")).success();
+            [said, stdout(&lanes)]
+        };
+        let [said, lanes] = plan("shape");
         says(
             &said,
             "stand-on 0 to | scores: rule 17  | violates 17(c) at",
         );
-        let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
         says(&lanes, "target: stand-on | target: violates");
-        searoom(&["plan", scenario, "--compliance", "rules", "--rrd", file]).success();
-        let said = stdout(&searoom(&["inspect", file]).success());
+        let [said, lanes] = plan("rules");
         says(&said, "stands on    course and speed are held until ");
-        let lanes = stdout(&searoom(&["inspect", "--csv", "rules/roles", file]).success());
         says(
             &lanes,
             "own ship holds course and speed | own ship escapes: ",
         );
-        let whole = document(&searoom(&["inspect", "--json", file]).success());
+        let whole = json(&format!("inspect --json {file}"));
         assert!(whole["escape"]["held_until_s"].is_f64(), "{whole}");
     }
 
@@ -328,23 +302,17 @@ mod recordings {
         let folder = Folder::new();
         let file = folder.at("a.rrd");
         let scenario = "scenarios/colregs/give-way.toml";
-        let plan = stdout(
-            &searoom(&["plan", scenario, "--no-return", "--json", "--rrd", &file]).success(),
-        );
+        let asked = ["plan", scenario, "--no-return", "--json", "--rrd", &file];
+        let plan = stdout(&searoom(&asked).success());
         says(&plan, "\"time_of_no_return_s\": ");
         let back = searoom(&["inspect", "--plan", &file]).success();
         assert_eq!(stdout(&back), plan);
         // times are shown to the millisecond
         let said = stdout(&searoom(&["inspect", &file]).success());
         let times = said.lines().find(|line| line.starts_with("Timelines: "));
-        let decimals = times
-            .expect("a line")
-            .split(' ')
-            .filter_map(|word| word.split_once('.'));
-        assert!(
-            decimals.into_iter().all(|(_, digits)| digits.len() <= 3),
-            "{said}"
-        );
+        let words = times.expect("a line").split(' ');
+        let mut decimals = words.filter_map(|word| word.split_once('.'));
+        assert!(decimals.all(|(_, digits)| digits.len() <= 3), "{said}");
     }
 
     /// Largest recording with its document, bytes.
@@ -353,57 +321,44 @@ mod recordings {
     #[test]
     fn recordings_of_the_scenarios_are_small() {
         let folder = Folder::new();
-        let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-        let mut seen = 0;
-        for sort in fs::read_dir(scenarios).expect("a folder") {
-            let sort = sort.expect("an entry").path();
-            if !sort.is_dir() {
-                continue;
-            }
-            for scenario in fs::read_dir(sort).expect("a folder") {
-                let scenario = scenario.expect("an entry").path();
-                if scenario.extension().is_none_or(|e| e != "toml") {
-                    continue;
-                }
-                let (file, plan) = recorded(folder.path(), "a.rrd", text(&scenario));
-                let size = fs::metadata(&file).expect("written").len();
-                assert!(size < MOST, "{}: {size} bytes", scenario.display());
-                let back = searoom(&["inspect", "--plan", &file]).success();
-                assert_eq!(stdout(&back), plan, "{}", scenario.display());
-                seen += 1;
-            }
+        let all = fs::read_dir("scenarios").expect("a folder").flatten();
+        let folders = all.map(|entry| entry.path()).filter(|path| path.is_dir());
+        let files = folders.flat_map(|path| fs::read_dir(path).expect("a folder").flatten());
+        let is_ours = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
+        let scenarios: Vec<PathBuf> = files.map(|e| e.path()).filter(is_ours).collect();
+        assert!(scenarios.len() >= 15, "{scenarios:?}");
+        for scenario in scenarios {
+            let (file, plan) = recorded(&folder, "a.rrd", text(&scenario));
+            let size = fs::metadata(&file).expect("written").len();
+            assert!(size < MOST, "{}: {size} bytes", scenario.display());
+            let back = searoom(&["inspect", "--plan", &file]).success();
+            assert_eq!(stdout(&back), plan, "{}", scenario.display());
         }
-        assert!(seen >= 15, "{seen}");
     }
 
     #[test]
     fn curves_and_lines_come_out_as_columns() {
         let folder = Folder::new();
-        let (file, plan) = recorded(folder.path(), "a.rrd", HEAD_ON);
+        let (file, plan) = recorded(&folder, "a.rrd", HEAD_ON);
         let curve = stdout(&searoom(&["inspect", "--csv", "curves/clearance_m", &file]).success());
         let mut lines = curve.lines();
         assert_eq!(lines.next(), Some("sim_time_s,target,safety margin"));
-        let rows: Vec<Vec<f64>> = lines
-            .map(|line| {
-                line.split(',')
-                    .map(|c| c.parse().expect("a number"))
-                    .collect()
-            })
-            .collect();
+        let row = |line: &str| {
+            line.split(',')
+                .map(|c| c.parse().expect("a number"))
+                .collect()
+        };
+        let rows: Vec<Vec<f64>> = lines.map(row).collect();
         assert!(rows.len() > 20 && rows.is_sorted_by(|a, b| a[0] <= b[0]));
         assert!(rows.iter().all(|row| row.len() == 3 && row[2] == 20.0));
         // The curve is sampled: it never goes below the plan's least distance, and comes near it.
         let least = rows.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
         let plan: Value = serde_json::from_str(&plan).expect("a plan document");
-        let dcpa_m = plan["encounters"][0]["dcpa_m"]
-            .as_f64()
-            .expect("a distance");
+        let dcpa_m = number(&plan["encounters"][0]["dcpa_m"]);
         assert!((-1e-6..0.5).contains(&(least - dcpa_m)), "{least} {dcpa_m}");
         let line = stdout(&searoom(&["inspect", "--csv", "/chart/map/planned", &file]).success());
-        assert!(
-            line.starts_with("colors,radii,strips\n") && line.contains("[[[0.0,0.0],"),
-            "{line}"
-        );
+        assert!(line.starts_with("colors,radii,strips\n"), "{line}");
+        says(&line, "[[[0.0,0.0],");
         searoom(&["inspect", "--csv", "curves/clearence", &file])
             .code(2)
             .stderr(contains(
@@ -414,47 +369,33 @@ mod recordings {
     #[test]
     fn a_comparison_is_recorded_scenario_by_scenario_and_read_again() {
         let folder = Folder::new();
-        let recordings = folder.path().join("new");
-        let compared = run(&format!(
-            "compare scenarios/colregs --search a-star --json --rrd {}",
-            text(&recordings)
-        ))
-        .success();
-        let document: Value =
-            serde_json::from_slice(&compared.get_output().stdout).expect("a document");
-        assert_eq!(fs::read_dir(&recordings).expect("a folder").count(), 4);
-        let file = recordings.join("head-on.rrd");
-        let inspected = searoom(&["inspect", text(&file), "--json"]).success();
-        let contents: Value =
-            serde_json::from_slice(&inspected.get_output().stdout).expect("a document");
-        let (read, written) = (&contents["comparison"], &document["comparisons"][1]);
-        let entries = |c: &Value| c["entries"].as_array().expect("a list").clone();
-        assert_eq!(entries(read).len(), entries(written).len());
-        for (read, written) in entries(read).iter().zip(entries(written)) {
-            for key in [
-                "method",
-                "outcome",
-                "verdict",
-                "search_stats",
-                "verified",
-                "safe",
-            ] {
+        let recordings = folder.at("new");
+        let asked = "compare scenarios/colregs --search a-star --json --rrd";
+        let document = json(&format!("{asked} {recordings}"));
+        assert_eq!(folder.names("new").len(), 4);
+        let file = format!("{recordings}/head-on.rrd");
+        let contents = json(&format!("inspect {file} --json"));
+        let read = list(&contents["comparison"]["entries"]);
+        let written = list(&document["comparisons"][1]["entries"]);
+        assert_eq!(read.len(), written.len());
+        for (read, written) in read.iter().zip(written) {
+            for key in "method outcome verdict search_stats verified safe".split(' ') {
                 assert_eq!(read[key], written[key], "{key}");
             }
             assert_eq!(read["timing"].is_null(), written["timing"].is_null());
             assert!(read["timing"].is_null() || read["timing"]["plan_s"].is_number());
         }
-        searoom(&["inspect", text(&file)])
+        searoom(&["inspect", &file])
             .success()
             .stdout(contains("Head-on"))
             .stdout(contains("hold course").and(contains("COLLIDES")));
-        searoom(&["inspect", "--plan", text(&file)])
+        searoom(&["inspect", "--plan", &file])
             .code(2)
             .stderr(contains("the recording of a comparison"));
-        searoom(&["verify", text(&file)])
+        searoom(&["verify", &file])
             .code(2)
             .stderr(contains("`searoom inspect --json` prints its own"));
-        searoom(&["compare", "scenarios/colregs", "--rrd", text(&file)])
+        searoom(&["compare", "scenarios/colregs", "--rrd", &file])
             .code(2)
             .stderr(contains("name a folder"));
     }
@@ -462,7 +403,7 @@ mod recordings {
     #[test]
     fn what_is_no_whole_recording_is_said_to_be_so() {
         let folder = Folder::new();
-        let (file, _) = recorded(folder.path(), "a.rrd", HEAD_ON);
+        let (file, _) = recorded(&folder, "a.rrd", HEAD_ON);
         let bytes = fs::read(&file).expect("a recording");
         let broken = folder.at("b.rrd");
         let refused = |contents: &[u8], expected: &str| {
@@ -485,7 +426,7 @@ mod recordings {
             refused(&damaged, cut_or_changed);
         }
         // a second one behind the first
-        let (other, _) = recorded(folder.path(), "c.rrd", GIVE_WAY);
+        let (other, _) = recorded(&folder, "c.rrd", GIVE_WAY);
         let other = fs::read(other).expect("a recording");
         refused(&[&bytes[..], &other].concat(), cut_or_changed);
         searoom(&["inspect", "no-such.rrd"]).code(2).stderr(
@@ -515,38 +456,23 @@ fn the_rules_are_judged_by_what_is_asked_for() {
     let mine = plan(&["--thresholds", &file]);
     assert_eq!(mine["thresholds"], "mine");
     assert_eq!(mine["trajectory"], usual["trajectory"]);
-    let safety = |plan: &Value| {
-        plan["encounters"][0]["scores"]["safety"]
-            .as_f64()
-            .expect("a score")
-    };
-    assert!(
-        safety(&usual) > 0.5 && safety(&mine) < safety(&usual) - 0.1,
-        "{}",
-        safety(&mine)
-    );
+    let safety = |plan: &Value| number(&plan["encounters"][0]["scores"]["safety"]);
+    let [usual, mine] = [usual, mine].map(|plan| safety(&plan));
+    assert!(usual > 0.5 && mine < usual - 0.1, "{mine}");
     searoom(&["suite", stand_on, "--thresholds", "sfi-autoship"]).success();
 }
 
 #[test]
 fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     let folder = Folder::new();
-    let compared = |args: &[&str]| {
-        let all = [
-            &[
-                "compare",
-                "scenarios/paper/figure_8_stand_on.toml",
-                "--json",
-            ],
-            args,
-        ]
-        .concat();
-        let compared = untimed(document(&searoom(&all).success()));
+    let compared = |options: &str| {
+        let asked = "compare scenarios/paper/figure_8_stand_on.toml --json";
+        let compared = json(&format!("{asked} {options}"));
         compared["comparisons"][0]["entries"].clone()
     };
-    let usual = compared(&[]);
+    let usual = compared("");
     let of = |method: &str, entries: &Value| {
-        let mut entries = entries.as_array().expect("entries").iter();
+        let mut entries = list(entries).iter();
         let entry = entries.find(|e| e["method"] == method).expect("one");
         entry["breaks"].clone()
     };
@@ -557,14 +483,9 @@ fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
     // to whom no turn is one, none is to port
     let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nsteady_deg = 180";
     let file = folder.write("mine.toml", text);
-    let mine = compared(&["--thresholds", &file]);
+    let mine = compared(&format!("--thresholds {file}"));
     assert_eq!(of("space-time, A*", &mine), json!([]));
-    for (usual, mine) in usual
-        .as_array()
-        .into_iter()
-        .flatten()
-        .zip(mine.as_array().into_iter().flatten())
-    {
+    for (usual, mine) in list(&usual).iter().zip(list(&mine)) {
         assert_eq!(usual["track"], mine["track"]);
     }
 }

@@ -1,7 +1,8 @@
 //! `searoom simulate` as a user runs it.
 
 use super::program::{
-    Folder, HEAD_ON, document, json, run, says, searoom, stderr, stdout, text, untimed,
+    Folder, HEAD_ON, document, json, list, number, rows, run, says, searoom, stderr, stdout, text,
+    untimed,
 };
 
 const HEAD_ON_FILE: &str = "scenarios/colregs/head-on.toml";
@@ -16,10 +17,8 @@ fn a_simulation_says_first_whether_ships_met_and_ends_with_status_0() {
     let sailed = run(&format!("simulate {HEAD_ON_FILE}")).success();
     let shown = stdout(&sailed);
     let first = shown.lines().next().expect("a line");
-    assert!(
-        first.starts_with("Head-on: no contact, every plan safe; arrived after 3"),
-        "{first}"
-    );
+    let verdict = "Head-on: no contact, every plan safe; arrived after 3";
+    assert!(first.starts_with(verdict), "{first}");
     says(
         &shown,
         "clearance | head-on | Sailed: J | Plans: 1 | Off the plan | Planning",
@@ -34,14 +33,15 @@ fn a_contact_ends_with_status_1_and_is_named() {
                { t_s = 19, position = { east_m = 62, north_m = 0 } }] }";
     let file = folder.write("ram.toml", head_on(ram, ""));
     let shown = stdout(&searoom(&["simulate", &file]).code(1));
-    assert!(
-        shown.starts_with("Head-on: CONTACT with target ('target' left its set); "),
-        "{shown}"
-    );
+    let verdict = "Head-on: CONTACT with target ('target' left its set); ";
+    assert!(shown.starts_with(verdict), "{shown}");
     let found = document(&searoom(&["simulate", &file, "--json"]).code(1));
     assert_eq!(found["contact"], true);
-    let time = found["targets"][0]["contact_t_s"].as_f64().expect("a time");
+    assert_eq!(found["safe"], false);
+    let target = &found["targets"][0];
+    let time = number(&target["contact_t_s"]);
     assert!((5.0..19.0).contains(&time), "{time}");
+    assert!(target["least_clearance_m"].as_f64() < Some(0.0));
 }
 
 #[test]
@@ -51,31 +51,25 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
                   current = { speed_mps = 0.4, toward_deg = 40, std_mps = 0.1 }";
     let scene = head_on("behaviour = { kind = \"random\" }", tables);
     let file = folder.write("a.toml", scene);
-    let sail = |seed: &str| {
-        untimed(document(
-            // the current carries own ship out of its tracking margin of 0 m
-            &searoom(&["simulate", &file, "--json", "--seed", seed]).code(1),
-        ))
+    let sail = |seed: u32| {
+        // the current carries own ship out of its tracking margin of 0 m
+        let sailed = run(&format!("simulate {file} --json --seed {seed}")).code(1);
+        untimed(document(&sailed))
     };
-    let first = sail("7");
+    let first = sail(7);
     assert_eq!(first["settings"]["seed"], 7);
-    assert_eq!(first, sail("7"));
-    assert_ne!(first, sail("8"));
+    assert_eq!(first, sail(7));
+    assert_ne!(first, sail(8));
 }
 
 #[test]
 fn every_plan_that_was_followed_verifies() {
     let folder = Folder::new();
-    let plans = folder.path().join("plans");
-    searoom(&["simulate", HEAD_ON_FILE, "--plans", text(&plans)]).success();
-    let files = std::fs::read_dir(&plans).expect("made");
-    let files: Vec<String> = files
-        .map(|f| text(&f.expect("a file").path()).to_owned())
-        .collect();
+    run(&format!("simulate {HEAD_ON_FILE} --plans {folder}/plans")).success();
+    let files = folder.names("plans");
     assert!(files.len() > 10, "{files:?}");
-    let mut args = vec!["verify"];
-    args.extend(files.iter().map(String::as_str));
-    searoom(&args).success();
+    let files = files.iter().map(|name| format!(" {folder}/plans/{name}"));
+    run(&format!("verify{}", files.collect::<String>())).success();
 }
 
 #[cfg(feature = "recording")]
@@ -101,13 +95,12 @@ fn a_recording_tells_what_simulate_tells() {
 #[test]
 fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
     let folder = Folder::new();
-    let file = text(&folder.path().join("sailed.svg")).to_owned();
-    let sailed =
-        document(&searoom(&["simulate", HEAD_ON_FILE, "--json", "--figure", &file]).success());
+    let file = folder.at("sailed.svg");
+    let sailed = json(&format!("simulate {HEAD_ON_FILE} --json --figure {file}"));
     let drawn = std::fs::read_to_string(&file).expect("written");
     let least = &sailed["targets"][0];
-    let apart = least["least_clearance_m"].as_f64().expect("a distance");
-    let time = least["least_clearance_t_s"].as_f64().expect("a time");
+    let apart = number(&least["least_clearance_m"]);
+    let time = number(&least["least_clearance_t_s"]);
     let closest = format!("closest approach: {apart:.1} m to target at {time:.0} s");
     for label in [
         &closest,
@@ -151,7 +144,7 @@ fn a_shorter_time_ends_the_simulation_before_arrival() {
     assert_eq!(found["duration_s"], 45.0);
     assert_eq!(found["arrived"], false);
     // nothing is counted for the time after the simulation
-    let cost = found["conduct"]["cost_m2"].as_f64().expect("a cost");
+    let cost = number(&found["conduct"]["cost_m2"]);
     assert!(cost < 1000.0, "{cost}");
     assert_eq!(found["replans"].as_array().map(Vec::len), Some(3));
 }
@@ -185,13 +178,8 @@ fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
 fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
     let folder = Folder::new();
     let long = folder.write("long.toml", head_on("", "[simulation]\nreplan_s = 5000"));
-    let sailed = searoom(&[
-        "simulate",
-        "scenarios/paper/figure_9.toml",
-        &long,
-        HEAD_ON_FILE,
-    ]);
-    let sailed = sailed.code(2);
+    let files = format!("scenarios/paper/figure_9.toml {long} {HEAD_ON_FILE}");
+    let sailed = run(&format!("simulate {files}")).code(2);
     let said = stderr(&sailed);
     says(
         &said,
@@ -210,14 +198,14 @@ fn plans_do_not_depend_on_the_tables_of_the_simulation() {
     let tables = "[simulation]\nseed = 3\nsensor = { kind = \"ais\" }";
     let scene = head_on("behaviour = { kind = \"pursuit\" }", tables);
     let file = folder.write("a.toml", scene);
-    let plan = |file: &str| untimed(document(&searoom(&["plan", file, "--json"]).success()));
+    let plan = |file: &str| untimed(json(&format!("plan {file} --json")));
     assert_eq!(plan(&file), plan(HEAD_ON_FILE));
 }
 
 #[test]
 fn the_shipped_closed_loops_are_sailed_without_contact() {
     let found = json("simulate scenarios/closed-loop --json");
-    let all = found["simulations"].as_array().expect("a list");
+    let all = list(&found["simulations"]);
     assert_eq!(all.len(), 6);
     for sailed in all {
         let title = &sailed["scenario"];
@@ -234,9 +222,9 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let tables = "[simulation]\nreplan = \"events\"\nreplan_s = 300\n\
                   sensor = { kind = \"ais\", interval_s = 2, silent_s = [[20, 60]], stale_s = 30 }";
     let file = folder.write("a.toml", head_on("", tables));
-    let found = document(&searoom(&["simulate", &file, "--json"]).success());
+    let found = json(&format!("simulate {file} --json"));
     assert_eq!(found["settings"]["replan_on_events"], true);
-    let replans = found["replans"].as_array().expect("a list");
+    let replans = list(&found["replans"]);
     let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
@@ -245,6 +233,13 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
     assert!(refused.contains(fault), "{refused}");
 }
+
+/// What a target leaves out of its reports, a sensor, and the fault.
+const NOT_REPORTED: &str = r#"
+"heading", "size" | kind = "radar" | : found a sensor of kind "radar"
+"heading", "size" | kind = "ais", default_length_m = 50 | : found a larger ship than the default of 50 × 20 m
+"name" | kind = "ais" | [0]: found the text "name"; allowed: "heading", "size"
+"#;
 
 #[test]
 fn a_target_without_size_in_its_reports_has_the_default_size() {
@@ -258,29 +253,14 @@ fn a_target_without_size_in_its_reports_has_the_default_size() {
     let found = document(&sail(both, "kind = \"ais\", default_beam_m = 75", 0));
     let assumed = &found["replans"][0]["estimates"][0];
     assert_eq!(
-        (&assumed["length_m"], &assumed["beam_m"]),
-        (&125.0.into(), &125.0.into())
+        [number(&assumed["length_m"]), number(&assumed["beam_m"])],
+        [125.0; 2]
     );
     assert_eq!(found["targets"][0]["length_m"], 60.0);
-    for (target, sensor, fault) in [
-        (
-            both,
-            "kind = \"radar\"",
-            "targets[0].not_reported: found a sensor of kind \"radar\"",
-        ),
-        (
-            both,
-            "kind = \"ais\", default_length_m = 50",
-            "targets[0].not_reported: found a larger ship than the default of 50 × 20 m",
-        ),
-        (
-            "not_reported = [\"name\"]",
-            "kind = \"ais\"",
-            "targets[0].not_reported[0]: found the text \"name\"; allowed: \"heading\", \"size\"",
-        ),
-    ] {
-        let refused = stderr(&sail(target, sensor, 2));
-        assert!(refused.contains(fault), "{fault}: {refused}");
+    for [not_reported, sensor, fault] in rows(NOT_REPORTED) {
+        let target = format!("not_reported = [{not_reported}]");
+        let refused = stderr(&sail(&target, &sensor, 2));
+        says(&refused, &format!("targets[0].not_reported{fault}"));
     }
 }
 
@@ -296,14 +276,8 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     let file = folder.write("far.toml", far);
     let plans = folder.path().join("plans");
     let sailing = Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .args([
-            "simulate",
-            &file,
-            HEAD_ON_FILE,
-            "--json",
-            "--plans",
-            text(&plans),
-        ])
+        .args(["simulate", &file, HEAD_ON_FILE, "--json", "--plans"])
+        .arg(&plans)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -323,11 +297,9 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     let sailed = String::from_utf8(ended.stdout).expect("text");
     let found: serde_json::Value = serde_json::from_str(&sailed).expect("a list");
     let found = &found["simulations"][0];
-    assert_eq!(
-        (&found["interrupted"], &found["arrived"]),
-        (&true.into(), &false.into())
-    );
-    let time = found["duration_s"].as_f64().expect("a time");
+    assert_eq!(found["interrupted"], true);
+    assert_eq!(found["arrived"], false);
+    let time = number(&found["duration_s"]);
     assert!(time > 0.0 && time < 800_000.0, "{time}");
     let file = folder.write("sailed.json", found.to_string());
     let shown = stdout(&searoom(&["verify", &file]).success());
@@ -342,16 +314,13 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
 #[test]
 fn every_simulation_of_a_list_is_verified() {
     let folder = Folder::new();
-    let mut sailed = json(&format!(
-        "simulate {HEAD_ON_FILE} scenarios/colregs/give-way.toml --json"
-    ));
+    let two = format!("{HEAD_ON_FILE} scenarios/colregs/give-way.toml");
+    let mut sailed = json(&format!("simulate {two} --json"));
     let list = folder.write("list.json", sailed.to_string());
     let shown = stdout(&searoom(&["verify", &list]).success());
     assert_eq!(shown.matches(": verified: no contact").count(), 2);
-    assert!(
-        shown.ends_with("\n2 documents: 2 verified, 2 safe\n"),
-        "{shown}"
-    );
+    let summary = "\n2 documents: 2 verified, 2 safe\n";
+    assert!(shown.ends_with(summary), "{shown}");
     sailed["simulations"][1]["contact"] = true.into();
     let altered = folder.write("altered.json", sailed.to_string());
     let found = document(&searoom(&["verify", &altered, "--json"]).code(1));
@@ -370,9 +339,7 @@ fn every_simulation_of_a_list_is_verified() {
     searoom(&["verify", &old]).code(2);
     let empty = folder.write("empty.json", "{\"simulations\": []}");
     let refused = searoom(&["verify", &empty]).code(2);
-    refused.stderr(predicates::str::contains(
-        "empty.json: simulations: an empty list",
-    ));
+    says(&stderr(&refused), "empty.json: simulations: an empty list");
 }
 
 #[test]
@@ -380,14 +347,12 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
     let folder = Folder::new();
     let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
                   current = { speed_mps = 0.3, toward_deg = 10 }";
-    let steered = HEAD_ON.replace(
-        "safety_margin_m",
-        "tracking_margin_m = 20.0\nsafety_margin_m",
-    );
+    let margins = "tracking_margin_m = 20.0\nsafety_margin_m";
+    let steered = HEAD_ON.replace("safety_margin_m", margins);
     let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
     let steered = folder.write("steered.toml", steered);
     for file in [HEAD_ON_FILE, &steered] {
-        let sailed = document(&searoom(&["simulate", file, "--json"]).success());
+        let sailed = json(&format!("simulate {file} --json"));
         let check = |change: &dyn Fn(&mut serde_json::Value)| {
             let mut changed = sailed.clone();
             change(&mut changed);
@@ -395,10 +360,8 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             searoom(&["verify", &name])
         };
         let shown = stdout(&check(&|_| {}).success());
-        assert!(
-            shown.starts_with("Head-on: verified: no contact, least distance "),
-            "{shown}"
-        );
+        let verdict = "Head-on: verified: no contact, least distance ";
+        assert!(shown.starts_with(verdict), "{shown}");
         for (pointer, value) in [
             ("/contact", true.into()),
             ("/safe", false.into()),

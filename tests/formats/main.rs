@@ -74,11 +74,7 @@ fn every_case_of_imazu_meets_where_it_is_said_to() {
         let Imported {
             scenario, notes, ..
         } = imported(case);
-        ships += if index < 22 {
-            scenario.targets.len()
-        } else {
-            0
-        };
+        ships += scenario.targets.len() * usize::from(index < 22);
         assert_eq!(notes.len(), 1, "{notes:?}");
         let own = &scenario.own_ship;
         assert_eq!((own.hull.length, own.hull.beam), (100.0, 20.0));
@@ -115,9 +111,8 @@ fn every_target_of_dnv_meets_own_ship() {
         for target in &scenario.targets {
             targets += 1;
             let apart = |t: f64| (target.position_at(t) - scenario.desired.position_at(t)).norm();
-            let least = (0..1800)
-                .map(|t| apart(t.into()))
-                .fold(f64::INFINITY, f64::min);
+            let all = (0..1800).map(|t| apart(t.into()));
+            let least = all.fold(f64::INFINITY, f64::min);
             assert!(least < 35.0, "{file}: {}: {least}", target.name);
         }
     }
@@ -158,11 +153,10 @@ fn an_assumption_out_of_range_changes_nothing() {
     }
 }
 
+const DNV_01: &str = include_str!("../../scenarios/dnv/traffic_situation_01.json");
+
 fn dnv_01() -> Value {
-    serde_json::from_str(include_str!(
-        "../../scenarios/dnv/traffic_situation_01.json"
-    ))
-    .expect("JSON")
+    serde_json::from_str(DNV_01).expect("JSON")
 }
 
 /// Returns the document with one value replaced or removed.
@@ -179,12 +173,7 @@ fn with(pointer: &str, value: Option<Value>) -> String {
         }
         (Value::Array(list), value) => {
             let index: usize = key.parse().expect("an index");
-            match value {
-                Some(value) => list[index] = value,
-                None => {
-                    list.remove(index);
-                }
-            }
+            list.splice(index..=index, value);
         }
         _ => panic!("{pointer}"),
     }
@@ -274,10 +263,9 @@ fn a_broken_case_of_imazu_costs_itself_alone() {
 
 #[test]
 fn keys_that_are_there_twice_and_json_that_is_none_are_refused() {
-    let text = include_str!("../../scenarios/dnv/traffic_situation_01.json");
     let title = r#""title": "HO","#;
-    let twice = text.replacen(title, &title.repeat(2), 1);
-    let (half, deep) = (&text[..text.len() / 2], "{\"a\":".repeat(10_000));
+    let twice = DNV_01.replacen(title, &title.repeat(2), 1);
+    let (half, deep) = (&DNV_01[..DNV_01.len() / 2], "{\"a\":".repeat(10_000));
     for text in [&twice, half, "{}", "{\"a\": 1}", &deep] {
         assert_eq!(paths(text, &Assumed::default()), [""], "{text:.60}");
     }
@@ -362,9 +350,7 @@ fn every_relaxation_level_answers_some_encounter() {
     };
     let dnv = |number: &str| {
         let file = format!("dnv/traffic_situation_{number}.json");
-        let situation = benchmark(&file).remove(0);
-        let assumed = Assumed::default();
-        situation.scenario(&assumed).expect("no faults").scenario
+        imported(&benchmark(&file)[0]).scenario
     };
     // two ships head-on and one that gives way; one that gives way and two to overtake
     let by_the_rules = answer(dnv("23"), Compliance::Rules);
@@ -373,10 +359,8 @@ fn every_relaxation_level_answers_some_encounter() {
     assert_eq!(clear_of_shapes.level, RelaxationLevel::Domains);
     let searched = |run: &Run| run.planned.stats.expanded > 0;
     let clear_of_hard_sets = answer(dnv("43"), Compliance::Shape);
-    assert!(
-        clear_of_hard_sets.level == RelaxationLevel::ReducedDomains
-            && searched(&clear_of_hard_sets)
-    );
+    assert_eq!(clear_of_hard_sets.level, RelaxationLevel::ReducedDomains);
+    assert!(searched(&clear_of_hard_sets));
     // wide detours are not plans of the graph
     let far = Assumed::default().with(Assumption::SafetyMargin, 500.0);
     let situation = benchmark("dnv/traffic_situation_49.json").remove(0);

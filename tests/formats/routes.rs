@@ -39,10 +39,9 @@ impl Declared {
         Self {
             knots: (0..legs).map(|_| rng.random_range(4.0..20.0)).collect(),
             radii: (0..=legs).map(|_| radius(rng)).collect(),
-            delay: if rng.random_bool(0.3) {
-                rng.random_range(1.0..600.0)
-            } else {
-                0.0
+            delay: match rng.random_bool(0.3) {
+                true => rng.random_range(1.0..600.0),
+                false => 0.0,
             },
             points,
         }
@@ -59,11 +58,10 @@ impl Declared {
             .enumerate()
             .map(|(index, point)| {
                 let place = earth.to_geographic(*point);
-                let mut waypoint =
-                    json!({ "position": { "lat": place.lat_deg, "lon": place.lon_deg } });
-                if let Some(radius) =
-                    self.radii[index].filter(|_| index > 0 && index < self.knots.len())
-                {
+                let position = json!({ "lat": place.lat_deg, "lon": place.lon_deg });
+                let mut waypoint = json!({ "position": position });
+                let is_corner = index > 0 && index < self.knots.len();
+                if let (true, Some(radius)) = (is_corner, self.radii[index]) {
                     waypoint["turnRadius"] = json!(radius / 1852.0);
                 }
                 if index > 0 {
@@ -121,6 +119,15 @@ struct Piece {
     legs: [usize; 2],
 }
 
+/// Deviations of speed and course as fractions of their spreads.
+const EXTREMES: [(f64, f64); 5] = [
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (1.0, 1.0),
+    (-1.0, -1.0),
+    (-1.0, 1.0),
+];
+
 /// Offset in seconds of the sampled instants within a step, to exclude rounding.
 const INSIDE: f64 = 1e-4;
 
@@ -152,10 +159,8 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let target = &scenario.targets[0];
         let sets = &target.sets().expect("sets").velocities;
         assert!(sets.len() > 1 && sets.len() <= 50, "{}", sets.len());
-        assert_eq!(
-            notes.iter().any(|n| n.contains("appears after")),
-            declared.delay > 0.0
-        );
+        let late = notes.iter().any(|n| n.contains("appears after"));
+        assert_eq!(late, declared.delay > 0.0);
         let own = &scenario.own_ship;
         let hull = |length: f64, beam: f64| 0.5 * length.hypot(beam);
         let clearance = hull(50.0, 10.0) + hull(own.hull.length, own.hull.beam) + own.safety_margin;
@@ -165,15 +170,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let mut steps = 0;
         for run in 0..runs {
             // constant extremes first, then arbitrary values
-            let extreme = [
-                (1.0, 0.0),
-                (-1.0, 0.0),
-                (1.0, 1.0),
-                (-1.0, -1.0),
-                (-1.0, 1.0),
-            ]
-            .get(run)
-            .copied();
+            let extreme = EXTREMES.get(run).copied();
             let pieces = declared.pieces(run % 2 == 0);
             if pieces.iter().any(|p| p.length < 0.0) {
                 continue;
@@ -241,18 +238,12 @@ fn a_route_on_one_line_is_a_tracked_ship() {
     let ship = document.pointer_mut("/targetShips/0").expect("there");
     let middle =
         json!({ "position": { "lat": 58.80500723, "lon": 10.4906874 }, "leg": { "sog": 12.1 } });
-    ship["waypoints"]
-        .as_array_mut()
-        .expect("a list")
-        .insert(1, middle);
-    let scenario =
-        situations(Contents::parse(&document.to_string(), &Assumed::default()).expect("good"))[0]
-            .scenario(&Assumed::default())
-            .expect("no faults")
-            .scenario;
+    let waypoints = ship["waypoints"].as_array_mut();
+    waypoints.expect("a list").insert(1, middle);
+    let contents = Contents::parse(&document.to_string(), &Assumed::default()).expect("good");
+    let scenario = imported(&situations(contents)[0]).scenario;
     let ship = scenario.targets[0].ship().expect("a ship");
     // widened by the deviation of the middle point
-    assert!(
-        ship.course_spread >= 5.0_f64.to_radians() && ship.course_spread < 6.0_f64.to_radians()
-    );
+    let spread = ship.course_spread.to_degrees();
+    assert!((5.0..6.0).contains(&spread), "{spread}");
 }

@@ -148,11 +148,8 @@ fn a_controller_goes_on_warm_and_stays_clear() {
             keep_outs: &keep_outs,
         };
         task = horizon.step(&task, measured, &|| true);
-        assert!(
-            horizon.plan().is_feasible(),
-            "{k}: {:?}",
-            horizon.plan().report
-        );
+        let report = &horizon.plan().report;
+        assert!(horizon.plan().is_feasible(), "{k}: {report:?}");
         assert!((task.start_time - 2.0 * f64::from(k + 1)).abs() < 1e-9);
         assert_eq!(horizon.plan().profile.states[0], state);
         steps += horizon.plan().iterations;
@@ -239,9 +236,7 @@ fn the_clock_is_read_between_the_trial_points_of_a_step() {
         .expect("a start with a step that is cut");
     for strikes in 1..=all {
         let (readings, report) = until(&guess, strikes);
-        assert_eq!(
-            (readings, report.status),
-            (strikes, SolverStatus::OutOfTime)
-        );
+        assert_eq!(readings, strikes);
+        assert_eq!(report.status, SolverStatus::OutOfTime);
     }
 }

@@ -21,27 +21,18 @@ use crate::campaigns::statistics::quantile;
 #[test]
 fn a_ship_that_does_not_give_way_is_hit() {
     let mut hit = 0;
-    for kind in EncounterKind::ALL {
-        for seed in 0..10 {
-            let scenario = random_encounter(kind, seed, Placement::Random)
-                .expect("drawn")
-                .scenario;
-            let undisturbed = Trajectory::new(vec![Segment::straight(
-                scenario.own_ship.pose,
-                0.0,
-                scenario.desired.duration(),
-                scenario.own_ship.speed,
-            )])
-            .expect("one line");
-            let ship = scenario.targets[0].ship().expect("a ship");
-            let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let own = &scenario.own_ship;
-            hit += (0..20)
-                .map(|_| least_hull_distance(own, &undisturbed, ship, Signal::Constant, &mut rng))
-                .any(|least| least < 0.0) as usize;
-        }
+    for (kind, seed) in EncounterKind::with_seeds(0..10) {
+        let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
+        let (scenario, own) = (&drawn.scenario, &drawn.scenario.own_ship);
+        let line = Segment::straight(own.pose, 0.0, scenario.desired.duration(), own.speed);
+        let undisturbed = Trajectory::new(vec![line]).expect("one line");
+        let ship = scenario.targets[0].ship().expect("a ship");
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        hit += (0..20)
+            .map(|_| least_hull_distance(own, &undisturbed, ship, Signal::Constant, &mut rng))
+            .any(|least| least < 0.0) as usize;
     }
-    assert!(hit >= 30, "only {hit} of 40 undisturbed ships are hit");
+    assert!(hit >= 30, "only {hit} of 50 undisturbed ships are hit");
 }
 
 /// Tests plans that avoid the hard sets alone and pass at their edge. The margin is kept for any
@@ -49,19 +40,17 @@ fn a_ship_that_does_not_give_way_is_hit() {
 #[test]
 fn a_hull_that_turns_with_its_course_keeps_the_margin() {
     let (mut broken, mut near) = (Vec::new(), 0);
-    for kind in EncounterKind::ALL {
-        for seed in 0..15 {
-            let mut drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
-            drawn.scenario.compliance = Compliance::None;
-            let margin = drawn.scenario.own_ship.safety_margin;
-            let record = planned(seed, drawn);
-            let least = least_sampled(&record);
-            near += usize::from(least < 2.0 * margin);
-            broken.extend(claims_of(&record, least));
-        }
+    for (kind, seed) in EncounterKind::with_seeds(0..15) {
+        let mut drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
+        drawn.scenario.compliance = Compliance::None;
+        let margin = drawn.scenario.own_ship.safety_margin;
+        let record = planned(seed, drawn);
+        let least = least_sampled(&record);
+        near += usize::from(least < 2.0 * margin);
+        broken.extend(claims_of(&record, least));
     }
     assert_eq!(broken, Vec::<String>::new());
-    assert!(near >= 12, "only {near} of 60 pass near");
+    assert!(near >= 12, "only {near} of 75 pass near");
 }
 
 /// Maximum cost of the graph's plan relative to the optimum for several targets under a weighted
@@ -73,9 +62,8 @@ const HASTE: [f64; 3] = [1.1, 1.3, 1.7];
 /// search; also among land.
 #[test]
 fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
-    let alone = EncounterKind::ALL
-        .into_iter()
-        .flat_map(|kind| (0..25).map(move |seed| random_encounter(kind, seed, Placement::Random)));
+    let alone = EncounterKind::with_seeds(0..25)
+        .map(|(kind, seed)| random_encounter(kind, seed, Placement::Random));
     let among = (0..25).map(|seed| random_traffic(2 + seed as usize % 2, seed, Placement::Random));
     let open = alone
         .chain(among)
@@ -131,32 +119,26 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
 #[test]
 fn petgraph_finds_the_cost_of_the_graph() {
     let mut compared = 0;
-    for kind in EncounterKind::ALL {
-        for seed in 0..15 {
-            let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
-            for search in [SearchKind::AStar, SearchKind::Dijkstra] {
-                let mut scenario = drawn.scenario.clone();
-                scenario.search = search;
-                let planned = pipeline::run(scenario).planned;
-                let Some(ours) = planned.outcome.plan().and_then(|p| p.graph_cost) else {
-                    continue;
-                };
-                let mut graph = planned.explored;
-                graph.retain_edges(|graph, edge| graph[edge].verdict == EdgeVerdict::Free);
-                let start = graph
-                    .node_indices()
-                    .find(|n| graph[*n].kind == NodeKind::Start)
-                    .expect("a start");
-                let costs = dijkstra(&graph, start, None, |e| e.weight().cost);
-                let ends = costs
-                    .iter()
-                    .filter(|(n, _)| graph[**n].kind == NodeKind::End);
-                let least = ends.map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
-                let apart = (least - ours).abs();
-                let what = format!("{kind:?} {seed}: {least} {ours}");
-                assert!(apart <= 1e-9 * ours.max(1.0), "{what}");
-                compared += 1;
-            }
+    for (kind, seed) in EncounterKind::with_seeds(0..15) {
+        let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
+        for search in [SearchKind::AStar, SearchKind::Dijkstra] {
+            let mut scenario = drawn.scenario.clone();
+            scenario.search = search;
+            let planned = pipeline::run(scenario).planned;
+            let Some(ours) = planned.outcome.plan().and_then(|p| p.graph_cost) else {
+                continue;
+            };
+            let mut graph = planned.explored;
+            graph.retain_edges(|graph, edge| graph[edge].verdict == EdgeVerdict::Free);
+            let mut nodes = graph.node_indices();
+            let start = nodes.find(|n| graph[*n].kind == NodeKind::Start);
+            let costs = dijkstra(&graph, start.expect("a start"), None, |e| e.weight().cost);
+            let ends = (costs.iter()).filter(|(n, _)| graph[**n].kind == NodeKind::End);
+            let least = ends.map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
+            let apart = (least - ours).abs();
+            let what = format!("{kind:?} {seed}: {least} {ours}");
+            assert!(apart <= 1e-9 * ours.max(1.0), "{what}");
+            compared += 1;
         }
     }
     assert!(compared >= 80, "{compared}");
@@ -201,11 +183,9 @@ fn a_hair_beside_the_path_is_on_it() {
                 let beside = Pose::new(Vector::new(along, across), turned);
                 let place = Pose::new(Vector::new(0.1 * far, far), course);
                 let mut scenario = asked.clone();
-                let waypoints = asked.desired.waypoints();
-                let waypoints: Vec<Vector> = waypoints
-                    .into_iter()
-                    .map(|w| place.world_coordinates(w))
-                    .collect();
+                let waypoints = asked.desired.waypoints().into_iter();
+                let waypoints: Vec<Vector> =
+                    waypoints.map(|w| place.world_coordinates(w)).collect();
                 scenario.desired = DesiredTrajectory::new(&waypoints, &[5.0]).expect("a path");
                 scenario.own_ship.pose = Pose::new(
                     place.world_coordinates(beside.position),

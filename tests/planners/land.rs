@@ -9,6 +9,8 @@ use searoom::planner::DEFAULT_PLANNER;
 use searoom::planner::path_time::PathTimePlanner;
 use searoom::scenario::{Compliance, Scenario, ScenarioError};
 
+use crate::campaigns::documents::scenario;
+
 /// Scenario south-west of Munkholmen, in the middle of the fjord, in metres and on the map.
 const SCENARIO: &str = r#"
 title = "past Munkholmen"
@@ -67,6 +69,11 @@ fn faults(folder: &Path, text: &str) -> Vec<String> {
     }
 }
 
+fn assert_one_fault(folder: &Path, text: &str, expected: &str) {
+    let found = faults(folder, text);
+    assert!(found.len() == 1 && found[0].contains(expected), "{found:?}");
+}
+
 #[test]
 fn degrees_and_metres_are_one_plane_and_the_map_lies_on_it() {
     let folder = folder();
@@ -102,18 +109,15 @@ east_m = 0, | lat_deg = 63.45, east_m = 0, | mission.waypoints[1]: found east_m 
 fn what_needs_an_origin_asks_for_it_once() {
     let folder = folder();
     let without = SCENARIO.replace("origin = {", "# origin = {");
-    let found = faults(folder.path(), &without);
-    assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].contains("origin: found nothing; allowed: a table { lat_deg, lon_deg }"));
+    let table = "origin: found nothing; allowed: a table { lat_deg, lon_deg }";
+    assert_one_fault(folder.path(), &without, table);
     for line in MISTAKES.lines().filter(|line| !line.is_empty()) {
         let cells: Vec<&str> = line.split(" | ").collect();
         let [from, to, expected] = cells[..] else {
             panic!("{line}");
         };
         assert!(SCENARIO.contains(from), "{from}");
-        let found = faults(folder.path(), &SCENARIO.replacen(from, to, 1));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(expected), "{found:?}");
+        assert_one_fault(folder.path(), &SCENARIO.replacen(from, to, 1), expected);
     }
 }
 
@@ -125,35 +129,22 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
         |text: &str| std::fs::write(folder.path().join("bad.geojson"), text).expect("written");
     let text = SCENARIO.replace("harbour.geojson", "bad.geojson");
     let missing = faults(folder.path(), &text);
-    assert!(
-        missing[0].contains("map: found ")
-            && missing[0].contains("bad.geojson, which cannot be read")
-    );
+    assert!(missing[0].contains("map: found "), "{missing:?}");
+    assert!(missing[0].contains("bad.geojson, which cannot be read"));
     write(&map.replacen(r#""type":"Polygon""#, r#""type":"MultiLineString""#, 1));
-    let found = faults(folder.path(), &text);
-    assert_eq!(found.len(), 1);
-    assert!(
-        found[0].contains(
-            "bad.geojson: features[0]: a MultiLineString; allowed: a Polygon or a MultiPolygon"
-        ),
-        "{found:?}"
-    );
+    let line = "bad.geojson: features[0]: a MultiLineString; allowed: a Polygon or a MultiPolygon";
+    assert_one_fault(folder.path(), &text, line);
     // the origin in another town: every feature is far
     let oslo = SCENARIO
         .replace("63.44,", "59.91,")
         .replace("10.399", "10.75");
     let found = faults(folder.path(), &oslo);
-    assert!(
-        found
-            .iter()
-            .any(|f| f.contains("features[0]") && f.contains("km from the origin"))
-    );
+    let is_far = |f: &String| f.contains("features[0]") && f.contains("km from the origin");
+    assert!(found.iter().any(is_far));
     assert!(found[0].contains("and so in 26 more polygons"), "{found:?}");
     // positions are also far: all faults at once
-    assert!(
-        found.iter().any(|f| f.contains("own_ship.position")),
-        "{found:?}"
-    );
+    let mut faults = found.iter();
+    assert!(faults.any(|f| f.contains("own_ship.position")), "{found:?}");
 }
 
 /// Tests a hull that is clear on both legs, but whose bow would sweep to within a metre of an islet
@@ -168,12 +159,10 @@ fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
         let place = earth.to_geographic(place);
         format!("[{:.9}, {:.9}]", place.lon_deg, place.lat_deg)
     });
-    let islet = format!(
-        r#"{{ "type": "Polygon", "coordinates": [[{}]] }}"#,
-        ring.join(", ")
-    );
+    let ring = ring.join(", ");
+    let islet = format!(r#"{{ "type": "Polygon", "coordinates": [[{ring}]] }}"#);
     std::fs::write(folder.path().join("islet.geojson"), islet).expect("written");
-    let text = |kind: &str, course: f64, turn: &str| {
+    let text = |kind: &str, turn: &str| {
         format!(
             r#"
 title = "round the corner"
@@ -181,85 +170,70 @@ horizon_s = 600
 origin = {{ lat_deg = 63.44, lon_deg = 10.399 }}
 map = "islet.geojson"
 planner = {{ kind = "{kind}", objective = "space-time-error" }}
-own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = {course}, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 40, land_margin_m = 2 }}
+own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 40, land_margin_m = 2 }}
 mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_m = 0 }}, {turn}] }}
 "#
         )
     };
     let north = "{ east_m = 200, north_m = 300 }";
-    let found = faults(folder.path(), &text("path-time", 90.0, north));
-    assert_eq!(found.len(), 1, "{found:?}");
     let expected = "mission.waypoints[1]: found a turn on the spot that takes own hull to 0.7 m from land; allowed: at least 2 m";
-    assert!(found[0].contains(expected), "{found:?}");
+    assert_one_fault(folder.path(), &text("path-time", north), expected);
     // on the other side the bow sweeps over water, and so does the stern
     let south = "{ east_m = 200, north_m = -300 }";
-    read(folder.path(), &text("path-time", 90.0, south)).expect("valid");
+    read(folder.path(), &text("path-time", south)).expect("valid");
     // back along the same leg: half a turn to either side
     let back = "{ east_m = 100, north_m = 0 }";
-    let found = faults(folder.path(), &text("path-time", 90.0, back));
-    assert!(
-        found[0].contains("waypoints[1]: found a turn on the spot"),
-        "{found:?}"
-    );
+    let found = faults(folder.path(), &text("path-time", back));
+    let expected = "waypoints[1]: found a turn on the spot";
+    assert!(found[0].contains(expected), "{found:?}");
     // the space-time planner turns on an arc around the corner
-    let mut scenario = read(folder.path(), &text("space-time", 90.0, north)).expect("valid");
+    let mut scenario = read(folder.path(), &text("space-time", north)).expect("valid");
     // for a planner without this check, the independent checker finds it
     scenario.planner = &PathTimePlanner;
-    let wrong = pipeline::run(scenario)
-        .evaluation
-        .expect("judged")
-        .violations;
-    assert_eq!(wrong.len(), 1, "{wrong:?}");
-    assert!(
-        wrong[0].what.contains("land: own hull at 7.39") && (wrong[0].time - 40.0).abs() < 1e-6,
-        "{wrong:?}"
-    );
+    let judged = pipeline::run(scenario).evaluation.expect("judged");
+    let [wrong] = &judged.violations[..] else {
+        panic!("{:?}", judged.violations);
+    };
+    let swept = wrong.what.contains("land: own hull at 7.39");
+    assert!(swept && (wrong.time - 40.0).abs() < 1e-6, "{wrong:?}");
 }
 
 #[test]
 fn a_start_and_a_path_on_land_are_named_together() {
     let folder = folder();
     // the middle waypoint moved behind Munkholmen, the start onto the quay
+    let behind = "{ lat_deg = 63.4520, lon_deg = 10.3900 }";
+    let quay = "position = { lat_deg = 63.4305, lon_deg = 10.395 }";
     let text = SCENARIO
-        .replace(
-            "{ east_m = 0, north_m = 780 }",
-            "{ lat_deg = 63.4520, lon_deg = 10.3900 }",
-        )
-        .replace(
-            "position = { lat_deg = 63.4470, lon_deg = 10.3700 }",
-            "position = { lat_deg = 63.4305, lon_deg = 10.395 }",
-        );
+        .replace("{ east_m = 0, north_m = 780 }", behind)
+        .replace("position = { lat_deg = 63.4470, lon_deg = 10.3700 }", quay);
     let found = faults(folder.path(), &text);
     assert_eq!(found.len(), 2, "{found:?}");
-    assert!(
-        found[0].contains("own_ship.position: found own hull on land, "),
-        "{found:?}"
-    );
-    assert!(found[0].contains("at least 10 m of water around own hull"));
-    assert!(
-        found[1].contains("mission.waypoints[1]: found a leg that crosses land from "),
-        "{found:?}"
-    );
-    assert!(found[1].contains("m are missing at east ") && found[1].contains("(lat 63.45"));
-    assert!(found[1].contains("at least 14.0 m from the leg to land"));
+    for (fault, part) in [
+        (0, "own_ship.position: found own hull on land, "),
+        (0, "at least 10 m of water around own hull"),
+        (
+            1,
+            "mission.waypoints[1]: found a leg that crosses land from ",
+        ),
+        (1, "m are missing at east "),
+        (1, "(lat 63.45"),
+        (1, "at least 14.0 m from the leg to land"),
+    ] {
+        assert!(found[fault].contains(part), "{part}: {found:?}");
+    }
     // near land, not on it
     let near = SCENARIO.replace("land_margin_m = 10", "land_margin_m = 500");
     let found = faults(folder.path(), &near);
-    assert!(
-        found.iter().all(|f| f.contains("comes too near to land")),
-        "{found:?}"
-    );
+    let near = |f: &String| f.contains("comes too near to land");
+    assert!(found.iter().all(near), "{found:?}");
 }
 
 /// Tests a canal whose bends are tighter than own ship's turning radius: no motion along its path
 /// is clear of land.
 #[test]
 fn a_path_that_cannot_be_sailed_clear_of_land_has_no_plan_rather_than_one_ashore() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/scenarios/harbour/canal-transit.toml"
-    );
-    let along = Scenario::read(file.as_ref()).expect("a scenario");
+    let along = scenario("harbour/canal-transit.toml");
     for compliance in [Compliance::None, Compliance::Shape, Compliance::Rules] {
         let run = pipeline::run(Scenario {
             planner: DEFAULT_PLANNER,

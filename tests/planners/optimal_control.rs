@@ -7,7 +7,7 @@ use searoom::evaluation::{Evaluation, Request, Steering, evaluate_steered};
 use searoom::frame::Vector;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
-use searoom::planner::{NoPlan, Outcome};
+use searoom::planner::{NoPlan, Outcome, Plan};
 use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
@@ -18,6 +18,18 @@ const FIGURE_9: &str = include_str!("../../scenarios/paper/figure_9.toml");
 
 fn run(text: &str) -> Run {
     pipeline::run(Scenario::parse(text).expect("valid"))
+}
+
+fn plan(run: &Run) -> &Plan {
+    run.planned.outcome.plan().expect("a plan")
+}
+
+fn nodes(run: &Run) -> &[ForceNode] {
+    plan(run).trajectory.steered().expect("forces").nodes()
+}
+
+fn is_verified(run: &Run) -> bool {
+    run.evaluation.as_ref().is_some_and(Evaluation::verified)
 }
 
 fn reason(run: &Run) -> &NoPlan {
@@ -57,8 +69,7 @@ fn figure_9_is_solved_verified_and_written() {
     let report = run.planned.control.as_ref().expect("forces");
     assert!(report.starts.iter().all(|s| s.feasible) && report.starts.len() > 10);
     assert!(report.defect <= 1e-4 && report.classes.len() > 4);
-    let plan = run.planned.outcome.plan().expect("solved");
-    assert!(plan.cost < 6.05, "{}", plan.cost);
+    assert!(plan(&run).cost < 6.05, "{}", plan(&run).cost);
     assert!(evaluation.min_clearance > 0.0 && evaluation.min_clearance < 1e-3);
     assert!(evaluation.delay.is_nan() && (evaluation.duration - 100.0).abs() < 1e-9);
 
@@ -69,10 +80,8 @@ fn figure_9_is_solved_verified_and_written() {
     assert_eq!(json["cost"]["arrived"], false);
     assert!(json["trajectory"]["segments"].is_null() && json["cost"]["delay_s"].is_null());
     let samples = json["trajectory"]["samples"].as_array().expect("a list");
-    let nodes: Vec<_> = samples
-        .iter()
-        .filter(|s| s["surge_n"].is_number())
-        .collect();
+    let is_node = |s: &&serde_json::Value| s["surge_n"].is_number();
+    let nodes: Vec<_> = samples.iter().filter(is_node).collect();
     assert_eq!(nodes.len(), report.intervals + 1);
     for key in "heading_deg surge_mps sway_mps yaw_rate_deg_per_s sway_n yaw_nm".split(' ') {
         assert!(nodes.iter().all(|n| n[key].is_number()), "{key}");
@@ -84,28 +93,24 @@ fn figure_9_is_solved_verified_and_written() {
     let nodes = samples.iter().filter(|s| s.node.is_some()).count();
     assert_eq!(nodes, report.intervals + 1);
     let table = plan_text(&run);
-    for word in [
-        "solved (verified, safe)",
-        "stage cost",
-        "ways to pass",
-        "no arrival is asked for",
-    ] {
+    let words = "solved (verified, safe) | stage cost | ways to pass | no arrival is asked for";
+    for word in words.split(" | ") {
         assert!(table.contains(word), "{word} in {table}");
     }
 }
 
 #[test]
 fn any_number_of_threads_gives_the_same_plan() {
-    let plan = |threads: usize| {
+    let planned = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let run = pool.expect("a pool").install(|| run(&patient()));
         let mut document = PlanDocument::of(&run);
         document.timing.plan_s = 0.0;
         serde_json::to_string(&document).expect("writes")
     };
-    let alone = plan(1);
-    assert_eq!(alone, plan(2));
-    assert_eq!(alone, plan(5));
+    let alone = planned(1);
+    assert_eq!(alone, planned(2));
+    assert_eq!(alone, planned(5));
 }
 
 fn words(found: &Evaluation) -> Vec<String> {
@@ -117,8 +122,7 @@ fn words(found: &Evaluation) -> Vec<String> {
 
 /// Re-evaluates the plan of figure 9 after a change.
 fn judged(run: &Run, change: impl Fn(&mut Vec<ForceNode>)) -> Vec<String> {
-    let plan = run.planned.outcome.plan().expect("a plan");
-    let mut nodes = plan.trajectory.steered().expect("forces").nodes().to_vec();
+    let mut nodes = nodes(run).to_vec();
     change(&mut nodes);
     let motion = Trajectory::from(Steered::new(nodes).expect("in order"));
     let obstacles: Vec<_> = run.obstacles().cloned().collect();
@@ -152,8 +156,7 @@ fn every_way_to_spoil_a_plan_is_found() {
     }
     let sets = pipeline::sets(&wider.scenario).into_iter();
     let obstacles: Vec<_> = sets.map(|s| s.hard).collect();
-    let plan = run.planned.outcome.plan().expect("a plan");
-    let found = pipeline::judge(&run.scenario, &obstacles, &plan.trajectory);
+    let found = pipeline::judge(&run.scenario, &obstacles, &plan(&run).trajectory);
     assert_eq!(words(&found), ["set"]);
 }
 
@@ -172,9 +175,8 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     };
     assert!(name == "over" && (depth - 0.5).abs() < 1e-9);
     // a set that is the place of the start: the depth is 0, and not undefined
-    let point = run(&with_targets(&target(
-        "point", [0.0; 2], [0.0; 2], still, 0.01,
-    )));
+    let point = target("point", [0.0; 2], [0.0; 2], still, 0.01);
+    let point = run(&with_targets(&point));
     assert!(plan_text(&point).contains(", 0.0 m deep"));
     // a set that grows faster than own ship can leave it
     let growing = with_targets(&target("growing", [9.0, 0.0], [1.0; 2], still, 2.5));
@@ -193,9 +195,8 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     // the goal is inside a set for the whole horizon: approach it as closely as possible
     let goal = with_targets(&target("on the goal", [20.0, 10.0], [4.0; 2], still, 1e-4));
     let found = run(&goal);
-    let plan = found.planned.outcome.plan().expect("a plan");
-    let away = (plan.trajectory.end().position - Vector::new(20.0, 10.0)).norm();
-    assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
+    let away = (plan(&found).trajectory.end().position - Vector::new(20.0, 10.0)).norm();
+    assert!(is_verified(&found));
     assert!(away > 2.9 && away < 4.5, "{away}");
 }
 
@@ -207,11 +208,8 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
     let text = fine.replace("[planner]", "[planner]\ndeadline_s = 0.1");
     let found = run(&text);
     assert!(matches!(found.planned.outcome, Outcome::Deadline(_)));
-    assert!(
-        found.plan_time < Duration::from_secs(2),
-        "{:?}",
-        found.plan_time
-    );
+    let took = found.plan_time;
+    assert!(took < Duration::from_secs(2), "{took:?}");
     // doubled until some starts end in time and others do not, on any machine
     let mut budget = 0.1;
     let best = loop {
@@ -225,7 +223,7 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
         budget *= 1.3;
         assert!(budget < 300.0);
     };
-    assert!(best.evaluation.as_ref().is_some_and(Evaluation::verified));
+    assert!(is_verified(&best));
 }
 
 /// Tests weights for which almost only the forces have a cost; Gauss–Newton steps do not progress
@@ -238,10 +236,9 @@ fn weights_of_any_sizes_are_solved() {
         "control_weights = [1e6, 1e6, 1e6]",
         "control_weights = [1e-24, 1e-24, 1e-24]",
     ] {
-        let found =
-            run(&patient().replace("intervals = 50", &format!("intervals = 50\n{weights}")));
-        let verified = found.evaluation.as_ref().is_some_and(Evaluation::verified);
-        assert!(verified, "{weights}: {}", plan_text(&found));
+        let weighed = format!("intervals = 50\n{weights}");
+        let found = run(&patient().replace("intervals = 50", &weighed));
+        assert!(is_verified(&found), "{weights}: {}", plan_text(&found));
     }
 }
 
@@ -273,14 +270,10 @@ fn what_is_not_solved_comes_with_what_may_help() {
 #[test]
 fn free_water_one_interval_and_full_scale_are_planned() {
     let free = run(&with_targets(""));
-    assert!(free.evaluation.as_ref().is_some_and(Evaluation::verified));
+    assert!(is_verified(&free));
     let coarse = run(&with_targets("").replace("intervals = 50", "intervals = 1"));
-    match &coarse.planned.outcome {
-        Outcome::Solved(_) => {
-            assert!(coarse.evaluation.as_ref().is_some_and(Evaluation::verified));
-        }
-        other => panic!("{other:?}"),
-    }
+    assert!(matches!(coarse.planned.outcome, Outcome::Solved(_)));
+    assert!(is_verified(&coarse));
     let report = coarse.planned.control.as_ref().expect("forces");
     assert!(report.start_intervals == 1 && report.intervals > 5);
     let said = plan_text(&coarse);
@@ -301,9 +294,7 @@ vessel = "cybership2-full"
     let full = run(&format!("{full}{slow}"));
     let evaluation = full.evaluation.as_ref().expect("a plan");
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
-    let plan = full.planned.outcome.plan().expect("a plan");
-    let motion = plan.trajectory.steered().expect("forces");
-    let largest = |part: fn(&ForceNode) -> f64| motion.nodes().iter().map(part).fold(0.0, f64::max);
+    let largest = |part: fn(&ForceNode) -> f64| nodes(&full).iter().map(part).fold(0.0, f64::max);
     // the forces are some tenths of the limits of 686 kN and 514 kN
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
@@ -353,23 +344,16 @@ fn a_scaled_scene_has_the_scaled_plan() {
             + &target("b", [20.0, 8.0], [-0.15, -0.04], s)))
     };
     let (model, ship) = (scene(1.0), scene(scale));
-    let cost = |run: &Run| run.planned.outcome.plan().expect("a plan").cost;
-    let off = cost(&ship) / (cost(&model) * time) - 1.0;
+    let off = plan(&ship).cost / (plan(&model).cost * time) - 1.0;
     assert!(off.abs() < 1e-6, "{off:e}");
     let error = |run: &Run| run.evaluation.as_ref().expect("judged").space_time_error;
     assert!((error(&ship) / (error(&model) * scale * scale) - 1.0).abs() < 1e-4);
-    let nodes = |run: &Run| -> Vec<ForceNode> {
-        let plan = run.planned.outcome.plan().expect("a plan");
-        plan.trajectory.steered().expect("forces").nodes().to_vec()
-    };
     let (small, large) = (nodes(&model), nodes(&ship));
     assert_eq!(small.len(), large.len());
-    for (small, large) in small.iter().zip(&large) {
+    for (small, large) in small.iter().zip(large) {
         let near = |value: f64, expected: f64, unit: f64| {
-            assert!(
-                (value - expected).abs() < 1e-3 * unit,
-                "{small:?} {large:?}"
-            );
+            let off = (value - expected).abs();
+            assert!(off < 1e-3 * unit, "{small:?} {large:?}");
         };
         near(large.time, small.time * time, time);
         near(large.pose.position.x, small.pose.position.x * scale, scale);
@@ -378,9 +362,7 @@ fn a_scaled_scene_has_the_scaled_plan() {
         near(large.force.x, small.force.x * scale.powi(3), scale.powi(3));
         near(large.moment, small.moment * scale.powi(4), scale.powi(4));
     }
-    for run in [&model, &ship] {
-        assert!(run.evaluation.as_ref().is_some_and(Evaluation::verified));
-    }
+    assert!(is_verified(&model) && is_verified(&ship));
 }
 
 #[test]
@@ -391,17 +373,16 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
          velocity_set = { vertices_mps = [[0.01, 0.0], [0.0, 0.01], [-0.01, 0.0]] }\n",
     );
     let found = run(&text);
-    assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
+    assert!(is_verified(&found));
     assert!(plan_text(&found).contains("'box' enclosed in the smallest ellipse"));
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");
     assert_eq!(control.enclosed_targets, ["box"]);
     // also clear of the box itself
-    let plan = found.planned.outcome.plan().expect("a plan");
+    let hard = &found.targets[0].sets.hard;
     for k in 0..=1000 {
         let time = 0.1 * f64::from(k);
-        let place = plan.trajectory.pose_at(time).position;
-        let hard = &found.targets[0].sets.hard;
+        let place = plan(&found).trajectory.pose_at(time).position;
         assert!(hard.signed_distance(place, time).distance > 0.0);
     }
 }
@@ -410,10 +391,9 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
 fn a_judge_without_its_ship_knows_no_plan() {
     // the checker uses the given model: a ship of another size does not make this motion
     let run = run(&patient());
-    let plan = run.planned.outcome.plan().expect("a plan");
     let full = VesselKind::CyberShip2.exact(88.0);
     let steering = Steering {
-        motion: plan.trajectory.steered().expect("forces"),
+        motion: plan(&run).trajectory.steered().expect("forces"),
         vessel: full.as_ref(),
         force_limits: ForceVector::new(2.0, 1.5, 1.5),
     };

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::Vector;
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
+use searoom::planner::{NoPlan, Objective, Outcome, Problem, SearchKind, path_time};
 use searoom::trajectory::DesiredTrajectory;
 
 use crate::campaigns::path_grid::Path;
@@ -33,18 +33,12 @@ fn out_of_time_the_search_looks_at_few_lines() {
         speed: 6.0,
         horizon: 900.0,
     };
-    let planned = plan_within(
-        &drawn,
-        SearchKind::AStar,
-        Objective::SpaceTimeError,
-        Duration::ZERO,
-    );
+    let objective = Objective::SpaceTimeError;
+    let planned = plan_within(&drawn, SearchKind::AStar, objective, Duration::ZERO);
     assert!(matches!(planned.outcome, Outcome::Deadline(None)));
-    let Planned {
-        stats, explored, ..
-    } = planned;
-    assert!(stats.generated < 5_000, "{stats:?}");
-    assert!(explored.node_count() <= 100, "{}", explored.node_count());
+    assert!(planned.stats.generated < 5_000, "{:?}", planned.stats);
+    let nodes = planned.explored.node_count();
+    assert!(nodes <= 100, "{nodes}");
 }
 
 fn one_leg(obstacles: Vec<Obstacle>, horizon: f64) -> Drawn {
@@ -65,28 +59,16 @@ fn square(name: &str, center: Vector, half: f64, velocity: Vector) -> Obstacle {
 #[test]
 fn a_start_that_is_swept_later_is_left_in_time() {
     // over the start from 10 s to 18 s
-    let sweeping = square(
-        "sweeper",
-        Vector::new(0.0, -70.0),
-        20.0,
-        Vector::new(0.0, 5.0),
-    );
+    let at = Vector::new;
+    let sweeping = square("sweeper", at(0.0, -70.0), 20.0, at(0.0, 5.0));
     // a gate on the path that opens at 40 s
-    let gate = square(
-        "gate",
-        Vector::new(100.0, 0.0),
-        30.0,
-        Vector::new(0.0, 0.75),
-    );
+    let gate = square("gate", at(100.0, 0.0), 30.0, at(0.0, 0.75));
     let drawn = one_leg(vec![sweeping, gate], 200.0);
     let planned = plan(&drawn, SearchKind::AStar, Objective::Time);
     let found = planned.outcome.plan().expect("a plan");
     assert_sound(&drawn, found.trajectory.segments(), 0);
-    // full speed from the end of the gate
-    assert!(
-        (found.trajectory.end_time() - (40.0 + 200.0 / 5.0 + 30.0 / 5.0)).abs() < 1e-6
-            || found.trajectory.end_time() < 86.0 + 1e-6
-    );
+    // no later than at full speed from the end of the gate
+    assert!(found.trajectory.end_time() < 40.0 + 200.0 / 5.0 + 30.0 / 5.0 + 1e-6);
     assert!(found.trajectory.pose_at(10.0).position.x >= 20.0 - 1e-6);
 }
 
@@ -123,23 +105,15 @@ fn who_bars_the_way_is_named_and_until_when() {
 /// A short path past a ship that may cross it, and a long path around.
 #[test]
 fn risk_is_weighed_against_length() {
-    let points = [(0.0, 0.0), (300.0, 0.0)].map(|(x, y)| Vector::new(x, y));
-    let detour = vec![
-        [(0.0, 0.0), (150.0, 100.0), (300.0, 0.0)]
-            .map(|(x, y)| Vector::new(x, y))
-            .to_vec(),
-    ];
+    let [start, aside, end] =
+        [(0.0, 0.0), (150.0, 100.0), (300.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+    let points = [start, end];
+    let detour = [vec![start, aside, end]];
     let longer = 2.0 * 150.0_f64.hypot(100.0) - 300.0;
     // covers the short path permanently at every velocity except those near the middle
-    let initial = ConvexPolygon::hull(&[Vector::new(140.0, -40.0), Vector::new(160.0, -40.0)]);
-    let velocity = ConvexPolygon::hull(&[Vector::new(0.0, -1.0), Vector::new(0.0, 2.0)]);
-    let wanderer: Obstacle = PolytopeObstacle::new(
-        "wanderer",
-        initial.expect("finite"),
-        velocity.expect("finite"),
-    )
-    .into();
-    let obstacles = [wanderer];
+    let initial = ConvexPolygon::rectangle(Vector::new(150.0, -40.0), 10.0, 0.0);
+    let velocity = ConvexPolygon::rectangle(Vector::new(0.0, 0.5), 0.0, 1.5);
+    let obstacles = [PolytopeObstacle::new("wanderer", initial, velocity).into()];
     let path = Path {
         points: points.to_vec(),
     };

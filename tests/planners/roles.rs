@@ -1,5 +1,6 @@
 //! Tests of encounter classification on scenes of a known kind anywhere in the plane.
 
+use searoom::obstacle::Obstacle;
 use searoom::pipeline::{TargetSets, sets};
 
 use crate::campaigns::encounter_generator::{EncounterKind, Placement, random_encounter};
@@ -11,39 +12,29 @@ fn judged(kind: EncounterKind, seed: u64, placement: Placement) -> TargetSets {
 
 #[test]
 fn a_drawn_encounter_has_the_role_it_was_drawn_for() {
-    for kind in EncounterKind::ALL {
-        for seed in 0..250 {
-            let found = judged(kind, seed, Placement::Random).encounter;
-            assert_eq!(found.role, kind.role(), "{} {seed}", kind.name());
-        }
+    for (kind, seed) in EncounterKind::with_seeds(0..250) {
+        let found = judged(kind, seed, Placement::Random).encounter;
+        assert_eq!(found.role, kind.role(), "{} {seed}", kind.name());
     }
 }
 
 #[test]
 fn turning_and_moving_the_scene_changes_no_judgement_and_no_shape() {
-    for kind in EncounterKind::ALL {
-        for seed in 0..100 {
-            let here = judged(kind, seed, Placement::Origin);
-            let there = judged(kind, seed, Placement::Random);
-            assert_eq!(here.encounter.role, there.encounter.role);
-            let pairs = [
-                (
-                    here.encounter.undisturbed_dcpa,
-                    there.encounter.undisturbed_dcpa,
-                ),
-                (here.shape_reduced, there.shape_reduced),
-                (
-                    here.hard.outer_section(0.0).area().sqrt(),
-                    there.hard.outer_section(0.0).area().sqrt(),
-                ),
-                (
-                    here.with_domain.outer_section(0.0).area().sqrt(),
-                    there.with_domain.outer_section(0.0).area().sqrt(),
-                ),
-            ];
-            for (a, b) in pairs {
-                assert!((a - b).abs() < 1e-6, "{} {seed}: {a} {b}", kind.name());
-            }
+    let size = |set: &Obstacle| set.outer_section(0.0).area().sqrt();
+    let figures = |found: &TargetSets| {
+        [
+            found.encounter.undisturbed_dcpa,
+            found.shape_reduced,
+            size(&found.hard),
+            size(&found.with_domain),
+        ]
+    };
+    for (kind, seed) in EncounterKind::with_seeds(0..100) {
+        let here = judged(kind, seed, Placement::Origin);
+        let there = judged(kind, seed, Placement::Random);
+        assert_eq!(here.encounter.role, there.encounter.role);
+        for (a, b) in figures(&here).into_iter().zip(figures(&there)) {
+            assert!((a - b).abs() < 1e-6, "{} {seed}: {a} {b}", kind.name());
         }
     }
 }

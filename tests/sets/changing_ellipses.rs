@@ -1,24 +1,19 @@
 //! A target whose velocity ellipse changes with time: its set contains every position that it may
 //! reach, and plans, checker and verification of a document agree on it.
 
-use std::path::Path;
-
 use proptest::collection::vec;
-use searoom::document::PlanDocument;
 use searoom::frame::direction;
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::target::Motion;
-use searoom::verification::verify;
-use serde_json::{Value, json};
+use serde_json::json;
 
+use super::documents::{self, checked, document};
 use super::generators::{Counter, angle, check, round_slabs, vector};
 
 fn scenario() -> Scenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = path.join("scenarios/uncertainty/changing-ellipses.toml");
-    Scenario::read(&path).expect("a scenario")
+    documents::scenario("uncertainty/changing-ellipses.toml")
 }
 
 /// A target changes its velocity at random times, to random velocities of the set that holds.
@@ -70,26 +65,13 @@ fn velocity_obstacles_contain_the_velocities_that_meet_the_set() {
     met.assert_above(100);
 }
 
-fn document(scenario: Scenario) -> Value {
-    let run = pipeline::run(scenario);
-    let evaluation = run.evaluation.as_ref().expect("a plan");
-    assert!(evaluation.verified(), "{:?}", evaluation.violations);
-    serde_json::to_value(PlanDocument::of(&run)).expect("a document")
-}
-
-fn is_accepted(document: &Value) -> bool {
-    verify(&document.to_string())
-        .expect("a plan document")
-        .verified()
-}
-
 #[test]
 fn plans_are_verified_and_a_later_set_that_is_too_small_is_rejected() {
     let mut at_risk = scenario();
     at_risk.max_risk = 0.3;
     for scenario in [scenario(), at_risk] {
         let whole = document(scenario);
-        assert!(is_accepted(&whole));
+        assert!(checked(&whole).verified());
         assert_eq!(whole["obstacles"].as_array().expect("slabs").len(), 2);
         for (place, factor) in [
             ("/obstacles/0/initial_set/shape_m2/0/0", 0.99),
@@ -106,11 +88,11 @@ fn plans_are_verified_and_a_later_set_that_is_too_small_is_rejected() {
             let mut altered = whole.clone();
             let value = altered.pointer_mut(place).expect(place);
             *value = json!(value.as_f64().expect("a number") * factor);
-            assert!(!is_accepted(&altered), "{place}");
+            assert!(!checked(&altered).verified(), "{place}");
         }
         let mut altered = whole.clone();
         altered["obstacles"].as_array_mut().expect("slabs").pop();
-        assert!(!is_accepted(&altered));
+        assert!(!checked(&altered).verified());
     }
 }
 

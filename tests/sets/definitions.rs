@@ -1,12 +1,12 @@
 //! Tests of specific set properties beyond the common suite against their definitions.
 
 use super::generators::{
-    Counter, check, directions, ellipse, hull, line, polygon, polytope, segment, slabs, vector,
+    Counter, check, directions, disc, ellipse, hull, line, polygon, polytope, segment, slabs,
+    vector,
 };
-use nalgebra::Matrix2;
 use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction, to_port};
-use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
     EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabError, SlabObstacle, SpaceTimeObstacle,
 };
@@ -67,9 +67,8 @@ fn the_largest_risk_where_the_velocities_lie_along_a_face() {
             let [ahead, abeam] = [direction(heading), to_port(direction(heading))];
             let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
                 .map(|(x, y): (f64, f64)| ahead * (x * long) + abeam * (y * wide));
-            let disc =
-                Ellipse::new(Vector::zeros(), Matrix2::identity() * 1600.0).expect("a shape");
-            let initial = hull(&corners).minkowski_sum(&disc.outer_polygon(16));
+            let around = disc(Vector::zeros(), 40.0).outer_polygon(16);
+            let initial = hull(&corners).minkowski_sum(&around);
             let fastest: Vector = direction(heading + 10_f64.powf(off)) * fast;
             let o = PolytopeObstacle::new("o", initial, hull(&[fastest * 0.01, fastest]));
             let (half, side, share) = meeting;

@@ -1,7 +1,7 @@
 //! Tests of the velocity obstacle of ellipsoids as a region against its definition, by a dense
 //! search over time.
 
-use super::generators::{Counter, check, ellipsoid, golden_maximum, vector};
+use super::generators::{Counter, check, disc, ellipsoid, golden_maximum, vector};
 use proptest::prelude::*;
 use proptest::sample::select;
 use searoom::frame::Vector;
@@ -103,11 +103,6 @@ fn from_inside_or_from_nowhere_every_velocity_meets() {
 /// add to its own.
 #[test]
 fn discs_have_the_cone_of_the_textbook() {
-    use nalgebra::Matrix2;
-    use searoom::geometry::Ellipse;
-    let disc = |center: Vector, radius: f64| {
-        Ellipse::new(center, Matrix2::identity() * (radius * radius)).expect("a disc")
-    };
     let velocity = Vector::new(-1.0, 0.5);
     let o = EllipsoidObstacle::new("", disc(Vector::new(100.0, 0.0), 60.0), disc(velocity, 0.3));
     let region = o.outer_velocities_within(Vector::zeros(), f64::INFINITY, 0.0);

@@ -88,6 +88,10 @@ pub fn ellipse(scale: f64) -> impl Strategy<Value = Ellipse> {
     (vector(scale), shape).prop_map(|(center, q)| Ellipse::new(center, q).expect("a shape"))
 }
 
+pub fn disc(center: Vector, radius: f64) -> Ellipse {
+    Ellipse::new(center, Matrix2::identity() * radius * radius).expect("a disc")
+}
+
 pub fn polytope() -> impl Strategy<Value = PolytopeObstacle> {
     let sets = (polygon(60.0), polygon(2.0));
     sets.prop_map(|(initial, velocity)| PolytopeObstacle::new("polytope", initial, velocity))

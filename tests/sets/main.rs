@@ -3,6 +3,8 @@
 mod assessment;
 mod changing_ellipses;
 mod definitions;
+#[path = "../campaigns/documents.rs"]
+mod documents;
 mod ellipsoid_velocity_obstacle;
 #[path = "../campaigns/encounter_generator.rs"]
 mod encounter_generator;

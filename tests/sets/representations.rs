@@ -51,9 +51,8 @@ const CHANGES: [Change; 6] = [
 ];
 
 fn scenarios(each: u64) -> Vec<Scenario> {
-    let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
-        (0..each).map(move |seed| random_encounter(kind, seed, Placement::Random))
-    });
+    let encounters = EncounterKind::with_seeds(0..each)
+        .map(|(kind, seed)| random_encounter(kind, seed, Placement::Random));
     let traffic = (0..each).map(|seed| random_traffic(3, seed, Placement::Random));
     encounters
         .chain(traffic)

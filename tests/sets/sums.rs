@@ -7,17 +7,15 @@ use searoom::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
 use searoom::trajectory::Segment;
 
 use super::generators::{
-    Counter, check, directions, ellipse, ellipsoid, golden_maximum, line, polytope, sum_support,
-    vector,
+    Counter, check, directions, disc, ellipse, ellipsoid, golden_maximum, line, polytope,
+    sum_support, vector,
 };
 
 #[test]
 fn without_relative_motion_the_spread_alone_approaches() {
     // the initial guess of the search is 0 / 0 here
-    let circle =
-        |center, r: f64| Ellipse::new(center, Matrix2::identity() * r * r).expect("a shape");
     let v = Vector::new(1.0, 2.0);
-    let o = EllipsoidObstacle::new("x", circle(Vector::zeros(), 10.0), circle(v, 0.5));
+    let o = EllipsoidObstacle::new("x", disc(Vector::zeros(), 10.0), disc(v, 0.5));
     let away = Vector::new(100.0, 0.0);
     let met = o.closest_approach(away, v, f64::INFINITY);
     assert!(
@@ -37,13 +35,8 @@ fn without_relative_motion_the_spread_alone_approaches() {
 #[test]
 fn a_distance_that_falls_for_ever_is_not_attained() {
     // v on the boundary of V, moving away beside the target
-    let circle =
-        |center, r: f64| Ellipse::new(center, Matrix2::identity() * r * r).expect("a shape");
-    let o = EllipsoidObstacle::new(
-        "x",
-        circle(Vector::zeros(), 10.0),
-        circle(Vector::new(1.0, 0.0), 0.5),
-    );
+    let velocity = disc(Vector::new(1.0, 0.0), 0.5);
+    let o = EllipsoidObstacle::new("x", disc(Vector::zeros(), 10.0), velocity);
     let beside = Vector::new(30.0, 25.0);
     let found = o.closest_approach(beside, Vector::new(1.0, 0.5), f64::INFINITY);
     assert!(!found.attained && found.time.is_infinite(), "{found:?}");
@@ -133,8 +126,8 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
 
 #[test]
 fn numbers_that_overflow_are_contact() {
-    let circle = |r: f64| Ellipse::new(Vector::zeros(), Matrix2::identity() * r).expect("a shape");
-    let o = EllipsoidObstacle::new("x", circle(100.0), circle(1.0));
+    let [initial, velocity] = [10.0, 1.0].map(|radius| disc(Vector::zeros(), radius));
+    let o = EllipsoidObstacle::new("x", initial, velocity);
     let lost = Segment::new(
         Pose::new(Vector::new(150.0, -80.0), 1.0),
         0.0,
@@ -155,7 +148,7 @@ fn numbers_that_overflow_are_contact() {
 
 #[test]
 fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() {
-    let circle = Ellipse::new(Vector::zeros(), Matrix2::identity() * 100.0).expect("a shape");
+    let circle = disc(Vector::zeros(), 10.0);
     let o = EllipsoidObstacle::new("x", circle, Ellipse::point(Vector::zeros()));
     // a circle of 20 m about (30, 0) approaches the origin to 10 m: it touches, and slightly
     // farther it does not

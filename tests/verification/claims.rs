@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::alter::{alter, assert_rejected, assert_word, give_up, list, rows};
-use crate::documents::{document, inside, is_caught, scenario};
+use crate::documents::{document, give_way_at_risk, inside, is_caught, scenario};
 
 /// Alterations that increase the danger.
 const SETTING: &str = r#"
@@ -99,20 +99,15 @@ fn every_altered_setting_is_caught() {
 #[test]
 fn what_only_some_plans_have_is_held_too() {
     let turning = document(scenario("uncertainty/turning.toml"));
-    assert!(
-        turning["obstacles"]
-            .as_array()
-            .is_some_and(|slabs| slabs.len() > 1)
-    );
-    let mut risky = scenario("colregs/give-way.toml");
-    risky.max_risk = 0.4;
+    let slabs = turning["obstacles"].as_array();
+    assert!(slabs.is_some_and(|slabs| slabs.len() > 1));
     assert_rejected(&turning, TURNING);
     assert_rejected(
         &document(scenario("uncertainty/changing-velocities.toml")),
         TIMED_SETS,
     );
     assert_rejected(&document(scenario("uncertainty/ellipse.toml")), ELLIPSES);
-    assert_rejected(&document(risky), RISK);
+    assert_rejected(&give_way_at_risk(0.4), RISK);
     assert_rejected(&document(scenario("harbour/munkholmen.toml")), LAND);
     assert_rejected(&document(scenario("harbour/canal-transit.toml")), CANAL);
     let forces = document(scenario("paper/figure_9.toml"));

@@ -1,13 +1,14 @@
 //! Wrong statements on risk, and sets that are too small, are detected.
 
+use searoom::evaluation::Violation;
 use searoom::geometry::{ConvexPolygon, outer_disc};
 use searoom::obstacle::SlabObstacle;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, ShipTrack};
 use serde_json::{Value, json};
 
-use crate::alter::{at, list};
-use crate::documents::{barred, checked, document, documents, file, inside, is_caught, scenario};
+use crate::alter::{assert_word, at, list};
+use crate::documents::{barred, checked, document, give_way_at_risk, inside, is_caught, scenario};
 
 /// Checks level sets millions of times smaller than the sets, and sets that hardly spread. The risk
 /// depends on the last digits there, and the document must not report less than the check finds.
@@ -56,10 +57,9 @@ fn plans_at_a_risk_pass_however_small_the_level_sets() {
 /// Tests a consistent but wrong largest risk: the level sets detect it.
 #[test]
 fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
-    let risky = documents().swap_remove(1).1;
     let mut told = 0;
     for (name, original, index) in [
-        ("at a risk", risky, 0),
+        ("at a risk", give_way_at_risk(0.4), 0),
         ("inside", inside(), 0),
         ("barred", barred(), 0),
         ("barred, the other", barred(), 1),
@@ -120,7 +120,7 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
 /// Tests consistent but wrong statements on a risk: it must be accepted, and must have a time.
 #[test]
 fn a_risk_is_within_what_was_accepted_and_has_a_time() {
-    let mut risky = documents().swap_remove(1).1;
+    let mut risky = give_way_at_risk(0.4);
     assert!(at(&mut risky, "/encounters/0/max_risk_t_s").is_number());
     let clear = document(scenario("colregs/head-on.toml"));
     let forces = document(scenario("forces/give-way.toml"));
@@ -164,9 +164,7 @@ fn a_risk_is_within_what_was_accepted_and_has_a_time() {
         ] {
             let mut document = original.clone();
             tell(&mut document, risk, time);
-            let found = checked(&document).violations;
-            let told = found.iter().any(|v| v.what.contains(word));
-            assert!(told, "{name}, {word}: {found:#?}");
+            assert_word(&document, name, word);
         }
     }
     *at(&mut risky, "/encounters/0/max_risk_t_s") = Value::Null;
@@ -178,11 +176,6 @@ fn a_risk_is_within_what_was_accepted_and_has_a_time() {
 /// Tests sets that contain the required region in the first directions checked, but not everywhere.
 #[test]
 fn sets_that_only_seem_large_enough_are_too_small() {
-    let said = |document: &Value, expected: &str| {
-        let found = checked(document).violations;
-        let told = found.iter().any(|v| v.what.contains(expected));
-        assert!(told, "{expected}: {found:?}");
-    };
     // an ellipse much longer than the true one and very thin, between two directions
     let mut needle = document(scenario("uncertainty/ellipse.toml"));
     let (sin, cos) = 0.0043_f64.sin_cos();
@@ -191,13 +184,10 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [length * cos * cos, length * cos * sin],
         [length * cos * sin, length * sin * sin]
     ]);
-    said(&needle, "too small for the initial set");
+    assert_word(&needle, "needle", "too small for the initial set");
     // one-sided velocities: scaled about their own centre they contain all, but not about that of
     // the ship's velocities, nor those of half the risk
-    let text = std::fs::read_to_string(file("colregs/give-way.toml")).expect("a scenario");
-    let mut scenario = Scenario::parse(&text).expect("a scenario");
-    scenario.max_risk = 0.5;
-    let mut lopsided = document(scenario);
+    let mut lopsided = give_way_at_risk(0.5);
     let corners: Vec<[f64; 2]> =
         serde_json::from_value(lopsided["obstacles"][0]["velocity_set"]["vertices_mps"].clone())
             .expect("corners");
@@ -214,8 +204,10 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [east + half, middle[1] + half],
         [east - half, middle[1] + half]
     ]);
-    said(&lopsided, "too small for the velocities of the target");
-    said(&lopsided, "the velocities at the accepted risk");
+    let small = "too small for the velocities of the target";
+    for word in [small, "the velocities at the accepted risk"] {
+        assert_word(&lopsided, "lopsided", word);
+    }
 }
 
 /// Tests sets around the hull on the expected heading, and for a turning ship on those of its
@@ -228,21 +220,14 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
         hull.minkowski_sum(&outer_disc(reach, ship.pose.heading))
     };
     let plain = |set: &ConvexPolygon| {
-        json!(
-            set.vertices()
-                .iter()
-                .map(|p| [p.x, p.y])
-                .collect::<Vec<_>>()
-        )
+        let corners: Vec<[f64; 2]> = set.vertices().iter().map(|p| [p.x, p.y]).collect();
+        json!(corners)
     };
     let rejected = |document: &Value| {
         let found = checked(document).violations;
         assert!(!found.is_empty());
-        for violation in found {
-            assert!(
-                violation.what.contains("too small for the hull"),
-                "{violation:?}"
-            );
+        for Violation { what, .. } in found {
+            assert!(what.contains("too small for the hull"), "{what}");
         }
     };
     let mut straight = scenario("colregs/head-on.toml");
@@ -261,10 +246,8 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let slabs = SlabObstacle::new("x", searoom::target::Uncertainty::new(initial, velocities))
         .expect("in order");
     let mut altered = document(turning);
-    for (entry, slab) in list(&mut altered, "/obstacles")
-        .iter_mut()
-        .zip(slabs.slabs())
-    {
+    let entries = list(&mut altered, "/obstacles").iter_mut();
+    for (entry, slab) in entries.zip(slabs.slabs()) {
         entry["initial_set"]["vertices_m"] = plain(&slab.obstacle().outer_section(0.0));
     }
     rejected(&altered);

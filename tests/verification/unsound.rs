@@ -13,20 +13,12 @@ use searoom::trajectory::Segment;
 use searoom::verification::verify;
 use serde_json::{Value, json};
 
-use crate::alter::{at, list};
+use crate::alter::{assert_word, at, list};
 use crate::documents::{checked, document, inside, scenario};
 
 pub fn fault(name: &str) -> String {
     let path = format!("{}/tests/faults/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(path).expect("a fault")
-}
-
-/// True where a violation says so.
-pub fn said(document: &Value, expected: &str) -> bool {
-    let found = checked(document).violations;
-    let told = found.iter().any(|v| v.what.contains(expected));
-    assert!(told, "'{expected}' is not among {found:#?}");
-    told
 }
 
 fn pairs(value: &Value) -> Vec<[f64; 2]> {
@@ -59,7 +51,7 @@ fn unsound_documents_are_rejected() {
         ("null-plan", "0 m sailed, with the path still ahead"),
     ] {
         let document: Value = serde_json::from_str(&fault(&format!("{name}.json"))).expect("JSON");
-        assert!(said(&document, expected), "{name}");
+        assert_word(&document, name, expected);
     }
 }
 
@@ -78,10 +70,10 @@ fn sets_under_forces_hold_the_velocities_at_a_risk() {
     let mut away = plan.clone();
     away["obstacles"] = set([35.0, -35.0]);
     let level = "too small for the velocities at the accepted risk";
-    assert!(said(&away, level));
+    assert_word(&away, "away", level);
     let mut round = plan.clone();
     *at(&mut round, "/obstacles/0/velocity_set/center_mps") = json!([3.0, -3.0]);
-    assert!(said(&round, level));
+    assert_word(&round, "round", level);
 }
 
 /// Along a path out and back that is not sailed to its end.
@@ -177,7 +169,7 @@ fn each_later_velocity_set_that_is_too_small_is_found() {
             let mut altered = plan.clone();
             let corners = &mut altered["obstacles"][slab]["velocity_set"]["vertices_mps"];
             *corners = scaled(corners, 0.9);
-            assert!(said(&altered, "too small for "), "slab {slab}");
+            assert_word(&altered, &format!("slab {slab}"), "too small for ");
             found += 1;
         }
     }
@@ -192,7 +184,7 @@ fn what_is_known_may_be_too_large_for_any_set() {
         let mut huge = plan.clone();
         *at(&mut huge, &format!("/targets/0/{key}/0")) = json!([1e300, 0.0]);
         match verify(&huge.to_string()) {
-            Ok(_) => assert!(said(&huge, "too small for")),
+            Ok(_) => assert_word(&huge, key, "too small for"),
             Err(error) => assert!(error.to_string().contains("vertices"), "{error}"),
         }
     }
@@ -207,7 +199,7 @@ fn slabs_follow_one_another_to_the_digit() {
     let mut between = slabs[0].clone();
     between["valid_s"] = json!([end - 2e-8, end - 1e-8]);
     slabs.insert(1, between);
-    assert!(said(&plan, "expected"));
+    assert_word(&plan, "a slab that ends early", "expected");
     let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
     plan["targets"][0]["velocity_sets"][0]["until_s"] = json!(-1.0);
     let error = verify(&plan.to_string()).expect_err("a set until before the start");

@@ -4,6 +4,7 @@ use super::*;
 use crate::colregs::{Role, SteadyShip, raw_role, risk_distance};
 use crate::frame::{direction, to_port, to_starboard};
 use crate::vessel::Hull;
+use crate::vessel::fixtures::own_ship;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -27,10 +28,8 @@ fn own_at(position: Vector, safety_margin: f64) -> OwnShip {
         pose: Pose::new(position, 0.0),
         speed: 6.0,
         hull: Hull::new(50.0, 10.0),
-        turning_radius: 100.0,
-        speeds: vec![3.0, 6.0],
         safety_margin,
-        tracking_margin: 0.0,
+        ..own_ship(&[3.0, 6.0])
     }
 }
 
@@ -82,10 +81,8 @@ fn the_fixtures_are_swept_to_the_side_that_the_rules_forbid() {
     };
     let length = 2.2 * 100.0;
     let head_on = in_body(&at(1440.0, 0.0, PI, 6.0));
-    assert!(
-        (head_on - Vector::new(0.0, -length)).norm() < 1e-9,
-        "{head_on:?}"
-    );
+    let off = (head_on - Vector::new(0.0, -length)).norm();
+    assert!(off < 1e-9, "{head_on:?}");
     let give_way = in_body(&at(720.0, -720.0, FRAC_PI_2, 6.0));
     let diagonal = Vector::new(1.0, -1.0).normalize() * length;
     assert!((give_way - diagonal).norm() < 1e-9, "{give_way:?}");
@@ -157,10 +154,8 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         let risk = risk_with(&own, &target);
         let found = shapes(&own, &target, Some(&risk), HORIZON);
         let inside = |inner: &ConvexPolygon, outer: &ConvexPolygon| {
-            inner
-                .vertices()
-                .iter()
-                .all(|p| outer.signed_distance(*p) < 1e-7)
+            let mut corners = inner.vertices().iter();
+            corners.all(|p| outer.signed_distance(*p) < 1e-7)
         };
         assert!(inside(&target.hull.polygon(&target.pose), &found.hard));
         assert!(inside(&found.hard, &found.with_domain), "{target:?}");
@@ -178,10 +173,8 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         drawn_back += 1;
         bare += usize::from(found.with_domain.area() < 1.05 * found.hard.area());
         let from_used = found.with_domain.signed_distance(start);
-        assert!(
-            from_used >= tolerance::START_M.min(0.99 * from_hard),
-            "{from_used}"
-        );
+        let least = tolerance::START_M.min(0.99 * from_hard);
+        assert!(from_used >= least, "{from_used}");
         // not more than needed: at most the room that the bisection leaves, or the hard set's own
         assert!(from_used < 1.1 * tolerance::START_M || from_used > 0.99 * from_hard);
         assert!(found.reduced >= -from_whole - 1e-6, "{found:?}");
@@ -189,10 +182,8 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
             .map(|i| direction(f64::from(i) * PI / 360.0))
             .map(|n| whole.with_domain.support(n) - found.with_domain.support(n))
             .fold(0.0, f64::max);
-        assert!(
-            cut <= found.reduced + 1e-6 && cut > 0.9 * found.reduced,
-            "{cut}"
-        );
+        let reduced = found.reduced;
+        assert!(cut <= reduced + 1e-6 && cut > 0.9 * reduced, "{cut}");
     }
     assert!(drawn_back > 200 && bare > 0, "{drawn_back} {bare}");
 }
@@ -227,10 +218,8 @@ fn shapes_have_the_reach_they_are_named_for() {
             ways.map(|(x, y)| (set.support(Vector::new(x, y)) - around).round() as i32)
         };
         assert_eq!(reach(&found.hard), [25, 25, 5, 5]);
-        (
-            reach(&found.with_domain),
-            found.with_domain.vertices().len(),
-        )
+        let count = found.with_domain.vertices().len();
+        (reach(&found.with_domain), count)
     };
     assert_eq!(reaches(DomainKind::Colregs), ([100, 100, 75, 75], 16));
     assert_eq!(reaches(DomainKind::Paper).0, [300, 100, 75, 200]);

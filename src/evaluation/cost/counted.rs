@@ -66,9 +66,7 @@ pub(crate) fn error_to_end(
     let counted = Counted {
         within: tolerance::ARRIVAL_M,
         until: all.last().map_or(f64::NAN, Segment::end_time),
-        arrived: segments
-            .last()
-            .is_some_and(|s| off(s) <= tolerance::ARRIVAL_M),
+        arrived: (segments.last()).is_some_and(|s| off(s) <= tolerance::ARRIVAL_M),
     };
     (cost::space_time_error(&all, desired, q), counted)
 }
@@ -109,17 +107,12 @@ fn until<P: Piece>(pieces: &[P], time: f64) -> Vec<P> {
 }
 
 fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> Counted {
-    match last_entrance(pieces, desired.end(), within) {
-        Some(entrance) => Counted {
-            within,
-            until: entrance.max(desired.duration()),
-            arrived: true,
-        },
-        None => Counted {
-            within,
-            until: desired.duration(),
-            arrived: false,
-        },
+    let entrance = last_entrance(pieces, desired.end(), within);
+    let duration = desired.duration();
+    Counted {
+        within,
+        until: entrance.map_or(duration, |entrance| entrance.max(duration)),
+        arrived: entrance.is_some(),
     }
 }
 
@@ -175,13 +168,8 @@ fn entrance<P: Piece>(
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::trajectory::fixtures::chain;
+    use crate::trajectory::fixtures::{chain, desired};
     use crate::trajectory::{ForceNode, Steered};
-
-    fn desired(points: &[(f64, f64)]) -> DesiredTrajectory {
-        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        DesiredTrajectory::new(&points, &vec![5.0; points.len() - 1]).expect("valid")
-    }
 
     /// Legs of `(duration, speed, turn rate)`, as segments and as nodes every second.
     fn both(start: Pose, legs: &[(f64, f64, f64)]) -> [Trajectory; 2] {
@@ -191,11 +179,8 @@ mod tests {
             let many = s.duration.ceil() as usize;
             // The velocity changes instantly: two nodes, one nanosecond apart.
             nodes.extend((0..=many).map(|k| {
-                let first = if k == 0 && s.start_time > 0.0 {
-                    1e-9
-                } else {
-                    0.0
-                };
+                let joint = k == 0 && s.start_time > 0.0;
+                let first = if joint { 1e-9 } else { 0.0 };
                 let time = s.start_time + first + (s.duration - first) * k as f64 / many as f64;
                 ForceNode {
                     time,
@@ -217,38 +202,24 @@ mod tests {
     #[test]
     fn the_same_motion_has_the_same_error_however_it_is_given() {
         let east = Pose::new(Vector::zeros(), 0.0);
-        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)], &[5.0]);
         let wide = Pose::new(Vector::new(0.0, 200.0), 0.0);
+        let lies = [(250.0, 4.0, 0.0), (150.0, 0.0, 0.0)];
+        let turns = [(100.0, 5.0, 0.002), (120.0, 5.0, -0.004)];
         for (name, start, legs, arrived) in [
             ("ends there", east, &[(250.0, 4.0, 0.0)][..], true),
             ("goes on", east, &[(400.0, 4.0, 0.0)], true),
-            (
-                "lies there",
-                east,
-                &[(250.0, 4.0, 0.0), (150.0, 0.0, 0.0)],
-                true,
-            ),
+            ("lies there", east, &lies, true),
             ("passes by", wide, &[(400.0, 4.0, 0.0)], false),
-            (
-                "turns",
-                east,
-                &[(100.0, 5.0, 0.002), (120.0, 5.0, -0.004)],
-                false,
-            ),
+            ("turns", east, &turns, false),
         ] {
             let [segments, nodes] =
                 both(start, legs).map(|trajectory| counted_error(&trajectory, &wish, 25.0, 30.0));
-            assert_eq!(
-                (segments.1.arrived, nodes.1.arrived),
-                (arrived, arrived),
-                "{name}"
-            );
+            let both = [segments, nodes].map(|found| found.1.arrived);
+            assert_eq!(both, [arrived; 2], "{name}");
             assert!((segments.1.until - nodes.1.until).abs() < 1e-6, "{name}");
-            let off = (segments.0 - nodes.0).abs();
-            assert!(
-                off < 1e-6 * segments.0.max(1.0),
-                "{name}: {segments:?} {nodes:?}"
-            );
+            let near = (segments.0 - nodes.0).abs() < 1e-6 * segments.0.max(1.0);
+            assert!(near, "{name}: {segments:?} {nodes:?}");
         }
     }
 
@@ -257,7 +228,7 @@ mod tests {
     #[test]
     fn nothing_grows_after_the_end() {
         let east = Pose::new(Vector::zeros(), 0.0);
-        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)], &[5.0]);
         let error = |start: Pose, legs: &[(f64, f64, f64)]| {
             let [segments, _] = both(start, legs);
             counted_error(&segments, &wish, 25.0, 30.0)
@@ -285,7 +256,7 @@ mod tests {
     /// 3 m/s too fast for 125 s, then at rest for 75 s, with `kappa = 1/2`.
     #[test]
     fn a_ship_that_arrives_early_waits_for_the_schedule() {
-        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)], &[5.0]);
         let motions = both(Pose::new(Vector::zeros(), 0.0), &[(125.0, 8.0, 0.0)]);
         let ahead = |rate: f64, duration: f64| 0.5 * rate * rate * duration.powi(3) / 3.0;
         let exact = (ahead(3.0, 125.0) + ahead(5.0, 75.0)) / wish.duration();
@@ -300,14 +271,11 @@ mod tests {
     /// A round trip starts at its end: it arrives when it comes back.
     #[test]
     fn a_round_trip_arrives_when_it_comes_back() {
-        let wish = desired(&[(0.0, 0.0), (500.0, 0.0), (0.0, 0.0)]);
+        let wish = desired(&[(0.0, 0.0), (500.0, 0.0), (0.0, 0.0)], &[5.0; 2]);
         let east = Pose::new(Vector::zeros(), 0.0);
         let half = std::f64::consts::PI / 10.0;
-        let [there, nodes] = both(
-            east,
-            &[(90.0, 5.0, 0.0), (10.0, 5.0, half), (90.0, 5.0, 0.0)],
-        );
-        for trajectory in [there, nodes] {
+        let there = [(90.0, 5.0, 0.0), (10.0, 5.0, half), (90.0, 5.0, 0.0)];
+        for trajectory in both(east, &there) {
             let (_, counted) = counted_error(&trajectory, &wish, 25.0, 40.0);
             // The return leg is 31.8 m to the side.
             assert!(counted.arrived && counted.until > 180.0, "{counted:?}");

@@ -59,12 +59,8 @@ pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory
         cuts.extend((0..pieces).map(|k| (run + s.length() * k as f64 / pieces as f64) / length));
         run += s.length();
     }
-    cuts.extend(
-        desired
-            .legs()
-            .iter()
-            .map(|leg| leg.start_distance / desired.length()),
-    );
+    let joints = desired.legs().iter();
+    cuts.extend(joints.map(|leg| leg.start_distance / desired.length()));
     cuts.sort_by(f64::total_cmp);
     cuts.windows(2)
         .filter(|w| w[0] < w[1])
@@ -97,12 +93,7 @@ fn pieces(segment: &Segment) -> usize {
 mod tests {
     use super::*;
     use crate::frame::{Pose, Vector, direction};
-    use crate::trajectory::fixtures::chain;
-
-    fn desired(points: &[(f64, f64)], speeds: &[f64]) -> DesiredTrajectory {
-        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        DesiredTrajectory::new(&points, speeds).expect("valid")
-    }
+    use crate::trajectory::fixtures::{chain, desired};
 
     #[test]
     fn running_late_on_a_straight_leg_has_a_closed_form() {

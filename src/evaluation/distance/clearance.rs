@@ -264,7 +264,7 @@ fn beyond_side(
 mod tests {
     use super::*;
     use crate::geometry::ConvexPolygon;
-    use crate::geometry::fixtures::random_vector;
+    use crate::geometry::fixtures::{places, random_vector};
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -273,12 +273,8 @@ mod tests {
         let points: Vec<Vector> = (0..rng.random_range(1..7))
             .map(|_| {
                 let p = random_vector(rng, 1.0);
-                let p = if rng.random_bool(0.3) {
-                    p.map(f64::round)
-                } else {
-                    p
-                };
-                p * extent
+                let on_grid = rng.random_bool(0.3);
+                (if on_grid { p.map(f64::round) } else { p }) * extent
             })
             .collect();
         ConvexPolygon::hull(&points).expect("finite")
@@ -286,7 +282,8 @@ mod tests {
 
     fn segment(rng: &mut ChaCha8Rng) -> Segment {
         let position = random_vector(rng, 60.0);
-        let turn_rate = if rng.random_bool(0.5) {
+        let turns = rng.random_bool(0.5);
+        let turn_rate = if turns {
             rng.random_range(-0.3..0.3)
         } else {
             0.0
@@ -309,11 +306,7 @@ mod tests {
             let set = MovingSet::new(&initial, &velocity);
             let s = segment(&mut rng);
             let whole = case % 2 == 0;
-            let body = if whole {
-                Body::hull(&hull)
-            } else {
-                Body::POINT
-            };
+            let body = [Body::POINT, Body::hull(&hull)][usize::from(whole)];
             let found = least_distance(&[s], body, &set);
             let at = |time: f64| {
                 let section = initial.minkowski_sum(&velocity.scaled(time));
@@ -357,20 +350,9 @@ mod tests {
             speed: 2.5,
             ..slide
         };
-        let corner = Segment {
-            start: Pose::new(
-                Vector::new(10.0, 10.0) - round.pose_after(20.0).position,
-                0.0,
-            ),
-            ..round
-        };
-        let touching = Segment {
-            start: Pose::new(
-                corner.start.position + round.start.position,
-                round.start.heading,
-            ),
-            ..round
-        };
+        let mut touching = round;
+        let corner = Vector::new(10.0, 10.0) - round.pose_after(20.0).position;
+        touching.start.position = corner + round.start.position;
         let found = least_distance(&[touching], Body::POINT, &rest);
         assert!(found.certified && found.probes < 300, "{found:?}");
     }
@@ -401,9 +383,7 @@ mod tests {
     /// A segment that rounding makes a triangle 1e-10 m wide.
     #[test]
     fn a_very_narrow_set_has_its_distance() {
-        let polygon = |corners: &[(f64, f64)]| {
-            ConvexPolygon::from_ccw(corners.iter().map(|&(x, y)| Vector::new(x, y)).collect())
-        };
+        let polygon = |corners: &[(f64, f64)]| ConvexPolygon::from_ccw(places(corners));
         let initial = polygon(&[
             (762_685.624_368_940_2, 6_168_232.524_121_132),
             (762_685.624_368_940_4, 6_168_232.524_121_132),
@@ -436,10 +416,8 @@ mod tests {
 
     #[test]
     fn a_point_that_is_not_a_number_has_no_distance() {
-        let set = MovingSet::new(
-            &ConvexPolygon::point(Vector::zeros()),
-            &ConvexPolygon::point(Vector::zeros()),
-        );
+        let still = ConvexPolygon::point(Vector::zeros());
+        let set = MovingSet::new(&still, &still);
         let mut s = segment(&mut ChaCha8Rng::seed_from_u64(1));
         s.start.position.x = f64::NAN;
         assert!(least_distance(&[s], Body::POINT, &set).value.is_nan());

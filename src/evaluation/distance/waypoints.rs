@@ -53,20 +53,14 @@ fn least_distance<P: Piece>(pieces: &[P], place: Vector) -> f64 {
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::trajectory::fixtures::chain;
+    use crate::trajectory::fixtures::{chain, desired};
 
     /// A line past a waypoint, a circle about one, and one that is not passed.
     #[test]
     fn distances_match_closed_form() {
-        let points = [
-            (0.0, 0.0),
-            (300.0, 40.0),
-            (600.0, 100.0),
-            (500.0, -900.0),
-            (0.0, 0.0),
-        ];
-        let points = points.map(|(x, y)| Vector::new(x, y));
-        let desired = DesiredTrajectory::new(&points, &[5.0; 4]).expect("valid");
+        let inner = [(300.0, 40.0), (600.0, 100.0), (500.0, -900.0)];
+        let round = [&[(0.0, 0.0)], &inner[..], &[(0.0, 0.0)]].concat();
+        let desired = desired(&round, &[5.0; 4]);
         let lap = 2.0 * std::f64::consts::PI * 100.0 / 5.0;
         let motion = chain(
             Pose::new(Vector::zeros(), 0.0),
@@ -75,10 +69,8 @@ mod tests {
         let exact = [40.0, 100.0, 900.0];
         let found = waypoint_distances(&motion, &desired);
         for (found, exact) in found.iter().zip(exact) {
-            assert!(
-                (0.0..=ACCURACY_M).contains(&(found - exact + 1e-9)),
-                "{found} {exact}"
-            );
+            let more = found - exact + 1e-9;
+            assert!((0.0..=ACCURACY_M).contains(&more), "{found} {exact}");
         }
         assert_eq!(found.len(), 3);
     }
@@ -87,9 +79,8 @@ mod tests {
     #[test]
     fn long_lines_have_exact_distances() {
         for length in [1e4, 1e5, 1e6] {
-            let points = [(0.0, 0.0), (length / 3.0, 0.0), (length, 0.0)];
-            let points = points.map(|(x, y)| Vector::new(x, y));
-            let desired = DesiredTrajectory::new(&points, &[10.0; 2]).expect("valid");
+            let way = [(0.0, 0.0), (length / 3.0, 0.0), (length, 0.0)];
+            let desired = desired(&way, &[10.0; 2]);
             for beside in [0.0, 0.005, 3.0] {
                 let start = Pose::new(Vector::new(0.0, beside), 0.0);
                 let motion = chain(start, &[(length / 10.0, 10.0, 0.0)]);
@@ -102,15 +93,9 @@ mod tests {
     /// An unsound document: 1e300 m/s, and a turn of a year on the spot of a waypoint.
     #[test]
     fn the_number_of_parts_is_bounded() {
-        let points = [(0.0, 0.0), (0.0, 100.0), (900.0, 0.0)].map(|(x, y)| Vector::new(x, y));
-        let desired = DesiredTrajectory::new(&points, &[5.0; 2]).expect("valid");
-        for (duration, speed, turn_rate) in
-            [(1e-3, 1e300, 0.0), (3e7, 50.0, 0.5), (1e9, 1e18, 1e16)]
-        {
-            let motion = chain(
-                Pose::new(Vector::zeros(), 0.0),
-                &[(duration, speed, turn_rate)],
-            );
+        let desired = desired(&[(0.0, 0.0), (0.0, 100.0), (900.0, 0.0)], &[5.0; 2]);
+        for unsound in [(1e-3, 1e300, 0.0), (3e7, 50.0, 0.5), (1e9, 1e18, 1e16)] {
+            let motion = chain(Pose::new(Vector::zeros(), 0.0), &[unsound]);
             let found = waypoint_distances(&motion, &desired)[0];
             assert!(found.is_nan() || found <= 100.0, "{found}");
         }

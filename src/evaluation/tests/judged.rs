@@ -11,8 +11,7 @@ fn straight() -> Vec<Segment> {
 }
 
 fn rectangle([x, y]: [f64; 2], [right, upper]: [f64; 2]) -> Vec<Vector> {
-    let corners = [(x, y), (right, y), (right, upper), (x, upper)];
-    corners.map(|(x, y)| Vector::new(x, y)).to_vec()
+    places(&[(x, y), (right, y), (right, upper), (x, upper)])
 }
 
 /// A set at rest that own ship enters, and that is released at `from` seconds.
@@ -93,12 +92,8 @@ fn a_set_without_inside_is_entered_where_it_is_touched() {
 /// The hulls overlap from 52.4 s to 59.6 s, far from the set with the target's name.
 #[test]
 fn a_hull_is_judged_from_the_release_of_its_set_on() {
-    let mut other = ship(0.0, 0.0);
-    if let Motion::Ship(track) = &mut other.motion {
-        track.pose = Pose::new(Vector::new(280.0, 0.0), 0.0);
-        track.hull = Hull::new(6.0, 1.0);
-        (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
-    }
+    let pose = Pose::new(Vector::new(280.0, 0.0), 0.0);
+    let other = known(ship(0.0, 0.0), pose, Hull::new(6.0, 1.0));
     let far = rectangle([200.0, 500.0], [300.0, 510.0]);
     let judged = |segments: &[Segment], from| {
         judge(segments, &[left(&far, from)], std::slice::from_ref(&other))
@@ -124,13 +119,8 @@ fn a_hull_is_judged_from_the_release_of_its_set_on() {
 /// The land margin is 20 m, own side is 4 m off the path.
 #[test]
 fn land_nearer_than_the_margin_is_a_violation() {
-    for (share, is_near) in [
-        (0.4, true),
-        (0.6, true),
-        (0.9, true),
-        (0.999, true),
-        (1.001, false),
-    ] {
+    for share in [0.4, 0.6, 0.9, 0.999, 1.001] {
+        let is_near = share < 1.0;
         let upper = -4.0 - 20.0 * share;
         let coast = rectangle([600.0, upper - 100.0], [700.0, upper]);
         let found = evaluate(&Request {
@@ -149,13 +139,9 @@ fn land_nearer_than_the_margin_is_a_violation() {
 #[test]
 fn the_time_after_arrival_is_told_and_not_judged() {
     let coming = |after: f64, north: f64| {
-        let mut coming = ship(0.0, 5.0);
-        if let Motion::Ship(track) = &mut coming.motion {
-            (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
-            let from = Vector::new(1500.0 + 5.0 * (300.0 + after), north);
-            track.pose.position = from;
-        }
-        coming
+        let from = Vector::new(1500.0 + 5.0 * (300.0 + after), north);
+        let pose = Pose::new(from, std::f64::consts::PI);
+        known(ship(0.0, 5.0), pose, Hull::new(60.0, 12.0))
     };
     let hold = |targets: &[Target], arrival_hold| {
         let found = evaluate(&Request {

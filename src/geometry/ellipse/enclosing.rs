@@ -181,6 +181,7 @@ fn grown_to_contain(ellipse: Ellipse, points: &[Vector]) -> Ellipse {
 mod tests {
     use super::*;
     use crate::frame::{cross, direction};
+    use crate::geometry::fixtures::random_vector;
     use crate::geometry::outer_disc;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -197,12 +198,10 @@ mod tests {
             let n = rng.random_range(1..30);
             let thin = [1.0, 1e-2, 1e-6, 1e-9, 0.0][case % 5];
             let far = [0.0, 1e3, 1e6][case % 3];
+            let ahead = direction(0.1 * case as f64);
             let points: Vec<Vector> = (0..n)
-                .map(|_| {
-                    let (x, y) = (rng.random_range(-50.0..50.0), rng.random_range(-50.0..50.0));
-                    let angle = direction(0.1 * case as f64);
-                    angle * x + to_port(angle) * (y * thin) + Vector::new(far, -far)
-                })
+                .map(|_| random_vector(&mut rng, 50.0))
+                .map(|p| ahead * p.x + to_port(ahead) * (p.y * thin) + Vector::new(far, -far))
                 .collect();
             let set = hull(&points);
             let ellipse = outer_enclosing_ellipse(&set);
@@ -230,9 +229,8 @@ mod tests {
         let found = outer_enclosing_ellipse(&hull(&[a, b, c]));
         assert!(relative(found.area(), steiner) < 1e-8);
         assert!((found.center() - (a + b + c) / 3.0).norm() < 1e-8);
-        let rectangle = [(30.0, 6.0), (-30.0, 6.0), (-30.0, -6.0), (30.0, -6.0)];
-        let rectangle: Vec<Vector> = rectangle.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        let found = outer_enclosing_ellipse(&hull(&rectangle)).semi_axes();
+        let rectangle = ConvexPolygon::rectangle(Vector::zeros(), 30.0, 6.0);
+        let found = outer_enclosing_ellipse(&rectangle).semi_axes();
         assert!(relative(found[0].norm(), 30.0 * 2.0_f64.sqrt()) < 1e-8);
         assert!(relative(found[1].norm(), 6.0 * 2.0_f64.sqrt()) < 1e-8);
         let on_ellipse = |k: u32| {
@@ -252,9 +250,7 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(22);
         for _ in 0..100 {
             let n = rng.random_range(3..9);
-            let points: Vec<Vector> = (0..n)
-                .map(|_| Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0)))
-                .collect();
+            let points: Vec<Vector> = (0..n).map(|_| random_vector(&mut rng, 5.0)).collect();
             let set = hull(&points);
             let found = outer_enclosing_ellipse(&set);
             let mut best = found;

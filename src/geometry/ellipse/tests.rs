@@ -1,10 +1,10 @@
 use super::*;
+use crate::geometry::fixtures::random_vector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 pub fn random_ellipse(rng: &mut ChaCha8Rng) -> Ellipse {
-    let mut vector = || Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
-    let (center, a, b) = (vector(), vector(), vector());
+    let [center, a, b] = [(); 3].map(|()| random_vector(rng, 5.0));
     let thin = [1.0, 1.0, 1e-3, 1e-7, 0.0][rng.random_range(0..5)];
     Ellipse::from_axes(center, [a, b * thin])
 }
@@ -58,14 +58,12 @@ fn distance_matches_a_search_over_supporting_lines() {
             let (s, t) = (rng.random_range(-1.5..1.5), rng.random_range(-1e-6..1e-6));
             e.center() + a * s + b * t
         } else {
-            Vector::new(rng.random_range(-9.0..9.0), rng.random_range(-9.0..9.0))
+            random_vector(&mut rng, 9.0)
         };
         let found = e.signed_distance(p);
         let slow = searched(&e, p);
-        assert!(
-            (found.distance - slow).abs() < 1e-9,
-            "{e:?} {p:?} {slow} {found:?}"
-        );
+        let off = (found.distance - slow).abs();
+        assert!(off < 1e-9, "{e:?} {p:?} {slow} {found:?}");
         assert!((found.normal.norm() - 1.0).abs() < 1e-12);
         let n = found.normal;
         let by_normal = n.dot(&p) - e.support(n);
@@ -143,10 +141,7 @@ fn the_circumscribed_polygon_contains_and_touches() {
 fn not_a_number_is_inside() {
     let e = Ellipse::point(Vector::zeros());
     assert!(e.contains(Vector::new(f64::NAN, 100.0)));
-    assert!(
-        e.signed_distance(Vector::new(f64::NAN, 0.0))
-            .distance
-            .is_nan()
-    );
+    let lost = e.signed_distance(Vector::new(f64::NAN, 0.0));
+    assert!(lost.distance.is_nan());
     assert!(e.contains(Vector::zeros()) && !e.contains(Vector::new(1e-150, 0.0)));
 }

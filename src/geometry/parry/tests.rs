@@ -47,10 +47,8 @@ fn hulls_are_those_of_parry() {
         };
         for k in 0..72 {
             let n = direction(0.0873 * f64::from(k));
-            let most = theirs
-                .iter()
-                .map(|p| n.dot(p))
-                .fold(f64::NEG_INFINITY, f64::max);
+            let along = theirs.iter().map(|p| n.dot(p));
+            let most = along.fold(f64::NEG_INFINITY, f64::max);
             assert!((ours.support(n) - most).abs() < 1e-9 * size, "{ours:?}");
         }
     }
@@ -81,10 +79,8 @@ fn distances_and_depths_are_those_of_parry() {
             });
             if let [Some(a), Some(b)] = &shapes {
                 let here = Pose::identity();
-                let theirs = query::distance(&here, a, &here, b)
-                    .expect("two shapes")
-                    .distance;
-                assert!(close(theirs), "{ours} {theirs}");
+                let theirs = query::distance(&here, a, &here, b).expect("two shapes");
+                assert!(close(theirs.distance), "{ours} {theirs:?}");
             }
         } else if ours < -1e-7 * size {
             over += 1;
@@ -92,9 +88,8 @@ fn distances_and_depths_are_those_of_parry() {
             // by definition: the smallest overlap along a direction
             let along = |n: &Vector| a.support(*n) + b.support(-n);
             let all = (0..360).map(|k| direction(0.01746 * f64::from(k)));
-            let all = all
-                .chain(a.normals())
-                .chain(b.normals().into_iter().map(|n| -n));
+            let opposite = b.normals().into_iter().map(|n| -n);
+            let all = all.chain(a.normals()).chain(opposite);
             let least = all.map(|n| along(&n)).fold(f64::INFINITY, f64::min);
             assert!(close(-least), "{ours} {least}");
             let (a, b) = (Farthest::new(farthest(&a)), Farthest::new(farthest(&b)));
@@ -109,10 +104,8 @@ fn distances_and_depths_are_those_of_parry() {
             assert!(found <= 1e-7 * size, "{ours} {found}");
         }
     }
-    assert!(
-        apart > 300 && over > 150 && touching > 5 && over - alike < 10,
-        "{apart} {over} {touching} {alike}"
-    );
+    let enough = apart > 300 && over > 150 && touching > 5 && over - alike < 10;
+    assert!(enough, "{apart} {over} {touching} {alike}");
 }
 
 /// A moving set and how far own ship is from it at a time, by parry: the farthest point of `O_0 + t
@@ -140,17 +133,11 @@ fn contacts_in_space_time_are_those_of_parry() {
         };
         let at = random_vector(&mut rng, 300.0);
         let toward = heading_of(initial.centroid() - at);
-        let own = Segment::new(
-            Place::new(at, toward + rng.random_range(-0.6..0.6)),
-            0.0,
-            120.0,
-            rng.random_range(0.0..8.0),
-            if case % 3 == 0 {
-                rng.random_range(-0.03..0.03)
-            } else {
-                0.0
-            },
-        );
+        let start = Place::new(at, toward + rng.random_range(-0.6..0.6));
+        let mut own = Segment::straight(start, 0.0, 120.0, rng.random_range(0.0..8.0));
+        if case % 3 == 0 {
+            own.turn_rate = rng.random_range(-0.03..0.03);
+        }
         let body = PolytopeObstacle::new("set", initial.clone(), velocity.clone());
         let inside = if own.is_arc() {
             arc_contacts(&body, &own, 0.0)
@@ -159,11 +146,9 @@ fn contacts_in_space_time_are_those_of_parry() {
         };
         let gap = |time: f64| gap(&initial, &velocity, &own, time);
         for contact in &inside {
-            assert!(
-                gap(contact.start) < 1e-6 && gap(contact.end) < 1e-6,
-                "{contact:?}"
-            );
-            assert!(gap(0.5 * (contact.start + contact.end)) < 1e-6);
+            let middle = 0.5 * (contact.start + contact.end);
+            let times = [contact.start, middle, contact.end];
+            assert!(times.iter().all(|time| gap(*time) < 1e-6), "{contact:?}");
         }
         let far = |time: f64| {
             let off = |c: &crate::obstacle::contact::Interval| (c.start - time).max(time - c.end);
@@ -174,11 +159,8 @@ fn contacts_in_space_time_are_those_of_parry() {
         }
         // a little before and after, own ship is outside
         for time in inside.iter().flat_map(|c| [c.start - 1e-3, c.end + 1e-3]) {
-            let within = time > own.start_time && time < own.end_time();
-            assert!(
-                !within || !far(time) || gap(time) > 0.0,
-                "{time} {inside:?}"
-            );
+            let looked_at = time > own.start_time && time < own.end_time() && far(time);
+            assert!(!looked_at || gap(time) > 0.0, "{time} {inside:?}");
         }
         met += usize::from(!inside.is_empty());
         clear += usize::from(inside.is_empty());
@@ -188,13 +170,8 @@ fn contacts_in_space_time_are_those_of_parry() {
         let relative = own.start.ahead() * own.speed - carried;
         let (a, b) = (Farthest::new(farthest(&initial)), Farthest::new(|_| at));
         let options = ShapeCastOptions::with_max_time_of_impact(own.duration);
-        let hit = cast_shapes_support_map_support_map(
-            &Pose::identity(),
-            point(relative * UNITS),
-            &a,
-            &b,
-            options,
-        );
+        let (here, way) = (Pose::identity(), point(relative * UNITS));
+        let hit = cast_shapes_support_map_support_map(&here, way, &a, &b, options);
         let theirs = hit.map(|h| h.time_of_impact);
         let ours = inside.first().map(|c| c.start);
         // a graze is a hit for the one and none for the other
@@ -205,10 +182,8 @@ fn contacts_in_space_time_are_those_of_parry() {
             assert!(off.is_some_and(|off| off < 1e-6), "{theirs:?} {ours:?}");
         }
     }
-    assert!(
-        met > 200 && clear > 100 && cast > 50,
-        "{met} {clear} {cast}"
-    );
+    let enough = met > 200 && clear > 100 && cast > 50;
+    assert!(enough, "{met} {clear} {cast}");
 }
 
 #[test]
@@ -227,10 +202,8 @@ fn what_is_no_number_has_no_answer() {
 fn edges_are_found_as_by_a_scan() {
     let mut rng = ChaCha8Rng::seed_from_u64(904);
     let mut draw = || {
-        Vector::new(
-            rng.random_range(0..40).into(),
-            rng.random_range(0..40).into(),
-        )
+        let [x, y] = [(); 2].map(|()| f64::from(rng.random_range(0..40)));
+        Vector::new(x, y)
     };
     for count in [1, 2, 3, 200] {
         let edges: Vec<(Vector, Vector)> = (0..count).map(|_| (draw(), draw())).collect();
@@ -248,10 +221,8 @@ fn edges_are_found_as_by_a_scan() {
             assert!((nearest.distance - least).abs() < 1e-9);
             assert!((all[nearest.index] - least).abs() < 1e-9);
             let near: Vec<NearEdge> = tree.within(p, 5.0).collect();
-            assert!(
-                near.iter()
-                    .all(|e| (e.distance - all[e.index]).abs() < 1e-9)
-            );
+            let off = |e: &NearEdge| (e.distance - all[e.index]).abs();
+            assert!(near.iter().all(|e| off(e) < 1e-9));
             let found = |k: usize| near.iter().any(|e| e.index == k);
             assert!((0..count).all(|k| all[k] > 5.0 || found(k)));
         }

@@ -415,12 +415,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         let Some(end) = usable_horizon(position, velocity, horizon) else {
             return ClosestApproach::contact(0.0);
         };
-        let line = Line {
-            origin: position,
-            velocity,
-            start: 0.0,
-            end,
-        };
+        let line = Line::ahead(position, velocity, end);
         if let Some(start) = self.line_start(&line) {
             return ClosestApproach::contact(start);
         }
@@ -432,13 +427,8 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     /// By the cubic, O(1).
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
         usable_horizon(position, velocity, horizon).is_none_or(|end| {
-            let line = Line {
-                origin: position,
-                velocity,
-                start: 0.0,
-                end,
-            };
-            self.line_start(&line).is_some()
+            self.line_start(&Line::ahead(position, velocity, end))
+                .is_some()
         })
     }
 }

@@ -148,8 +148,9 @@ impl PolytopeObstacle {
     }
 
     /// The vertices of the sections for t > 0, counter-clockwise; at most n + m.
-    pub fn moving_vertices(&self) -> Vec<MovingVertex> {
-        self.moving().to_vec()
+    pub fn moving_vertices(&self) -> &[MovingVertex] {
+        (self.shared.moving)
+            .get_or_init(|| moving_vertices(self.initial(), self.velocity(), self.faces()))
     }
 
     /// Replaces the supports of the faces. Contact depends on the faces alone; nothing else of this
@@ -159,16 +160,6 @@ impl PolytopeObstacle {
         for (face, support) in faces.iter_mut().zip(supports) {
             (face.initial_support, face.velocity_support) = (support.value, support.rate);
         }
-    }
-
-    pub(in crate::obstacle) fn moving(&self) -> &[MovingVertex] {
-        self.shared.moving.get_or_init(|| {
-            moving_vertices(
-                &self.shared.initial,
-                &self.shared.velocity,
-                &self.shared.faces,
-            )
-        })
     }
 
     /// The velocity obstacle as a region of half-planes, for own ship at `position` at t = 0.
@@ -273,7 +264,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
             return inside;
         }
         let at = |v: &MovingVertex| v.origin + v.velocity * time;
-        let moving = self.moving();
+        let moving = self.moving_vertices();
         let mut from = at(&moving[moving.len() - 1]);
         let mut nearest = Vector::repeat(f64::INFINITY);
         for vertex in moving {

@@ -8,40 +8,27 @@ use rand_chacha::ChaCha8Rng;
 fn the_slack_found_from_face_to_face_is_that_of_all_faces() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let (mut outside, mut inside) = (0, 0);
+    let drawn = |rng: &mut ChaCha8Rng| {
+        let [initial, velocity] = [20.0, 1.0].map(|size| random_polygon(rng, size));
+        PolytopeObstacle::new("", initial, velocity)
+    };
     for _ in 0..4000 {
-        let o = PolytopeObstacle::new(
-            "",
-            random_polygon(&mut rng, 20.0),
-            random_polygon(&mut rng, 1.0),
-        );
+        let o = drawn(&mut rng);
         let place = random_vector(&mut rng, 90.0);
         let time = [0.0, rng.random_range(0.0..30.0), -3.0][rng.random_range(0..3)];
         let all = o.slack(place, time).value;
-        if all > 0.0 {
-            outside += 1
-        } else {
-            inside += 1
-        }
+        outside += usize::from(all > 0.0);
+        inside += usize::from(all <= 0.0);
         for face in 0..=o.faces().len() {
             let near = o.slack_near(place, time, face);
-            assert!(
-                (near.value - all).abs() <= 1e-12 * (1.0 + all.abs()),
-                "{o:?}"
-            );
+            let off = (near.value - all).abs();
+            assert!(off <= 1e-12 * (1.0 + all.abs()), "{o:?}");
             assert_eq!(o.faces()[near.face].slack(place, time), near.value);
         }
     }
     assert!(outside > 500 && inside > 200, "{outside} {inside}");
-    let o = PolytopeObstacle::new(
-        "",
-        random_polygon(&mut rng, 20.0),
-        random_polygon(&mut rng, 1.0),
-    );
-    assert!(
-        o.slack_near(Vector::new(f64::NAN, 0.0), 1.0, 0)
-            .value
-            .is_nan()
-    );
+    let lost = drawn(&mut rng).slack_near(Vector::new(f64::NAN, 0.0), 1.0, 0);
+    assert!(lost.value.is_nan());
 }
 
 #[test]
@@ -80,11 +67,7 @@ fn a_set_of_many_vertices_has_the_supports_of_its_polygons() {
     assert!(vertices.len() >= 3000);
     let section = set.section(10.0);
     for vertex in vertices {
-        assert!(
-            section
-                .signed_distance(vertex.origin + vertex.velocity * 10.0)
-                .abs()
-                < 1e-9
-        );
+        let place = vertex.origin + vertex.velocity * 10.0;
+        assert!(section.signed_distance(place).abs() < 1e-9);
     }
 }

@@ -2,17 +2,19 @@ use super::*;
 use crate::geometry::ConvexPolygon;
 use crate::geometry::fixtures::random_polygon;
 use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+fn random_obstacle(rng: &mut ChaCha8Rng, sizes: [f64; 2]) -> PolytopeObstacle {
+    let [initial, velocity] = sizes.map(|size| random_polygon(rng, size));
+    PolytopeObstacle::new("x", initial, velocity)
+}
 
 #[test]
 fn the_projection_is_membership_along_the_path() {
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(51);
+    let mut rng = ChaCha8Rng::seed_from_u64(51);
     let mut met = 0;
     for _ in 0..300 {
-        let o = PolytopeObstacle::new(
-            "x",
-            random_polygon(&mut rng, 27.0),
-            random_polygon(&mut rng, 1.0),
-        );
+        let o = random_obstacle(&mut rng, [27.0, 1.0]);
         let start = Vector::new(
             rng.random_range(-200.0..0.0),
             rng.random_range(-100.0..100.0),
@@ -43,12 +45,10 @@ fn the_projection_is_membership_along_the_path() {
 
 #[test]
 fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(52);
+    let mut rng = ChaCha8Rng::seed_from_u64(52);
     let (mut met, mut most) = (0, 0);
     for _ in 0..300 {
-        let initial = random_polygon(&mut rng, 27.0);
-        let velocity = random_polygon(&mut rng, 1.0);
-        let o = EllipsoidObstacle::outer_of(&PolytopeObstacle::new("x", initial, velocity));
+        let o = EllipsoidObstacle::outer_of(&random_obstacle(&mut rng, [27.0, 1.0]));
         let bend = Vector::new(
             rng.random_range(-150.0..50.0),
             rng.random_range(-80.0..80.0),
@@ -90,14 +90,10 @@ fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
 /// A line is inside exactly while its points are.
 #[test]
 fn the_part_of_a_line_inside_is_that_of_its_points() {
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(53);
+    let mut rng = ChaCha8Rng::seed_from_u64(53);
     let mut met = 0;
     for case in 0..2000 {
-        let o = PolytopeObstacle::new(
-            "x",
-            random_polygon(&mut rng, 20.0),
-            random_polygon(&mut rng, 0.7),
-        );
+        let o = random_obstacle(&mut rng, [20.0, 0.7]);
         let start = Vector::new(rng.random_range(-200.0..0.0), rng.random_range(-60.0..60.0));
         let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
         let track = Track {

@@ -170,30 +170,21 @@ mod tests {
     use crate::target::DomainKind;
 
     fn ship() -> ShipTrack {
+        let pose = Pose::new(Vector::new(100.0, 50.0), 1.0);
         ShipTrack {
             speed_spread: 0.5,
             course_spread: 0.1,
             domain: DomainKind::Hull,
-            ..ShipTrack::exact(
-                Pose::new(Vector::new(100.0, 50.0), 1.0),
-                5.0,
-                Hull::new(60.0, 12.0),
-            )
-        }
-    }
-
-    fn own() -> SteadyShip {
-        SteadyShip {
-            pose: Pose::new(Vector::new(-800.0, 900.0), 0.0),
-            speed: 5.0,
+            ..ShipTrack::exact(pose, 5.0, Hull::new(60.0, 12.0))
         }
     }
 
     fn sailed(behaviour: Behaviour, steps: usize) -> Vec<SteadyShip> {
         let mut target = TrueTarget::new("a", &ship(), behaviour, 3);
+        let own = SteadyShip::new(Pose::new(Vector::new(-800.0, 900.0), 0.0), 5.0);
         (0..steps)
             .map(|k| {
-                target.steer(k as f64 * 0.5, 0.5, &own());
+                target.steer(k as f64 * 0.5, 0.5, &own);
                 target.advance(0.5);
                 target.now
             })
@@ -203,18 +194,12 @@ mod tests {
     #[test]
     fn random_extreme_and_pursuing_targets_keep_to_their_velocities_and_breakers_do_not() {
         let set = ship().outer_velocity_set();
-        let all = [
-            Behaviour::Random {
-                every: 3.0,
-                factor: 1.0,
-            },
-            Behaviour::Extremes {
-                every: 3.0,
-                factor: 1.0,
-            },
+        let (every, factor) = (3.0, 1.0);
+        for behaviour in [
+            Behaviour::Random { every, factor },
+            Behaviour::Extremes { every, factor },
             Behaviour::Pursuit { every: 1.0 },
-        ];
-        for behaviour in all {
+        ] {
             let states = sailed(behaviour.clone(), 400);
             let out = |s: &SteadyShip| set.signed_distance(s.velocity()) > 1e-9;
             assert!(!states.iter().any(out), "{behaviour:?}");
@@ -222,28 +207,21 @@ mod tests {
             let pursues = matches!(behaviour, Behaviour::Pursuit { .. });
             assert!(pursues || states.iter().any(|s| s.velocity() != last));
         }
-        let breaker = Behaviour::Extremes {
-            every: 3.0,
-            factor: 1.5,
-        };
+        let factor = 1.5;
+        let breaker = Behaviour::Extremes { every, factor };
         let out = |s: &SteadyShip| set.signed_distance(s.velocity()) > 1e-3;
         assert!(sailed(breaker, 400).iter().all(out));
     }
 
     #[test]
     fn a_track_is_met_at_its_points_and_continued() {
-        let points = vec![
-            (10.0, Vector::new(150.0, 50.0)),
-            (20.25, Vector::new(150.0, 100.0)),
-        ];
+        let [first, second] = [50.0, 100.0].map(|north| Vector::new(150.0, north));
+        let points = vec![(10.0, first), (20.25, second)];
         let states = sailed(Behaviour::Track(points), 100);
-        assert!((states[19].pose.position - Vector::new(150.0, 50.0)).norm() < 1e-9);
+        assert!((states[19].pose.position - first).norm() < 1e-9);
         let last = states[99].pose.position;
-        let speed = 50.0 / 10.25;
-        assert!(
-            (last - Vector::new(150.0, 100.0 + speed * 29.75)).norm() < 1e-9,
-            "{last}"
-        );
+        let expected = second + (second - first) * (29.75 / 10.25);
+        assert!((last - expected).norm() < 1e-9, "{last}");
     }
 
     #[test]
@@ -256,9 +234,8 @@ mod tests {
         };
         let states = sailed(gives_way(1e6, 1.0), 100);
         assert!((states[99].pose.heading - 0.3).abs() < 1e-9);
-        let turning = states
-            .windows(2)
-            .map(|s| s[0].pose.heading - s[1].pose.heading);
+        let pairs = states.windows(2);
+        let turning = pairs.map(|s| s[0].pose.heading - s[1].pose.heading);
         assert!(turning.fold(0.0, f64::max) < 0.025 + 1e-9);
         for behaviour in [gives_way(1.0, 1.0), gives_way(1e6, 0.0)] {
             assert!((sailed(behaviour, 40)[39].pose.heading - 1.0).abs() < 1e-12);
@@ -269,18 +246,14 @@ mod tests {
     fn a_pursuer_comes_nearer_than_a_ship_that_holds_on() {
         let nearest = |behaviour| {
             let mut target = TrueTarget::new("a", &ship(), behaviour, 3);
-            let mut own = SteadyShip {
-                pose: Pose::new(Vector::new(560.0, 0.0), 1.9),
-                speed: 5.0,
-            };
+            let mut own = SteadyShip::new(Pose::new(Vector::new(560.0, 0.0), 1.9), 5.0);
             let mut least = f64::INFINITY;
             for k in 0..400 {
                 target.steer(f64::from(k) * 0.5, 0.5, &own);
                 target.advance(0.5);
                 own.pose.position += own.velocity() * 0.5;
-                least = (own.pose.position - target.now.pose.position)
-                    .norm()
-                    .min(least);
+                let apart = own.pose.position - target.now.pose.position;
+                least = least.min(apart.norm());
             }
             least
         };

@@ -164,17 +164,14 @@ mod tests {
             let start = Pose::new(Vector::new(within(50.0), within(50.0)), within(3.0));
             let rate = if case % 2 == 0 { within(0.05) } else { 0.0 };
             let segment = Segment::new(start, 0.0, 10.0, 5.0 + within(2.0), rate);
-            let target = SteadyShip {
-                pose: Pose::new(Vector::new(within(90.0), within(90.0)), within(3.0)),
-                speed: 5.0 + within(4.0),
-            };
+            let pose = Pose::new(Vector::new(within(90.0), within(90.0)), within(3.0));
+            let target = SteadyShip::new(pose, 5.0 + within(4.0));
             let mut clearance = Clearance::new(own_hull, hull);
             for k in 0..20 {
                 let (time, step) = (f64::from(k) * 0.5, 0.5);
-                let part = segment.between(time, time + step);
                 let part = Segment {
                     start_time: 0.0,
-                    ..part
+                    ..segment.between(time, time + step)
                 };
                 let own = OwnMotion::Segments(vec![part]);
                 let mut now = target;
@@ -184,9 +181,8 @@ mod tests {
             let at = |time: f64| {
                 let mut pose = target.pose;
                 pose.position += target.velocity() * time;
-                own_hull
-                    .polygon(&segment.pose_at(time))
-                    .separation(&hull.polygon(&pose))
+                let own = own_hull.polygon(&segment.pose_at(time));
+                own.separation(&hull.polygon(&pose))
             };
             let scan = (0..=5000)
                 .map(|k| at(f64::from(k) * 0.002))
@@ -207,19 +203,13 @@ mod tests {
 
     #[test]
     fn a_place_that_is_no_number_is_a_contact() {
-        let own = OwnMotion::Segments(vec![Segment::straight(
-            Pose::new(Vector::new(f64::NAN, 0.0), 0.0),
-            0.0,
-            1.0,
-            5.0,
-        )]);
-        let target = SteadyShip {
-            pose: Pose::new(Vector::new(1e4, 0.0), 0.0),
-            speed: 1.0,
-        };
+        let lost = Vector::new(f64::NAN, 0.0);
+        let line = Segment::straight(Pose::new(lost, 0.0), 0.0, 1.0, 5.0);
+        let own = OwnMotion::Segments(vec![line]);
+        let target = SteadyShip::new(Pose::new(Vector::new(1e4, 0.0), 0.0), 1.0);
         let hull = Hull::new(30.0, 8.0);
         let mut clearance = Clearance::new(hull, hull);
-        clearance.add((3.0, 1.0), (Vector::new(f64::NAN, 0.0), &own), &target);
+        clearance.add((3.0, 1.0), (lost, &own), &target);
         assert!(clearance.is_contact() && clearance.settled().metres.is_nan());
     }
 }

@@ -438,10 +438,8 @@ mod tests {
         }
         assert!(reach < 15.0 * 0.7);
         assert_eq!(track.set_at(0.0, 0.0).position_std, 0.0);
-        assert_eq!(
-            track.set_at(0.0, 2.0).position_std,
-            track.set_at(2.0, 2.0).position_std
-        );
+        let [now, later] = [0.0, 2.0].map(|time| track.set_at(time, 2.0));
+        assert_eq!(now.position_std, later.position_std);
     }
 
     #[test]
@@ -457,13 +455,9 @@ mod tests {
         let wider = track.set_at(40.0, 0.0);
         assert_eq!(wider.pose.heading, 0.5);
         assert!((wider.course_spread - radians_from_deg(5.9)).abs() < 1e-9);
-        assert!(
-            track.is_broken()
-                && !{
-                    track.set_at(60.0, 0.0);
-                    track.is_broken()
-                }
-        );
+        assert!(track.is_broken());
+        track.set_at(60.0, 0.0);
+        assert!(!track.is_broken());
         ship.pose.heading += radians_from_deg(10.0);
         track.set_exact(80.0, &ship);
         let anew = track.set_at(80.0, 0.0);

@@ -183,6 +183,14 @@ mod tests {
         }
     }
 
+    fn order(heading: f64, turn_rate: f64, speed: f64) -> Order {
+        Order {
+            heading,
+            turn_rate,
+            speed,
+        }
+    }
+
     fn at_rest_on_course() -> VesselState {
         VesselState {
             pose: Pose::new(Vector::zeros(), 0.3),
@@ -197,11 +205,7 @@ mod tests {
         for model in [VesselModel::Kinematic, FIRST_ORDER, NOMOTO] {
             let vessel = vessel(model);
             let mut state = at_rest_on_course();
-            let order = Order {
-                heading: 1.3,
-                turn_rate: 0.0,
-                speed: 4.0,
-            };
+            let order = order(1.3, 0.0, 4.0);
             for _ in 0..400 {
                 vessel.advance(&mut state, &order, Vector::zeros(), 0.5);
             }
@@ -220,11 +224,7 @@ mod tests {
     fn the_rudder_is_limited_and_a_hard_turn_has_the_radius_of_the_model() {
         let vessel = vessel(NOMOTO);
         let mut state = at_rest_on_course();
-        let hard = Order {
-            heading: 3.0,
-            turn_rate: 1.0,
-            speed: 5.0,
-        };
+        let hard = order(3.0, 1.0, 5.0);
         vessel.advance(&mut state, &hard, Vector::zeros(), 1.0);
         assert!((state.rudder - 0.1).abs() < 1e-9, "{state:?}");
         for _ in 0..10 {
@@ -236,10 +236,8 @@ mod tests {
         let time = 6.0; // T' L / U
         vessel.advance(&mut state, &hard, Vector::zeros(), time);
         let expected = 0.1 * (1.0 - (-1.0_f64).exp());
-        assert!(
-            (state.turn_rate - expected).abs() < 1e-6,
-            "{state:?} {expected}"
-        );
+        let off = (state.turn_rate - expected).abs();
+        assert!(off < 1e-6, "{state:?} {expected}");
         assert!((vessel.least_radius() - 50.0).abs() < 1e-9);
     }
 
@@ -247,11 +245,7 @@ mod tests {
     fn a_first_order_ship_does_not_turn_faster_than_its_radius_allows() {
         let vessel = vessel(FIRST_ORDER);
         let mut state = at_rest_on_course();
-        let hard = Order {
-            heading: 3.0,
-            turn_rate: 0.0,
-            speed: 5.0,
-        };
+        let hard = order(3.0, 0.0, 5.0);
         for _ in 0..20 {
             vessel.advance(&mut state, &hard, Vector::zeros(), 0.5);
             assert!(state.turn_rate <= 0.05 + 1e-12);

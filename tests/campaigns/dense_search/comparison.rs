@@ -89,8 +89,7 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
 /// follows the coarse one.
 pub fn run(seeds: Seeds) -> Report {
     let thorough = seeds.clone().count() > 2;
-    let each = |kind| seeds.clone().map(move |seed| (kind, seed));
-    let scenes: Vec<(EncounterKind, u64)> = EncounterKind::ALL.into_iter().flat_map(each).collect();
+    let scenes: Vec<(EncounterKind, u64)> = EncounterKind::with_seeds(seeds).collect();
     let compared: Vec<_> = scenes
         .par_iter()
         .map(|&(kind, seed)| {

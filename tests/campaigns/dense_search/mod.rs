@@ -224,19 +224,11 @@ impl Scene<'_> {
     /// Every speed, straight and to both sides.
     fn steps(&self, pose: &Pose, time: f64, step: f64) -> Vec<Segment> {
         let own = self.problem.own;
-        let mut steps = Vec::with_capacity(9);
-        for &speed in &own.speeds {
-            for turn in [0.0, -1.0, 1.0] {
-                steps.push(Segment::new(
-                    *pose,
-                    time,
-                    step,
-                    speed,
-                    turn * speed / own.turning_radius,
-                ));
-            }
-        }
+        let turns = |speed| [0.0, -1.0, 1.0].map(|turn| (speed, turn * speed / own.turning_radius));
+        let steps = own.speeds.iter().copied().flat_map(turns);
         steps
+            .map(|(speed, rate)| Segment::new(*pose, time, step, speed, rate))
+            .collect()
     }
 
     /// Distance from the desired line, lag behind the desired motion along it (metres), and whether

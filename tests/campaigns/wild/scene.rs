@@ -14,8 +14,6 @@ pub struct Scene {
     pub origin: [f64; 2],
     /// Targets to choose from.
     pub kinds: &'static [&'static str],
-    /// Domains of ships to choose from.
-    pub domains: &'static [&'static str],
 }
 
 impl Scene {
@@ -34,7 +32,6 @@ impl Scene {
                 "at rest",
                 "around",
             ],
-            domains: &["colregs", "colregs", "paper", "hull"],
         }
     }
 
@@ -105,7 +102,7 @@ impl Scene {
                     self.one(&[0.0, 2.0, 5.0, 20.0]),
                     self.one(&[0.0, 0.0, 5.0, 20.0]),
                 ];
-                let domain = self.one(self.domains);
+                let domain = self.one(&["colregs", "colregs", "paper", "hull", "custom"]);
                 self.line(format!(
                     "position = {}\ncourse_deg = {:?}\nspeed_mps = {fast:?}\nlength_m = {long:?}\nbeam_m = {:?}",
                     position(&place),

@@ -101,11 +101,9 @@ fn monitors_are_those_worked_out_by_hand() {
             };
             assert_eq!(found.verdict.word(), *verdict, "{legs}: {found:?}");
             let value = found.robustness.expect("a number");
-            let is_angle = found.measure == Measure::Angle;
-            let value = if is_angle {
-                deg_from_radians(value)
-            } else {
-                value
+            let value = match found.measure {
+                Measure::Angle => deg_from_radians(value),
+                _ => value,
             };
             assert_near(value, robustness, &(legs, found));
             assert_near(found.time.expect("a time"), time, &(legs, found));

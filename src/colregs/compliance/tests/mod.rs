@@ -86,10 +86,8 @@ fn rules(c: &ComplianceReport) -> Vec<&'static str> {
 }
 
 fn violated(c: &ComplianceReport) -> Vec<&'static str> {
-    let broken = c
-        .monitors
-        .iter()
-        .filter(|f| f.verdict == MonitorVerdict::Violated);
+    let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
+    let broken = c.monitors.iter().filter(is_violated);
     broken.map(|f| f.monitor).collect()
 }
 
@@ -116,10 +114,8 @@ fn nothing_done_is_a_collision_and_scores_nothing() {
     ] {
         let idle = conduct(&[(0.0, 240.0)], x, y, heading, speed);
         assert_eq!(idle.scores.least(), 0.0);
-        assert!(
-            idle.scores.by_name().iter().all(|(_, s)| *s == 0.0),
-            "{idle:?}"
-        );
+        let mut scores = idle.scores.by_name().into_iter();
+        assert!(scores.all(|(_, s)| s == 0.0), "{idle:?}");
         assert!(rules(&idle).contains(&"8(d)"));
         assert_eq!(violated(&idle)[..2], ["S", "R1"]);
     }
@@ -143,12 +139,7 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     assert_eq!(left(meets), (MonitorVerdict::Violated, Some(0.0)));
     // the plan ends on the way to the meeting
     let own = planned(&[(0.0, meets - 30.0)], 6.0);
-    let meeting = EncounterSamples::along(
-        &own,
-        HULL,
-        6.0,
-        &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
-    );
+    let meeting = steady(&own, 1440.0, 0.0, PI, 6.0);
     let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
     assert_eq!(found.verdict, MonitorVerdict::Undecided);
     assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
@@ -159,13 +150,8 @@ fn giving_way_leads_astern_of_the_other() {
     let good = conduct(&OUT_AND_BACK, 720.0, -720.0, FRAC_PI_2, 6.0);
     assert!(good.complies(), "{good:?}");
     assert!(good.scores.rule_15 > Some(0.4), "{:?}", good.scores);
-    let bad = conduct(
-        &[(0.0, 20.0), (0.6, 60.0), (-0.6, 130.0)],
-        720.0,
-        -720.0,
-        FRAC_PI_2,
-        6.6,
-    );
+    let ahead = [(0.0, 20.0), (0.6, 60.0), (-0.6, 130.0)];
+    let bad = conduct(&ahead, 720.0, -720.0, FRAC_PI_2, 6.6);
     assert!(rules(&bad).contains(&"15"), "{bad:?}");
     assert_eq!(violated(&bad), ["R3"]);
     assert!(bad.scores.rule_15 < good.scores.rule_15);
@@ -175,10 +161,8 @@ fn giving_way_leads_astern_of_the_other() {
 fn standing_on_is_holding_on_and_never_turning_to_port() {
     // the other gives way: she is too slow to be met
     let held = conduct(&[(0.0, 240.0)], 760.0, 720.0, -FRAC_PI_2, 5.0);
-    assert!(
-        held.complies() && held.scores.rule_17 > Some(0.3),
-        "{held:?}"
-    );
+    assert!(held.complies(), "{held:?}");
+    assert!(held.scores.rule_17 > Some(0.3), "{held:?}");
     let away = [(0.0, 30.0), (-0.7, 200.0)];
     let turned = conduct(&away, 760.0, 720.0, -FRAC_PI_2, 5.0);
     assert_eq!(rules(&turned), ["17(a)(i)"]);
@@ -196,14 +180,9 @@ fn standing_on_is_holding_on_and_never_turning_to_port() {
 
 #[test]
 fn overtaking_is_free_in_its_side_and_not_across_the_bow() {
-    let far = [
-        (0.0, 5.0),
-        (-0.7, 25.0),
-        (0.7, 240.0),
-        (0.4, 60.0),
-        (-0.4, 90.0),
-    ];
-    for legs in [far.to_vec(), mirrored(&far)] {
+    let out = [(0.0, 5.0), (-0.7, 25.0), (0.7, 240.0)];
+    let far = [&out[..], &[(0.4, 60.0), (-0.4, 90.0)]].concat();
+    for legs in [far.clone(), mirrored(&far)] {
         let c = conduct(&legs, 432.0, 0.0, 0.0, 2.4);
         assert!(c.violations.is_empty(), "{:?}", c.violations);
         assert!(c.scores.rule_13 > Some(0.3), "{:?}", c.scores);
@@ -236,15 +215,11 @@ fn the_judges_do_not_see_where_the_scene_lies() {
             start: turned(&s.start),
             ..*s
         });
-        let target = track(
-            turned(&Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2)),
-            6.0,
-        );
         let own = Trajectory::new(segments.collect()).expect("a trajectory");
-        ComplianceReport::judge(
-            &EncounterSamples::along(&own, HULL, 6.0, &target),
-            standard(),
-        )
+        let crossing = Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2);
+        let target = track(turned(&crossing), 6.0);
+        let samples = EncounterSamples::along(&own, HULL, 6.0, &target);
+        ComplianceReport::judge(&samples, standard())
     };
     let here = judge(0.0, Vector::zeros());
     for k in 0..20 {
@@ -317,10 +292,8 @@ fn delay_counts_from_ample_time() {
         let legs = format!("{turn_at}s -60° 400s");
         let found = judged(&legs, [2160.0, -2160.0, FRAC_PI_2, 6.0]);
         let rule_16 = found.scores.rule_16.expect("gives way");
-        (
-            rule_16 / found.scores.safety,
-            found.manoeuvre.expect("a role"),
-        )
+        let manoeuvre = found.manoeuvre.expect("a role");
+        (rule_16 / found.scores.safety, manoeuvre)
     };
     let (early, manoeuvre) = promptness(10.0);
     assert_eq!((manoeuvre.turns, manoeuvre.speed_changes), (1, 0));

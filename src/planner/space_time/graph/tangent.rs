@@ -123,8 +123,8 @@ impl TangentEdges {
         let faces = body.faces();
         let corners: Vec<Corner> = body
             .moving_vertices()
-            .into_iter()
-            .map(|vertex| {
+            .iter()
+            .map(|&vertex| {
                 let meets = |f: &&HalfSpace| {
                     let initial = f.initial_support - f.normal.dot(&vertex.origin);
                     let velocity = f.velocity_support - f.normal.dot(&vertex.velocity);
