@@ -6,8 +6,8 @@ use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::motion::{pose_at, sailed_between};
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::InitialGuess;
-use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
+use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Segment;
 
@@ -156,14 +156,12 @@ pub(crate) struct EvasiveManoeuvre {
 /// Initial guess under construction.
 #[derive(Debug, Default)]
 pub(crate) struct InitialGuessBuilder {
-    variables: Vec<SegmentVariable>,
-    lengths: Vec<f64>,
+    pieces: Vec<(SegmentVariable, f64)>,
 }
 
 impl InitialGuessBuilder {
     pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
-        self.variables.push(variable);
-        self.lengths.push(length);
+        self.pieces.push((variable, length));
     }
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
@@ -191,18 +189,9 @@ impl InitialGuessBuilder {
     }
 
     pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
-        if self.variables.len() + 2 > MAX_VARIABLES {
-            return None;
-        }
-        let mut lengths: Row = [0.0; MAX_VARIABLES];
-        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
-        Some(InitialGuess {
-            structure: Structure {
-                variables: self.variables,
-                ending,
-            },
-            lengths,
-        })
+        // the ending may have two segment variables
+        let has_room = self.pieces.len() + 2 <= MAX_VARIABLES;
+        has_room.then(|| InitialGuess::new(&self.pieces, ending))
     }
 }
 
