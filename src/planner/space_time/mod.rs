@@ -306,15 +306,10 @@ fn attempt(
         selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
-    let counts = search.counts();
     Attempt {
         plan: selection.plan(),
         timed_out,
-        stats: SearchStats {
-            expanded: counts.expanded,
-            generated: counts.generated,
-            edges_checked: counts.tested,
-        },
+        stats: search.counts().into(),
         explored: node::explored(search),
     }
 }
