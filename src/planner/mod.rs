@@ -21,6 +21,7 @@ use std::time::Duration;
 use crate::colregs::{Duty, Encountered, Thresholds};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{LandObstacle, Obstacle};
+use crate::search::Counts;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{OwnShip, VesselKind};
 
@@ -248,6 +249,16 @@ pub struct SearchStats {
     pub generated: usize,
     /// Edges tested against every obstacle.
     pub edges_checked: usize,
+}
+
+impl From<Counts> for SearchStats {
+    fn from(counts: Counts) -> Self {
+        Self {
+            expanded: counts.expanded,
+            generated: counts.generated,
+            edges_checked: counts.tested,
+        }
+    }
 }
 
 /// A collision-free trajectory to the end of the desired path.

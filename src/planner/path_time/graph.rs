@@ -104,7 +104,6 @@ impl<'a> Graph<'a> {
             return;
         };
         let end = scene.network.legs()[leg].ends[1];
-        let length = scene.tracks[leg].length;
         let ahead = |list: &Vec<usize>| {
             let first = list.partition_point(|n| self.nodes[*n].time <= here.time);
             list[first..].to_vec()
@@ -117,11 +116,7 @@ impl<'a> Graph<'a> {
                 continue;
             }
             let node = self.nodes[to];
-            let distance = match node.place {
-                Place::On { distance, .. } => distance,
-                Place::At(_) => length,
-            };
-            let there = PathTime::new(distance, node.time);
+            let there = node.at_end_of(scene, leg);
             if self.sailable(here, there)
                 && self
                     .measure
@@ -133,6 +128,7 @@ impl<'a> Graph<'a> {
                 self.offer(from, to, Some(leg), &[here, via, there], out);
             }
         }
+        let length = scene.tracks[leg].length;
         let arrival = here.time + (length - here.distance) / scene.max_speed;
         let mut node = Node {
             place: Place::At(end),
@@ -235,19 +231,10 @@ impl<'a> Graph<'a> {
         let (from, to) = (&self.nodes[state.from], &self.nodes[state.node]);
         match (state.leg, from.place) {
             (Some(leg), _) => {
-                let length = self.scene.tracks[leg].length;
                 let here = from.on(self.scene, leg)?;
-                let distance = match to.place {
-                    Place::On { distance, .. } => distance,
-                    Place::At(_) => length,
-                };
-                let there = PathTime::new(distance, to.time);
-                let via = state.via.unwrap_or(there);
-                let first = self.scene.barrier(leg, here, via);
-                first.or_else(|| match state.via {
-                    Some(via) => self.scene.barrier(leg, via, there),
-                    None => None,
-                })
+                let there = to.at_end_of(self.scene, leg);
+                let first = (self.scene).barrier(leg, here, state.via.unwrap_or(there));
+                first.or_else(|| self.scene.barrier(leg, state.via?, there))
             }
             (None, Place::At(point)) => self.scene.barrier_at(point, from.time, to.time),
             (None, Place::On { .. }) => None,

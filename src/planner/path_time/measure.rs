@@ -64,14 +64,10 @@ impl<'a> Measure<'a> {
 
     /// Cost of lying at the end of the path from `time` to the end of the desired trajectory, m².
     pub(crate) fn after_arrival(&self, time: f64) -> f64 {
-        let Problem {
-            desired,
-            objective: Objective::SpaceTimeError,
-            ..
-        } = self.problem
-        else {
+        if self.waits_are_free() {
             return 0.0;
-        };
+        }
+        let desired = self.problem.desired;
         let end = Segment::straight(Pose::new(desired.end(), 0.0), time, 0.0, 0.0);
         error_after_end(desired, &end, self.problem.time_weight)
     }
@@ -91,10 +87,7 @@ impl<'a> Measure<'a> {
 
     /// True if an earlier arrival followed by a wait is never worse than a later arrival.
     pub(crate) fn waits_are_free(&self) -> bool {
-        match self.problem.objective {
-            Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
-            Objective::SpaceTimeError => false,
-        }
+        self.problem.objective != Objective::SpaceTimeError
     }
 
     /// Time in seconds within which a cheaper earlier arrival dominates a later one. For the

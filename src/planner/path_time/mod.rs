@@ -222,12 +222,7 @@ fn search_for(
         };
         return Planned { outcome, ..quick };
     }
-    let counts = search.counts();
-    let stats = SearchStats {
-        expanded: counts.expanded,
-        generated: counts.generated,
-        edges_checked: counts.tested,
-    };
+    let stats = SearchStats::from(search.counts());
     let found = goal.map(|goal| {
         let mut profile = begun.clone();
         for index in &search.way_to(goal)[1..] {
@@ -235,7 +230,8 @@ fn search_for(
             let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
             match state.leg {
                 Some(leg) => {
-                    if let (Some(a), Some(b)) = (from.on(scene, leg), ahead(scene, to, leg)) {
+                    if let Some(a) = from.on(scene, leg) {
+                        let b = to.at_end_of(scene, leg);
                         profile.sail(scene, leg, a, state.via.unwrap_or(b));
                         if let Some(via) = state.via {
                             profile.sail_on(via, b);
@@ -303,15 +299,6 @@ fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Optio
     })
 }
 
-/// Position of a node at the end of a line on a leg.
-fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
-    match node.place {
-        // on a closed leg, choose the end
-        Place::At(_) => Some(PathTime::new(scene.tracks[leg].length, node.time)),
-        Place::On { .. } => node.on(scene, leg),
-    }
-}
-
 /// Explains why there is no plan if own ship is inside a set at t = 0.
 fn starts_inside(problem: &Problem, scene: &Scene) -> Option<NoPlan> {
     let point = scene.network.start();
@@ -355,11 +342,7 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
             length,
             from.time + (length - from.distance) / scene.max_speed,
         );
-        let (obstacle, share) = scene.nearest_barrier(leg, from, to, true)?;
-        let met = PathTime::new(
-            from.distance + share * (to.distance - from.distance),
-            from.time + share * (to.time - from.time),
-        );
+        let (obstacle, met) = scene.nearest_barrier(leg, from, to, true)?;
         Some(NoPlan::Barred {
             target: problem.obstacles[obstacle].name().to_owned(),
             to_go: node.left(scene) - (met.distance - from.distance),
@@ -399,16 +382,15 @@ fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segme
     let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
     let still = |time| PathTime::new(0.0, time);
     let ends = match state.leg {
-        Some(leg) => from.on(scene, leg).zip(ahead(scene, to, leg)),
+        Some(leg) => from.on(scene, leg).map(|a| (a, to.at_end_of(scene, leg))),
         None => Some((still(from.time), still(to.time))),
     };
     let Some((start, end)) = ends else {
         return Vec::new();
     };
-    let place = |p: PathTime| match (state.leg, from.place) {
-        (Some(leg), _) => scene.tracks[leg].at(p.distance),
-        (None, Place::At(point)) => scene.network.place(point),
-        (None, Place::On { leg, distance }) => scene.tracks[leg].at(distance),
+    let place = |p: PathTime| match state.leg {
+        Some(leg) => scene.tracks[leg].at(p.distance),
+        None => from.place.position(scene),
     };
     let stops: Vec<PathTime> = [Some(start), state.via, Some(end)]
         .into_iter()
@@ -444,14 +426,13 @@ fn explored(graph: &Graph, search: Search<State>, clock: Clock) -> ExploredGraph
             continue;
         }
         let here = &graph.nodes[state.node];
-        let (position, heading) = match (here.place, state.leg) {
-            (_, Some(leg)) => {
+        let (position, heading) = match state.leg {
+            Some(leg) => {
                 let track = &scene.tracks[leg];
-                let place = ahead(scene, here, leg).map_or(track.start, |p| track.at(p.distance));
+                let place = track.at(here.at_end_of(scene, leg).distance);
                 (place, heading_of(track.direction))
             }
-            (Place::At(point), None) => (scene.network.place(point), 0.0),
-            (Place::On { leg, distance }, None) => (scene.tracks[leg].at(distance), 0.0),
+            None => (here.place.position(scene), 0.0),
         };
         let kind = match (here.mark, here.on_edge_of) {
             _ if node.fate == Fate::Goal => NodeKind::End,

@@ -2,6 +2,7 @@
 
 use super::TOUCH_M;
 use super::scene::Scene;
+use crate::frame::Vector;
 use crate::obstacle::PathTime;
 use crate::tolerance;
 
@@ -15,6 +16,14 @@ pub(crate) enum Place {
 }
 
 impl Place {
+    /// Position, metres.
+    pub(crate) fn position(self, scene: &Scene) -> Vector {
+        match self {
+            Self::On { leg, distance } => scene.tracks[leg].at(distance),
+            Self::At(point) => scene.network.place(point),
+        }
+    }
+
     /// Shortest distance to the end in metres; infinite if there is no path.
     pub(crate) fn to_go(self, scene: &Scene) -> f64 {
         match self {
@@ -68,6 +77,15 @@ impl Node {
             Place::At(_) => None,
         }?;
         Some(PathTime::new(distance, self.time))
+    }
+
+    /// Coordinates on a leg that leads to the node: at its end for a point, also of a closed leg.
+    pub(crate) fn at_end_of(&self, scene: &Scene, leg: usize) -> PathTime {
+        let distance = match self.place {
+            Place::On { distance, .. } => distance,
+            Place::At(_) => scene.tracks[leg].length,
+        };
+        PathTime::new(distance, self.time)
     }
 
     /// Shortest distance to the end in metres.

@@ -33,7 +33,7 @@ pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     let corners: Vec<(usize, PathTime)> = sources(scene, known, root);
     for (leg, at) in corners {
         for forward in [true, false] {
-            Ray { scene }.cast(leg, at, forward, known);
+            cast(scene, leg, at, forward, known);
         }
     }
     known.in_order();
@@ -84,118 +84,106 @@ fn schedule(scene: &Scene, leg: usize, due: &Due, known: &mut Known) {
     }
 }
 
-struct Ray<'a> {
-    scene: &'a Scene<'a>,
+/// Casts a ray toward the schedule. Forward, full speed reduces a lag and rest reduces a lead;
+/// backward is the reverse. Without a schedule, the ray has full speed.
+fn cast(scene: &Scene, leg: usize, at: PathTime, forward: bool, known: &mut Known) {
+    let Some(due) = scene.dues[leg] else {
+        run(scene, leg, at, forward, None, known);
+        return;
+    };
+    let behind = due.lag(at);
+    if behind.abs() <= tolerance::LENGTH_M {
+        return;
+    }
+    if (behind > 0.0) == forward {
+        run(scene, leg, at, forward, Some(behind > 0.0), known);
+    } else {
+        // rest until on schedule
+        let time = due.start + at.distance / due.speed;
+        let to = PathTime::new(at.distance, time.clamp(0.0, scene.horizon));
+        end(scene, leg, at, to, forward, to.time == time, known);
+    }
 }
 
-impl Ray<'_> {
-    /// Casts a ray toward the schedule. Forward, full speed reduces a lag and rest reduces a lead;
-    /// backward is the reverse. Without a schedule, the ray has full speed.
-    fn cast(&self, leg: usize, at: PathTime, forward: bool, known: &mut Known) {
-        let Some(due) = self.scene.dues[leg] else {
-            self.run(leg, at, forward, None, known);
-            return;
-        };
-        let behind = due.lag(at);
-        if behind.abs() <= tolerance::LENGTH_M {
-            return;
-        }
-        if (behind > 0.0) == forward {
-            self.run(leg, at, forward, Some(behind > 0.0), known);
+/// Casts a full-speed ray over the legs until it meets the schedule, an obstacle, or the last
+/// leg.
+fn run(
+    scene: &Scene,
+    leg: usize,
+    at: PathTime,
+    forward: bool,
+    behind: Option<bool>,
+    known: &mut Known,
+) {
+    let sign = if forward { 1.0 } else { -1.0 };
+    let mut open = vec![(leg, at)];
+    for _ in 0..MAX_PIECES {
+        let Some((leg, at)) = open.pop() else { return };
+        let length = scene.tracks[leg].length;
+        let way = if forward {
+            length - at.distance
         } else {
-            // rest until on schedule
-            let time = due.start + at.distance / due.speed;
-            let to = PathTime::new(at.distance, time.clamp(0.0, self.scene.horizon));
-            self.end(leg, at, to, forward, to.time == time, known);
+            at.distance
+        };
+        let sailed = |way: f64| {
+            PathTime::new(
+                at.distance + sign * way,
+                at.time + sign * way / scene.max_speed,
+            )
+        };
+        let mut to = sailed(way);
+        let mut due_there = false;
+        if let Some(due) = scene.dues[leg]
+            && behind.is_some()
+        {
+            let closing = scene.max_speed - due.speed;
+            let needed = due.lag(at).abs() * scene.max_speed / closing;
+            if closing > 0.0 && needed <= way {
+                to = sailed(needed);
+                due_there = true;
+            }
         }
-    }
-
-    /// Casts a full-speed ray over the legs until it meets the schedule, an obstacle, or the last
-    /// leg.
-    fn run(
-        &self,
-        leg: usize,
-        at: PathTime,
-        forward: bool,
-        behind: Option<bool>,
-        known: &mut Known,
-    ) {
-        let scene = self.scene;
-        let sign = if forward { 1.0 } else { -1.0 };
-        let mut open = vec![(leg, at)];
-        for _ in 0..MAX_PIECES {
-            let Some((leg, at)) = open.pop() else { return };
-            let length = scene.tracks[leg].length;
-            let way = if forward {
-                length - at.distance
-            } else {
-                at.distance
-            };
-            let sailed = |way: f64| {
-                PathTime::new(
-                    at.distance + sign * way,
-                    at.time + sign * way / scene.max_speed,
-                )
-            };
-            let mut to = sailed(way);
-            let mut due_there = false;
-            if let Some(due) = self.scene.dues[leg]
-                && behind.is_some()
-            {
-                let closing = scene.max_speed - due.speed;
-                let needed = due.lag(at).abs() * scene.max_speed / closing;
-                if closing > 0.0 && needed <= way {
-                    to = sailed(needed);
-                    due_there = true;
-                }
-            }
-            if !(to.time >= 0.0 && to.time <= scene.horizon) {
-                continue;
-            }
-            let whole = self.end(leg, at, to, forward, due_there, known);
-            if due_there || !whole {
-                continue;
-            }
-            let ends = scene.network.legs()[leg].ends;
-            let point = if forward { ends[1] } else { ends[0] };
-            for &(next, distance) in scene.touching(point) {
-                let starts = distance == 0.0;
-                let same_schedule = behind.is_none() || self.scene.dues[next].is_some();
-                if starts == forward && next != leg && same_schedule {
-                    let at = PathTime::new(distance, to.time);
-                    open.push((next, at));
-                }
+        if !(to.time >= 0.0 && to.time <= scene.horizon) {
+            continue;
+        }
+        let whole = end(scene, leg, at, to, forward, due_there, known);
+        if due_there || !whole {
+            continue;
+        }
+        let ends = scene.network.legs()[leg].ends;
+        let point = if forward { ends[1] } else { ends[0] };
+        for &(next, distance) in scene.touching(point) {
+            let starts = distance == 0.0;
+            let same_schedule = behind.is_none() || scene.dues[next].is_some();
+            if starts == forward && next != leg && same_schedule {
+                let at = PathTime::new(distance, to.time);
+                open.push((next, at));
             }
         }
     }
+}
 
-    /// Adds the end of a line, or its first intersection with an obstacle. True without an
-    /// intersection.
-    fn end(
-        &self,
-        leg: usize,
-        at: PathTime,
-        to: PathTime,
-        forward: bool,
-        due: bool,
-        known: &mut Known,
-    ) -> bool {
-        let scene = self.scene;
-        let (from, until) = if forward { (at, to) } else { (to, at) };
-        match scene.nearest_barrier(leg, from, until, forward) {
-            None => {
-                let mark = if due { Mark::Due } else { Mark::Passed };
-                known.add(scene, leg, to, None, mark);
-                true
-            }
-            Some((obstacle, share)) => {
-                let met = PathTime::new(
-                    from.distance + share * (until.distance - from.distance),
-                    from.time + share * (until.time - from.time),
-                );
-                known.add(scene, leg, met, Some(obstacle), Mark::Passed);
-                false
-            }
+/// Adds the end of a line, or its first intersection with an obstacle. True without an
+/// intersection.
+fn end(
+    scene: &Scene,
+    leg: usize,
+    at: PathTime,
+    to: PathTime,
+    forward: bool,
+    due: bool,
+    known: &mut Known,
+) -> bool {
+    let (from, until) = if forward { (at, to) } else { (to, at) };
+    match scene.nearest_barrier(leg, from, until, forward) {
+        None => {
+            let mark = if due { Mark::Due } else { Mark::Passed };
+            known.add(scene, leg, to, None, mark);
+            true
+        }
+        Some((obstacle, met)) => {
+            known.add(scene, leg, met, Some(obstacle), Mark::Passed);
+            false
         }
     }
 }

@@ -137,7 +137,7 @@ impl<'a> Scene<'a> {
         &self.touching[point]
     }
 
-    /// Returns the first obstacle along a line on a leg, and the fraction of the line at entry.
+    /// Returns the first obstacle along a line on a leg, and the point of the line at entry.
     /// `forward` selects the direction of travel. Half the permitted depth is used, so the position
     /// itself is free.
     pub(crate) fn nearest_barrier(
@@ -146,18 +146,23 @@ impl<'a> Scene<'a> {
         from: PathTime,
         to: PathTime,
         forward: bool,
-    ) -> Option<(usize, f64)> {
+    ) -> Option<(usize, PathTime)> {
         let met = self.seen[leg].iter().filter_map(|seen| {
             let shares = seen.body.inside(from, to, 0.5 * TOUCH_M)?;
             Some((seen.obstacle, shares))
         });
-        if forward {
+        let (obstacle, share) = if forward {
             let first = met.min_by(|a, b| a.1[0].total_cmp(&b.1[0]));
             first.map(|(obstacle, [enter, _])| (obstacle, enter))
         } else {
             let last = met.max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
             last.map(|(obstacle, [_, leave])| (obstacle, leave))
-        }
+        }?;
+        let met = PathTime::new(
+            from.distance + share * (to.distance - from.distance),
+            from.time + share * (to.time - from.time),
+        );
+        Some((obstacle, met))
     }
 
     /// Returns the obstacle with the earliest start time that a line on a leg intersects.

@@ -1,10 +1,11 @@
 //! Land in the planner: groundings of the nominal motion, and land blocks near a manoeuvre.
 
-use crate::frame::{Pose, Side, Vector, to_port};
+use crate::frame::{Side, Vector, to_port};
 use crate::geometry::{ConvexPolygon, outer_simplified};
 use crate::obstacle::{LAND, LandObstacle, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::tangent::TangentEdges;
+use crate::planner::space_time::motion::{pose_at, sailed_between};
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
 use crate::tolerance::TOUCH_M;
@@ -62,10 +63,9 @@ pub(crate) fn near<'s>(
 /// behind it.
 pub(crate) fn beyond_land(
     land_obstacle: &LandObstacle,
-    conflict: Conflict,
+    mut conflict: Conflict,
     nominal_motion: &[Segment],
 ) -> Conflict {
-    let mut conflict = conflict;
     let middle = 0.5 * (conflict.from + conflict.to);
     let Some(pose) = pose_at(nominal_motion, middle).filter(|_| !land_obstacle.is_empty()) else {
         return conflict;
@@ -101,14 +101,7 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
             continue;
         }
         if on_water {
-            found.push(Conflict {
-                from: time,
-                to: time,
-                through: 0.0,
-                offsets: [0.0; 2],
-                astern: (f64::INFINITY, time),
-                ahead: (f64::INFINITY, time),
-            });
+            found.push(Conflict::at(time, f64::INFINITY));
         }
         on_water = false;
         if let Some(conflict) = found.last_mut() {
@@ -120,20 +113,9 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
         }
     }
     for conflict in &mut found {
-        let lengths = nominal_motion
-            .iter()
-            .map(|s| s.between(conflict.from, conflict.to).length());
-        conflict.through = lengths.sum();
+        conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
     }
     found
-}
-
-fn pose_at(segments: &[Segment], time: f64) -> Option<Pose> {
-    segments
-        .iter()
-        .find(|s| s.end_time() >= time)
-        .or(segments.last())
-        .map(|s| s.pose_at(time))
 }
 
 /// Tangent edges to land corners near the nominal motion, where that grounds. Each block is
@@ -168,14 +150,8 @@ pub(crate) fn tangent_edges(
         let rest = ConvexPolygon::point(Vector::zeros());
         let body = PolytopeObstacle::new(LAND, around, rest);
         let proxy = Proxy::at_rest(problem.obstacles.len(), block);
-        let speeds = [speed_table.normal, speed_table.fast];
-        let speeds = speeds
-            .into_iter()
-            .take(if speed_table.normal < speed_table.fast {
-                2
-            } else {
-                1
-            });
-        Some(TangentEdges::past(&proxy, &body, speeds, open))
+        let mut speeds = vec![speed_table.normal, speed_table.fast];
+        speeds.dedup();
+        Some(TangentEdges::new(&proxy, &body, speeds.into_iter(), open))
     })
 }

@@ -17,13 +17,13 @@ mod chain;
 mod fallback;
 mod graph;
 mod land;
+mod motion;
 pub(super) mod piece;
 mod proxy;
 mod refinement;
 mod route;
 mod rules;
 mod selection;
-mod settings;
 mod similarity;
 
 pub use fallback::escape::{after_holding, nominal_motion};
@@ -42,7 +42,6 @@ use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
 use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
-use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
 use rules::groups;
@@ -203,14 +202,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         });
     }
     let blocks = land::proxies(problem);
-    let context = Context {
-        problem,
-        route: &route,
-        proxies,
-        blocks: &blocks,
-        chord: FINE_CHORD_RAD,
-        segment_time: 0.0,
-    };
+    let context = Context::new(problem, &route, proxies, &blocks);
     let contact = first_contact(proxies, &nominal_motion);
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
@@ -277,13 +269,7 @@ fn attempt(
     (nominal_motion, conflicts): (&[Segment], &[Conflict]),
     clock: Clock,
 ) -> Attempt {
-    let &Context {
-        problem,
-        route,
-        proxies,
-        ..
-    } = context;
-    let mut graph = Graph::new(problem, proxies, route, nominal_motion, clock);
+    let mut graph = Graph::new(context, nominal_motion, clock);
     let mut search = Search::new(graph.root());
     let mut selection = Selection::new(*context, budget);
     let mut stages = budget.stages.iter();
@@ -315,21 +301,15 @@ fn attempt(
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
     if !timed_out
         && sequential::are_several(conflicts)
-        && let Some(motion) =
-            sequential::resolve_sequentially(problem, proxies, route, nominal_motion, clock)
+        && let Some(motion) = sequential::resolve_sequentially(context, nominal_motion, clock)
     {
         selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
-    let counts = search.counts();
     Attempt {
         plan: selection.plan(),
         timed_out,
-        stats: SearchStats {
-            expanded: counts.expanded,
-            generated: counts.generated,
-            edges_checked: counts.tested,
-        },
+        stats: search.counts().into(),
         explored: node::explored(search),
     }
 }

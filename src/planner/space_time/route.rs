@@ -454,45 +454,36 @@ impl Route {
         if piece.curvature != 0.0 && late.abs() < 0.5 * slowness * piece.length {
             return (self.nearest_speed(1.0 / slowness), left);
         }
+        // where the schedule is regained at this many seconds per metre
+        let regained = |off: f64, rate: f64| {
+            if rate > 0.0 {
+                (off / rate).min(left)
+            } else {
+                left
+            }
+        };
         if late > ON_TIME_S {
-            let gain = slowness - 1.0 / fastest;
-            return (
-                fastest,
-                if gain > 0.0 {
-                    (late / gain).min(left)
-                } else {
-                    left
-                },
-            );
+            return (fastest, regained(late, slowness - 1.0 / fastest));
         }
         if late < -ON_TIME_S {
-            let slower = match self.speed_time > 0.0 && !self.is_listed(slowness) {
+            let slower = match self.speed_time > 0.0 && self.listed(slowness).is_none() {
                 true => self.slower(slowness).unwrap_or(slowest),
                 false => slowest,
             };
             if slower == 0.0 {
                 return (0.0, 0.0);
             }
-            let loss = 1.0 / slower - slowness;
-            return (
-                slower,
-                if loss > 0.0 {
-                    (-late / loss).min(left)
-                } else {
-                    left
-                },
-            );
+            return (slower, regained(-late, 1.0 / slower - slowness));
         }
         // a stretch that is due at once, or was due before, is not waited for: zero-length waits
         // would repeat for ever
         if slowness <= 0.0 {
             return (fastest, left);
         }
-        let speed = 1.0 / slowness;
-        let mut moving = self.speeds.iter().filter(|u| **u > 0.0);
-        if let Some(same) = moving.find(|u| (*u - speed).abs() <= 1e-9 * speed) {
-            return (*same, left);
+        if let Some(same) = self.listed(slowness) {
+            return (same, left);
         }
+        let speed = 1.0 / slowness;
         if !self.recovers() {
             return (self.nearest_speed(speed), left);
         }
@@ -514,11 +505,11 @@ impl Route {
         }
     }
 
-    /// True where own ship can keep the schedule of a stretch, seconds per metre, by one speed.
-    fn is_listed(&self, slowness: f64) -> bool {
+    /// The one of own ship's speeds that keeps the schedule of a stretch, seconds per metre.
+    fn listed(&self, slowness: f64) -> Option<f64> {
         let speed = 1.0 / slowness;
         let same = |u: &f64| *u > 0.0 && (u - speed).abs() <= 1e-9 * speed;
-        self.speeds.iter().any(same)
+        self.speeds.iter().copied().find(same)
     }
 
     /// Greatest moving speed below that of the schedule.

@@ -150,10 +150,7 @@ impl<'a> Heuristic<'a> {
         let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
         (
             aside.scaled(1.0 / self.desired.duration()),
-            CostInterval {
-                cost: 0.0,
-                span: 0.0,
-            },
+            CostInterval::EMPTY,
         )
     }
 
@@ -195,6 +192,11 @@ pub(crate) struct CostInterval {
 }
 
 impl CostInterval {
+    const EMPTY: Self = Self {
+        cost: 0.0,
+        span: 0.0,
+    };
+
     fn scaled(self, factor: f64) -> Self {
         Self {
             cost: self.cost * factor,
@@ -207,10 +209,7 @@ impl CostInterval {
 /// until which that is positive. A decreasing ramp may extend to infinity.
 pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> CostInterval {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return CostInterval {
-            cost: 0.0,
-            span: 0.0,
-        };
+        return CostInterval::EMPTY;
     }
     if slope < 0.0 {
         let span = duration.min(-start / slope).max(0.0);

@@ -263,6 +263,7 @@ mod tests {
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::plan;
     use crate::planner::space_time::proxy::Proxy;
+    use crate::planner::space_time::refinement::trial::Context;
     use crate::planner::space_time::route::Route;
     use crate::planner::{Problem, SearchKind};
     use crate::search::{Search, Space, Stop};
@@ -295,13 +296,8 @@ mod tests {
         let nominal_motion = route.follow(0.0, 0.0);
         let pieces = pieces(problem.obstacles, problem.horizon);
         let proxies: Vec<Proxy> = pieces.iter().map(Proxy::new).collect();
-        let mut graph = Graph::new(
-            problem,
-            &proxies,
-            &route,
-            &nominal_motion,
-            Clock::new(Duration::MAX),
-        );
+        let context = Context::new(problem, &route, &proxies, &[]);
+        let mut graph = Graph::new(&context, &nominal_motion, Clock::new(Duration::MAX));
         let mut search = Search::new(graph.root());
         let mut joints: Vec<(State, f64)> = Vec::new();
         let mut cheapest = None;

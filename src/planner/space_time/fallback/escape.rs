@@ -12,11 +12,12 @@ use crate::frame::{Pose, Side, Vector};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
-use crate::planner::space_time::graph::departure::until;
+use crate::planner::space_time::land;
+use crate::planner::space_time::motion::{part, pose_at, until};
 use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
+use crate::planner::space_time::{arrived_plan, has_arrived, plan};
 use crate::planner::{NominalTarget, Plan, Problem};
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -38,6 +39,13 @@ const MAX_SAMPLES: usize = 400;
 /// Bisection steps for the exit time: to a microsecond.
 const HALVINGS: usize = 20;
 
+/// Seconds for which an exit from a set is held before the planner takes over. At the very edge of
+/// a growing set every turn leads back into it.
+const EXIT_HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
+
+/// Seconds for which a turn is held where own ship is in no set and there is no plan.
+const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
+
 /// Exits from which plans are sought, least harm first.
 const MAX_EXITS: usize = 4;
 
@@ -56,8 +64,8 @@ const MIN_COMPARED: usize = 12;
 /// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    if crate::planner::space_time::has_arrived(problem) {
-        return crate::planner::space_time::arrived_plan(problem);
+    if has_arrived(problem) {
+        return arrived_plan(problem);
     }
     let pieces = parts_of(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -170,7 +178,7 @@ fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Se
         (motion.last()?.end_time() <= problem.horizon).then_some(motion)
     };
     let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
-    (!crate::planner::space_time::land::meets(problem.land_obstacle, &motion)).then_some(motion)
+    (!land::meets(problem.land_obstacle, &motion)).then_some(motion)
 }
 
 /// Motion along the path that ignores other ships; `None` where it does not arrive within the
@@ -191,7 +199,7 @@ pub fn after_holding(problem: &Problem, motion: &[Segment], time: f64) -> Option
 
 /// Runs the planner in the remaining time.
 fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
-    let planned = crate::planner::space_time::plan(&Problem {
+    let planned = plan(&Problem {
         deadline: clock.left(),
         ..problem.clone()
     });
@@ -248,10 +256,8 @@ fn exits(
             let before = until(&motion, out);
             // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
-                || meets(&held, &after(&motion, out))
-                || before
-                    .iter()
-                    .any(|s| problem.land_obstacle.meets(s, TOUCH_M))
+                || meets(&held, &part(&motion, out, f64::INFINITY))
+                || land::meets(problem.land_obstacle, &before)
             {
                 continue;
             }
@@ -357,13 +363,9 @@ fn exit_time(
     rate: f64,
     depth: impl Fn(&Pose, f64) -> f64,
 ) -> Option<f64> {
-    let at = |time: f64| {
-        let segment = motion.iter().find(|s| time <= s.end_time());
-        segment.or(motion.last()).map(|s| s.pose_at(time))
-    };
     // negated on purpose: a NaN is inside
     let is_in = |deep: f64| !(deep <= TOUCH_M);
-    let depth = |time: f64| at(time).map_or(f64::NAN, |pose| depth(&pose, time));
+    let depth = |time: f64| pose_at(motion, time).map_or(f64::NAN, |pose| depth(&pose, time));
     let (mut inside, mut deep) = (0.0, depth(0.0));
     let mut found = None;
     for _ in 0..MAX_SAMPLES {
@@ -391,12 +393,6 @@ fn exit_time(
     Some(high)
 }
 
-/// Motion from a time on.
-fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
-    let later = motion.iter().filter(|s| s.end_time() > from);
-    later.map(|s| s.between(from, s.end_time())).collect()
-}
-
 fn is_at_end(desired: &DesiredTrajectory, place: Vector) -> bool {
     (desired.end() - place).norm() <= tolerance::ARRIVAL_M
 }
@@ -407,7 +403,7 @@ fn append(
     beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-    if crate::planner::space_time::land::meets(problem.land_obstacle, beginning) {
+    if land::meets(problem.land_obstacle, beginning) {
         return None;
     }
     let start = beginning.last().map_or(0.0, Segment::end_time);

@@ -4,14 +4,11 @@
 //! conflict ignores later ones and ends back on the route. The next conflict is resolved from
 //! there.
 
-use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::graph::Graph;
-use crate::planner::space_time::graph::departure::until as motion_until;
 use crate::planner::space_time::graph::node;
-use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::Proxy;
-use crate::planner::space_time::route::Route;
+use crate::planner::space_time::motion::{part, until as motion_until};
+use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::selection::initial_guess::Conflict;
 use crate::search::{Search, Stop};
 use crate::trajectory::Segment;
@@ -37,16 +34,14 @@ pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
 /// Motion to the last waypoint that is clear of every proxy and of land, from a nominal one that is
 /// not. `None` when a conflict has no solution, or a later one begins no later.
 pub(crate) fn resolve_sequentially(
-    problem: &Problem,
-    proxies: &[Proxy],
-    route: &Route,
+    context: &Context,
     nominal_motion: &[Segment],
     clock: Clock,
 ) -> Option<Vec<Segment>> {
     let mut motion = nominal_motion.to_vec();
     let mut before = f64::NEG_INFINITY;
     for _ in 0..MAX_STAGES {
-        let Some(contact) = first_conflict(problem, proxies, &motion) else {
+        let Some(contact) = context.first_conflict(&motion) else {
             return Some(motion);
         };
         // negated on purpose: a NaN is no progress
@@ -55,22 +50,14 @@ pub(crate) fn resolve_sequentially(
         }
         before = contact;
         let leaves = (contact - LEAD_S).max(0.0);
-        let cut = |from: f64, until: f64| -> Vec<Segment> {
-            motion
-                .iter()
-                .filter(|s| s.end_time() > from && s.start_time < until)
-                .map(|s| s.between(from, until))
-                .collect()
-        };
-        let rest = cut(leaves, f64::INFINITY);
-        let near = cut(leaves, contact + 2.0 * TOGETHER_S);
-        let mut graph =
-            Graph::for_conflict(problem, proxies, route, [&near, &rest], contact, clock);
+        let rest = part(&motion, leaves, f64::INFINITY);
+        let near = part(&motion, leaves, contact + 2.0 * TOGETHER_S);
+        let mut graph = Graph::for_conflict(context, [&near, &rest], contact, clock);
         let mut search = Search::new(graph.root());
         let Stop::Goal(goal) = search.next_goal(&mut graph, MAX_EXPANDED) else {
             return None;
         };
-        let mut next = cut(f64::NEG_INFINITY, leaves);
+        let mut next = motion_until(&motion, leaves);
         next.extend(node::motion_to(&search, goal));
         motion = next;
     }
@@ -83,15 +70,4 @@ pub(crate) fn checked_part(path: &[Segment], until: f64) -> Vec<Segment> {
     let start = path.first().map_or(until, |s| s.start_time);
     let until = until.max(start + TOGETHER_S);
     motion_until(path, until)
-}
-
-/// First time at which a motion meets a proxy or land.
-fn first_conflict(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> Option<f64> {
-    let met = |s: &Segment| {
-        let contacts = proxies.iter().filter_map(|h| h.first_contact(s));
-        contacts.min_by(f64::total_cmp)
-    };
-    let target = motion.iter().find_map(met);
-    let land = land::first_contact(problem.land_obstacle, motion);
-    target.into_iter().chain(land).min_by(f64::total_cmp)
 }

@@ -3,7 +3,6 @@
 //! Nodes and edges are generated on demand by the search. The graph decides on which side and in
 //! which order to pass, and whether to wait. `refinement` optimises the lengths.
 
-pub(crate) mod departure;
 pub(crate) mod intercept;
 pub(crate) mod node;
 pub(crate) mod return_to_line;
@@ -19,16 +18,16 @@ use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
-use crate::planner::space_time::graph::departure::{leave_for, until};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::graph::tangent::TangentEdges;
 use crate::planner::space_time::land;
+use crate::planner::space_time::motion::until;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
 use crate::planner::space_time::refinement::structure::Ending;
+use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::settings::{GRAPH_HOLDS_S, GRAPH_RETURN_ANGLES};
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
 use crate::trajectory::Segment;
@@ -40,6 +39,10 @@ const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
 const MAX_TURN: f64 = 2.0;
 /// Largest duration of an interception, seconds.
 const MAX_INTERCEPTION_S: f64 = 240.0;
+/// Seconds for which a course is held beyond a vertex, one after another.
+const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
+/// Angles between the return lines and the route, radians.
+const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
 /// Largest number of consecutive vertices.
 const MAX_CHAIN: u8 = 5;
 /// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
@@ -70,13 +73,13 @@ pub(crate) struct Graph<'a> {
 impl<'a> Graph<'a> {
     /// Graph of the whole problem. `nominal_motion` is the route followed from t = 0. Generates
     /// nothing after the deadline.
-    pub(crate) fn new(
-        problem: &'a Problem<'a>,
-        proxies: &'a [Proxy<'a>],
-        route: &'a Route,
-        nominal_motion: &'a [Segment],
-        clock: Clock,
-    ) -> Self {
+    pub(crate) fn new(context: &Context<'a>, nominal_motion: &'a [Segment], clock: Clock) -> Self {
+        let &Context {
+            problem,
+            route,
+            proxies,
+            ..
+        } = context;
         let first = |h: &Proxy| nominal_motion.iter().find_map(|s| h.first_contact(s));
         let mut contacts: Vec<f64> = by_obstacle(proxies)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
@@ -109,7 +112,7 @@ impl<'a> Graph<'a> {
                     outer_simplified(h.body.initial(), INITIAL_VERTICES),
                     outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
                 );
-                TangentEdges::new(h, &body, problem.own.moving_speeds())
+                TangentEdges::new(h, &body, problem.own.moving_speeds(), |_| true)
             })
             .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
@@ -139,14 +142,12 @@ impl<'a> Graph<'a> {
     /// the part of the motion around the conflict. Motions to the end must be clear of early
     /// contacts only.
     pub(crate) fn for_conflict(
-        problem: &'a Problem<'a>,
-        proxies: &'a [Proxy<'a>],
-        route: &'a Route,
+        context: &Context<'a>,
         [near, rest]: [&'a [Segment]; 2],
         contact: f64,
         clock: Clock,
     ) -> Self {
-        let mut graph = Self::new(problem, proxies, route, near, clock);
+        let mut graph = Self::new(context, near, clock);
         graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
         graph.nominal_motion = rest;
         graph.clear_until = Some(contact + TOGETHER_S);
@@ -362,7 +363,7 @@ impl<'a> Graph<'a> {
         let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
         let start = (&from.pose, from.time);
         for leg in near..desired.legs().len().min(near + 2) {
-            for angle in GRAPH_RETURN_ANGLES {
+            for angle in RETURN_ANGLES {
                 if let Some(motion) = motion_back(self.problem, self.route, start, leg, angle) {
                     let ending = Ending::Return { leg, speed };
                     self.push(out, NodeKind::End, ending, motion, 0, from);
@@ -392,7 +393,7 @@ impl<'a> Graph<'a> {
 
     /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
     fn hold_course(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        let hold = GRAPH_HOLDS_S.get(usize::from(from.held));
+        let hold = HOLDS_S.get(usize::from(from.held));
         if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
             let mut chain = Chain::new(
                 from.pose,
@@ -404,6 +405,22 @@ impl<'a> Graph<'a> {
             self.push(out, NodeKind::Held, Ending::Follow, chain.segments, 0, from);
         }
     }
+}
+
+/// Time at which to leave a motion for a constant speed, in order to be at a given distance along
+/// it at a given time.
+fn leave_for(nominal_motion: &[Segment], distance: f64, time: f64, speed: f64) -> Option<f64> {
+    let mut at = 0.0;
+    for s in nominal_motion {
+        // at + s.speed (t - s.start_time) + speed (time - t) = distance
+        let gap = distance - at + s.speed * s.start_time - speed * time;
+        let t = gap / (s.speed - speed);
+        if t.is_finite() && t >= s.start_time && t <= s.end_time() && t < time {
+            return Some(t);
+        }
+        at += s.length();
+    }
+    None
 }
 
 /// The greatest speed, and where that arrives before `left` seconds are over, the greatest one that

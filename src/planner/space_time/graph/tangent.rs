@@ -104,17 +104,9 @@ pub(crate) struct TangentEdge {
 }
 
 impl TangentEdges {
-    /// Corners of `body`, the polytope of the proxy or its substitute.
+    /// Corners of `body`, the polytope of the proxy or its substitute, that are `open` at their
+    /// position at t = 0.
     pub(crate) fn new(
-        proxy: &Proxy,
-        body: &PolytopeObstacle,
-        speeds: impl Iterator<Item = f64>,
-    ) -> Self {
-        Self::past(proxy, body, speeds, |_| true)
-    }
-
-    /// Corners that are `open` at their position at t = 0.
-    pub(crate) fn past(
         proxy: &Proxy,
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
@@ -397,7 +389,8 @@ mod tests {
                 window: None,
                 body: Body::Polytope(body.clone()),
             };
-            let tangent_edges = TangentEdges::new(&Proxy::new(&piece), &body, speeds.into_iter());
+            let tangent_edges =
+                TangentEdges::new(&Proxy::new(&piece), &body, speeds.into_iter(), |_| true);
             let pose = Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1));
             let time = rng.random_range(0.0..60.0);
             if body.contains(pose.position, time) {

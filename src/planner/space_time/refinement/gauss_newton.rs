@@ -29,21 +29,23 @@ impl Residuals {
         let [e, n, t] = rates;
         let s = [scale * e, scale * n, scale * t];
         let squares = [s[0] * e, s[0] * n, s[0] * t, s[1] * n, s[1] * t, s[2] * t];
-        for (w, q) in self.weight.iter_mut().zip(squares) {
-            *w += q;
-        }
-        for (p, s) in self.gradient_form.iter_mut().zip(s) {
-            *p += s * value;
-        }
+        accumulate(&mut self.weight, &squares);
+        accumulate(&mut self.gradient_form, &s.map(|s| s * value));
     }
+}
 
-    fn weigh(&self, v: [f64; 3]) -> [f64; 3] {
-        let [ee, en, et, nn, nt, tt] = self.weight;
-        [
-            ee * v[0] + en * v[1] + et * v[2],
-            en * v[0] + nn * v[1] + nt * v[2],
-            et * v[0] + nt * v[1] + tt * v[2],
-        ]
+fn weigh([ee, en, et, nn, nt, tt]: Weight, v: [f64; 3]) -> [f64; 3] {
+    [
+        ee * v[0] + en * v[1] + et * v[2],
+        en * v[0] + nn * v[1] + nt * v[2],
+        et * v[0] + nt * v[1] + tt * v[2],
+    ]
+}
+
+/// Adds each term to its sum; later sums stay as they are.
+fn accumulate(sums: &mut [f64], terms: &[f64]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += term;
     }
 }
 
@@ -67,16 +69,10 @@ pub(crate) struct Accumulation {
 
 impl Accumulation {
     fn add(&mut self, other: &Self) {
-        for (a, b) in self.weight.iter_mut().zip(other.weight) {
-            *a += b;
-        }
-        for (a, b) in self.mixed.iter_mut().zip(other.mixed) {
-            *a += b;
-        }
+        accumulate(&mut self.weight, &other.weight);
+        accumulate(&mut self.mixed, &other.mixed);
         self.square += other.square;
-        for (a, b) in self.gradient_form.iter_mut().zip(other.gradient_form) {
-            *a += b;
-        }
+        accumulate(&mut self.gradient_form, &other.gradient_form);
     }
 
     /// Gradient with respect to a twist that moves all these points, as a linear form of the twist.
@@ -90,12 +86,8 @@ impl Accumulation {
     }
 
     fn times(&self, v: &Twist) -> [f64; 4] {
-        let residuals = Residuals {
-            weight: self.weight,
-            gradient_form: [0.0; 3],
-        };
         let base = [v[0], v[1], v[2]];
-        let weighed = residuals.weigh(base);
+        let weighed = weigh(self.weight, base);
         [
             weighed[0] + v[3] * self.mixed[0],
             weighed[1] + v[3] * self.mixed[1],
@@ -139,24 +131,16 @@ impl GaussNewton {
         residuals: &Residuals,
     ) {
         let lever = [-place[1], place[0], 0.0];
-        let mixed = residuals.weigh(lever);
+        let mixed = weigh(residuals.weight, lever);
         let moment = &mut self.variables[index];
-        for (a, b) in moment.weight.iter_mut().zip(residuals.weight) {
-            *a += b;
-        }
-        for (a, b) in moment.mixed.iter_mut().zip(mixed) {
-            *a += b;
-        }
+        accumulate(&mut moment.weight, &residuals.weight);
+        accumulate(&mut moment.mixed, &mixed);
         moment.square += dot3(lever, mixed);
-        for (a, b) in moment.gradient_form.iter_mut().zip(residuals.gradient_form) {
-            *a += b;
-        }
+        accumulate(&mut moment.gradient_form, &residuals.gradient_form);
         moment.gradient_form[3] += dot3(lever, residuals.gradient_form);
-        let weighed = residuals.weigh(own);
+        let weighed = weigh(residuals.weight, own);
         let mine = &mut self.own[index];
-        for (a, b) in mine.cross.iter_mut().zip(weighed) {
-            *a += b;
-        }
+        accumulate(&mut mine.cross, &weighed);
         mine.cross[3] += dot3(lever, weighed);
         mine.square += dot3(own, weighed);
         mine.gradient_form += dot3(own, residuals.gradient_form);
@@ -170,7 +154,7 @@ impl GaussNewton {
         lower: &mut [Row],
     ) {
         for (k, rate) in rates.iter().enumerate() {
-            let weighed = residuals.weigh(*rate);
+            let weighed = weigh(residuals.weight, *rate);
             gradient[k] += dot3(*rate, residuals.gradient_form);
             for (i, other) in rates[..=k].iter().enumerate() {
                 lower[k][i] += dot3(*other, weighed);
@@ -196,9 +180,7 @@ impl GaussNewton {
             let mut column = later.times(twist);
             lower[j][j] += dot4(twist, &column) + own.square;
             gradient[j] += dot4(twist, &later.gradient_form) + own.gradient_form;
-            for (c, q) in column.iter_mut().zip(own.cross) {
-                *c += q;
-            }
+            accumulate(&mut column, &own.cross);
             for (h, m) in lower[j][..j].iter_mut().zip(twists) {
                 *h += dot4(m, &column);
             }

@@ -10,7 +10,7 @@ use crate::frame::{Side, Vector};
 use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::gauss_newton::{Accumulation, Twist, dot4};
 use crate::planner::space_time::refinement::model::UnreducedModel;
-use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Programme, Row};
+use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Programme};
 use crate::planner::space_time::refinement::rollout::SegmentOrigin;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::refinement::trial::Context;
@@ -53,48 +53,26 @@ pub(crate) fn with_insertions(
 ) -> Option<InitialGuess> {
     let base = split(context, guess, uncut)?;
     let found = insertions(context, &base)?;
-    let mut with_insertions = InitialGuess {
-        structure: Structure {
-            variables: Vec::with_capacity(MAX_VARIABLES),
-            ending: base.structure.ending,
-        },
-        lengths: [0.0; MAX_VARIABLES],
-    };
-    let variables = &mut with_insertions.structure.variables;
-    for gap in 0..=base.structure.variables.len() {
-        variables.extend(found.iter().filter(|a| a.gap == gap).map(|a| a.variable));
-        if let Some(variable) = base.structure.variables.get(gap) {
-            with_insertions.lengths[variables.len()] = base.lengths[gap];
-            variables.push(*variable);
-        }
+    let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
+    for gap in 0..=base.structure.free() {
+        let inserted = found.iter().filter(|a| a.gap == gap);
+        pieces.extend(inserted.map(|a| (a.variable, 0.0)));
+        pieces.extend(base.pieces().nth(gap));
     }
-    Some(with_insertions)
+    Some(InitialGuess::new(&pieces, base.structure.ending))
 }
 
 /// Removes turns and lines too short to be useful; `None` when there are none.
 pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
     let radius = context.problem.own.turning_radius;
-    let is_of_use = |(variable, length): &(&SegmentVariable, &f64)| match variable {
+    let is_of_use = |(variable, length): &(SegmentVariable, f64)| match variable {
         SegmentVariable::Run { .. } => true,
-        SegmentVariable::Arc { .. } => **length >= LEAST_TURN * radius,
-        SegmentVariable::Line { .. } => **length >= LEAST_LINE * radius,
+        SegmentVariable::Arc { .. } => *length >= LEAST_TURN * radius,
+        SegmentVariable::Line { .. } => *length >= LEAST_LINE * radius,
     };
-    let all = guess.structure.variables.iter().zip(&guess.lengths);
-    let kept: Vec<_> = all.filter(is_of_use).collect();
-    if kept.len() == guess.structure.variables.len() {
-        return None;
-    }
-    let mut lengths: Row = [0.0; MAX_VARIABLES];
-    for (to, (_, length)) in lengths.iter_mut().zip(&kept) {
-        *to = **length;
-    }
-    Some(InitialGuess {
-        structure: Structure {
-            variables: kept.iter().map(|k| *k.0).collect(),
-            ending: guess.structure.ending,
-        },
-        lengths,
-    })
+    let kept: Vec<_> = guess.pieces().filter(is_of_use).collect();
+    let is_shorter = kept.len() < guess.structure.free();
+    is_shorter.then(|| InitialGuess::new(&kept, guess.structure.ending))
 }
 
 /// Removes empty segment variables and divides long lines, including the dependent line of a
@@ -109,10 +87,10 @@ fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialG
             count,
         ));
     };
-    for (variable, length) in guess.structure.variables.iter().zip(&guess.lengths) {
+    for (variable, length) in guess.pieces() {
         let is_run = matches!(variable, SegmentVariable::Run { .. });
-        if *length >= EMPTY_M || is_run && *length > 0.0 {
-            add(*variable, *length);
+        if length >= EMPTY_M || is_run && length > 0.0 {
+            add(variable, length);
         }
     }
     if let Ending::Return { speed, .. } = guess.structure.ending {
@@ -126,21 +104,9 @@ fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialG
             );
         }
     }
-    let mut lengths: Row = [0.0; MAX_VARIABLES];
     // at least one insertion must fit beside the two dependent segment variables
-    if pieces.len() + 3 > MAX_VARIABLES {
-        return None;
-    }
-    for (to, part) in lengths.iter_mut().zip(&pieces) {
-        *to = part.1;
-    }
-    Some(InitialGuess {
-        structure: Structure {
-            variables: pieces.iter().map(|p| p.0).collect(),
-            ending: guess.structure.ending,
-        },
-        lengths,
-    })
+    let has_room = pieces.len() + 3 <= MAX_VARIABLES;
+    has_room.then(|| InitialGuess::new(&pieces, guess.structure.ending))
 }
 
 /// Most promising insertions; `None` where their total predicted gain is negligible.

@@ -74,13 +74,33 @@ pub(crate) struct InitialGuess {
     pub lengths: Row,
 }
 
-/// Side of the first turn of non-zero length.
-fn first_turn(guess: &InitialGuess) -> Option<Side> {
-    let mut variables = guess.structure.variables.iter().zip(&guess.lengths);
-    variables.find_map(|(variable, length)| match variable {
-        SegmentVariable::Arc { side, .. } if *length > 0.0 => Some(*side),
-        _ => None,
-    })
+impl InitialGuess {
+    /// Segment variables with their lengths, metres; at most [`MAX_VARIABLES`].
+    pub(crate) fn new(pieces: &[(SegmentVariable, f64)], ending: Ending) -> Self {
+        let mut lengths = [0.0; MAX_VARIABLES];
+        for (to, (_, length)) in lengths.iter_mut().zip(pieces) {
+            *to = *length;
+        }
+        let variables = pieces.iter().map(|piece| piece.0).collect();
+        Self {
+            structure: Structure { variables, ending },
+            lengths,
+        }
+    }
+
+    /// Segment variables with their lengths, metres.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (SegmentVariable, f64)> + '_ {
+        let variables = self.structure.variables.iter().copied();
+        variables.zip(self.lengths)
+    }
+
+    /// Side of the first turn of non-zero length.
+    fn first_turn(&self) -> Option<Side> {
+        self.pieces().find_map(|(variable, length)| match variable {
+            SegmentVariable::Arc { side, .. } if length > 0.0 => Some(side),
+            _ => None,
+        })
+    }
 }
 
 /// Manoeuvre that is clear of every set with the margin, as far as its contact rows show.
@@ -146,7 +166,7 @@ impl Refinement {
     fn new(context: &Context, guess: InitialGuess) -> Option<Self> {
         let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
-        let first = first_turn(&guess);
+        let first = guess.first_turn();
         let wanted = context.problem.first_turn;
         let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {

@@ -229,7 +229,6 @@ pub(crate) mod tests {
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::proxy::Proxy;
     use crate::planner::space_time::refinement::InitialGuess;
-    use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
     use crate::planner::space_time::refinement::structure::Ending;
     use crate::planner::space_time::refinement::structure::SegmentVariable;
     use crate::planner::space_time::route::Route;
@@ -257,14 +256,7 @@ pub(crate) mod tests {
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];
-        let context = Context {
-            segment_time: 0.0,
-            problem: &problem,
-            route: &route,
-            proxies: &proxies,
-            blocks: &[],
-            chord: FINE_CHORD_RAD,
-        };
+        let context = Context::new(&problem, &route, &proxies, &[]);
         let canonical = EvasiveManoeuvre::new(0.7, 0.9, 1.0);
         let conflict = Conflict {
             from: 140.0,

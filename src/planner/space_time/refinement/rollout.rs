@@ -60,7 +60,7 @@ pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -
     (end, ahead * cos + port * sin)
 }
 
-/// RigidMotion motion of everything after a segment variable, per metre of its length.
+/// Rigid motion of everything after a segment variable, per metre of its length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RigidMotion {
     /// End of the segment variable, direction there, and curvature.

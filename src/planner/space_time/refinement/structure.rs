@@ -156,13 +156,8 @@ impl Structure {
         if !matches!(self.ending, Ending::Goal { .. }) {
             let return_segments = route.follow(rollout.joined.0, rollout.joined.1);
             for (index, segment) in return_segments.into_iter().enumerate() {
-                let ahead = at.ahead_of(&segment);
-                rollout.legs.push(Leg {
-                    segment,
-                    ahead,
-                    owner: SegmentOrigin::ReturnSegments { index },
-                });
-                at.pass(&segment, ahead);
+                let owner = SegmentOrigin::ReturnSegments { index };
+                at.follow(segment, owner, &mut rollout);
             }
         }
         let end = rollout
@@ -205,12 +200,9 @@ impl Structure {
         }
         rollout.solved = [line, radius * relative.abs()];
         let n = self.variables.len();
-        let (line, arc) = (
-            SegmentVariable::Line { speed },
-            SegmentVariable::Arc { side, speed },
-        );
-        at.roll_out(line, n, rollout.solved[0], rollout);
-        at.roll_out(arc, n + 1, rollout.solved[1], rollout);
+        let [line, arc] = rollout.solved;
+        at.roll_out(SegmentVariable::Line { speed }, n, line, rollout);
+        at.roll_out(SegmentVariable::Arc { side, speed }, n + 1, arc, rollout);
         let along = l.direction.dot(&(at.pose.position - l.start));
         if !(along >= stretch.from && along <= stretch.to) {
             return None;
@@ -247,12 +239,9 @@ impl Structure {
         }
         rollout.solved = [turn * radius, line];
         let n = self.variables.len();
-        let (line, arc) = (
-            SegmentVariable::Line { speed },
-            SegmentVariable::Arc { side, speed },
-        );
-        at.roll_out(arc, n, rollout.solved[0], rollout);
-        at.roll_out(line, n + 1, rollout.solved[1], rollout);
+        let [arc, line] = rollout.solved;
+        at.roll_out(SegmentVariable::Arc { side, speed }, n, arc, rollout);
+        at.roll_out(SegmentVariable::Line { speed }, n + 1, line, rollout);
         let (by_arc, by_line) = (
             rollout.rigid_motions[n].velocity_of(goal),
             rollout.rigid_motions[n + 1].ahead,
@@ -280,17 +269,18 @@ struct Cursor {
 }
 
 impl Cursor {
-    /// Unit vector ahead at the start of the next segment.
-    fn ahead_of(&self, next: &Segment) -> Vector {
-        if next.start.heading == self.pose.heading {
+    /// Appends a segment of the route and advances to its end.
+    fn follow(&mut self, segment: Segment, owner: SegmentOrigin, rollout: &mut Rollout) {
+        let ahead = if segment.start.heading == self.pose.heading {
             self.ahead
         } else {
-            next.start.ahead()
-        }
-    }
-
-    /// Advances to the end of a segment.
-    fn pass(&mut self, segment: &Segment, ahead: Vector) {
+            segment.start.ahead()
+        };
+        rollout.legs.push(Leg {
+            segment,
+            ahead,
+            owner,
+        });
         (self.pose, self.time) = (segment.end(), segment.end_time());
         self.ahead = if segment.is_arc() {
             self.pose.ahead()
@@ -307,13 +297,8 @@ impl Cursor {
         let mut from = 0.0;
         for segment in motions {
             let to = from + segment.length() / total;
-            let ahead = self.ahead_of(&segment);
-            rollout.legs.push(Leg {
-                segment,
-                ahead,
-                owner: SegmentOrigin::SegmentVariable { index, from, to },
-            });
-            self.pass(&segment, ahead);
+            let owner = SegmentOrigin::SegmentVariable { index, from, to };
+            self.follow(segment, owner, rollout);
             from = to;
         }
         if from == 0.0 {

@@ -4,15 +4,17 @@
 use crate::numerics::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::planner::Problem;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::Proxy;
-use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
+use crate::planner::space_time::proxy::{Proxy, first_contact};
+use crate::planner::space_time::refinement::approach::{
+    Approach, FINE_CHORD_RAD, NEAR_M, add_approaches,
+};
 use crate::planner::space_time::refinement::model::REFINEMENT_MARGIN_M;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::return_segments::ReturnSegments;
 use crate::planner::space_time::refinement::rollout::{Place, Rollout, SegmentOrigin};
 use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
-use crate::trajectory::Nearest;
+use crate::trajectory::{Nearest, Segment};
 
 /// Data that stay fixed for one problem.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +68,31 @@ pub(crate) struct WeightedPoint {
     pub weight: f64,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// Final accuracy, and no least time.
+    pub(crate) fn new(
+        problem: &'a Problem<'a>,
+        route: &'a Route,
+        proxies: &'a [Proxy<'a>],
+        blocks: &'a [Proxy<'a>],
+    ) -> Self {
+        Self {
+            problem,
+            route,
+            proxies,
+            blocks,
+            chord: FINE_CHORD_RAD,
+            segment_time: 0.0,
+        }
+    }
+
+    /// First time at which a motion meets a set or land, seconds.
+    pub(crate) fn first_conflict(&self, motion: &[Segment]) -> Option<f64> {
+        let contact = first_contact(self.proxies, motion).map(|c| c.1);
+        let grounding = land::first_contact(self.problem.land_obstacle, motion);
+        contact.into_iter().chain(grounding).reduce(f64::min)
+    }
+
     /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
         let rollout = structure.roll_out(self.problem, self.route, lengths)?;

@@ -5,7 +5,7 @@ use crate::colregs::compliance::{ComplianceReport, OwnSamples};
 use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
-use crate::planner::space_time::graph::departure::until as motion_until;
+use crate::planner::space_time::motion::until as motion_until;
 use crate::target::ShipTrack;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;

@@ -2,8 +2,6 @@
 
 use crate::colregs::{Duty, Encountered};
 use crate::planner::clock::Clock;
-use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::first_contact;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::broken_rules;
 use crate::planner::space_time::rules::manoeuvre::{Found, Manoeuvres};
@@ -56,7 +54,7 @@ pub(crate) fn by_the_rules(
 
 fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Option<RulePlan> {
     // a manoeuvre under way is for the present risks, also where nothing would be met
-    let contact = first_conflict(context, nominal_motion).unwrap_or(0.0);
+    let contact = context.first_conflict(nominal_motion).unwrap_or(0.0);
     let mut encountered = context.problem.encountered.iter();
     if encountered.all(|e| e.risk_since <= contact) {
         return one_by_one(context, nominal_motion, Together::All, clock);
@@ -75,13 +73,6 @@ fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Opt
         }
     }
     best.map(|(_, plan)| plan)
-}
-
-/// Seconds at which a motion first meets a set or land.
-fn first_conflict(context: &Context, motion: &[Segment]) -> Option<f64> {
-    let contact = first_contact(context.proxies, motion).map(|c| c.1);
-    let grounding = land::first_contact(context.problem.land_obstacle, motion);
-    contact.into_iter().chain(grounding).reduce(f64::min)
 }
 
 fn one_by_one(
@@ -104,7 +95,7 @@ fn one_by_one(
     let most = encountered.len() + usize::from(context.problem.under_way.is_some());
     for step in 0..=most {
         let under_way = context.problem.under_way.filter(|_| step == 0);
-        let contact = match first_conflict(context, &kept.motion) {
+        let contact = match context.first_conflict(&kept.motion) {
             Some(contact) => contact,
             None if under_way.is_some() => 0.0,
             None => return Some(kept),

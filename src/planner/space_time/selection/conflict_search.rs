@@ -8,15 +8,15 @@
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
+use crate::planner::space_time::motion::sailed_between;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_contact};
 use crate::planner::space_time::refinement::rollout::SegmentOrigin;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::selection::initial_guess::{
-    Conflict, InitialGuessBuilder, ManoeuvreSpeeds,
+    Conflict, InitialGuessBuilder, ManoeuvreSpeeds, RETURN_ANGLES,
 };
-use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
 /// Largest number of answers: the cheapest one before insertions need not be the cheapest one after them.
@@ -209,7 +209,7 @@ fn child(
     considered: &[usize],
     clock: Clock,
 ) -> Option<Node> {
-    let angles = MANOEUVRE_RETURN_ANGLES.into_iter();
+    let angles = RETURN_ANGLES.into_iter();
     let mut refinement = angles
         .filter_map(|angle| guess(context, node, corners, angle))
         .find_map(|guess| Refinement::fitting(context, guess))?;
@@ -292,8 +292,7 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
     let speeds = ManoeuvreSpeeds::of(problem);
     let radius = problem.own.turning_radius;
     let first = corners.first()?;
-    let parts = node.motion.iter().map(|s| s.between(0.0, first.time));
-    let sailed: f64 = parts.map(|s| s.length()).sum();
+    let sailed = sailed_between(&node.motion, 0.0, first.time);
     let (departure, _) = route.pose_at(sailed);
     let mut builder = InitialGuessBuilder::default();
     let run = |builder: &mut InitialGuessBuilder, length: f64| {

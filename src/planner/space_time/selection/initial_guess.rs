@@ -3,12 +3,12 @@
 use crate::frame::{Side, to_port};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::node::State;
+use crate::planner::space_time::motion::{pose_at, sailed_between};
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::InitialGuess;
-use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
+use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
 /// Speeds of the manoeuvres: least and greatest speed, and the desired one.
@@ -67,6 +67,18 @@ impl Conflict {
         self.offsets[0].min(self.offsets[1])
     }
 
+    /// Conflict of an instant, without a width, and with these offsets astern and ahead.
+    pub(crate) fn at(time: f64, along: f64) -> Self {
+        Self {
+            from: time,
+            to: time,
+            through: 0.0,
+            offsets: [0.0; 2],
+            astern: (along, time),
+            ahead: (along, time),
+        }
+    }
+
     /// Contact of one obstacle, given by its proxies, with the nominal motion, from its first to
     /// its last instant.
     pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
@@ -75,21 +87,10 @@ impl Conflict {
             .filter_map(|h| nominal_motion.iter().find_map(|s| h.first_contact(s)))
             .min_by(f64::total_cmp)?;
         let end = nominal_motion.last()?.end_time();
-        let mut conflict = Self {
-            from,
-            to: from,
-            through: 0.0,
-            offsets: [0.0; 2],
-            astern: (0.0, from),
-            ahead: (0.0, from),
-        };
+        let mut conflict = Self::at(from, 0.0);
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
-            let segment = nominal_motion
-                .iter()
-                .find(|s| s.end_time() >= time)
-                .or(nominal_motion.last())?;
-            let pose = segment.pose_at(time);
+            let pose = pose_at(nominal_motion, time)?;
             let inside = |h: &&Proxy| {
                 h.slack(pose.position, time)
                     .is_some_and(|slack| !(slack > 0.0))
@@ -111,13 +112,13 @@ impl Conflict {
                 *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
             }
         }
-        conflict.through = nominal_motion
-            .iter()
-            .map(|s| s.between(conflict.from, conflict.to).length())
-            .sum();
+        conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
         Some(conflict)
     }
 }
+
+/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
+pub(crate) const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
@@ -155,14 +156,12 @@ pub(crate) struct EvasiveManoeuvre {
 /// Initial guess under construction.
 #[derive(Debug, Default)]
 pub(crate) struct InitialGuessBuilder {
-    variables: Vec<SegmentVariable>,
-    lengths: Vec<f64>,
+    pieces: Vec<(SegmentVariable, f64)>,
 }
 
 impl InitialGuessBuilder {
     pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
-        self.variables.push(variable);
-        self.lengths.push(length);
+        self.pieces.push((variable, length));
     }
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
@@ -190,18 +189,9 @@ impl InitialGuessBuilder {
     }
 
     pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
-        if self.variables.len() + 2 > MAX_VARIABLES {
-            return None;
-        }
-        let mut lengths: Row = [0.0; MAX_VARIABLES];
-        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
-        Some(InitialGuess {
-            structure: Structure {
-                variables: self.variables,
-                ending,
-            },
-            lengths,
-        })
+        // the ending may have two segment variables
+        let has_room = self.pieces.len() + 2 <= MAX_VARIABLES;
+        has_room.then(|| InitialGuess::new(&self.pieces, ending))
     }
 }
 
@@ -253,9 +243,7 @@ impl EvasiveManoeuvre {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
             2.0 * radius * angle.sin() + line / angle.tan()
         };
-        let angle = MANOEUVRE_RETURN_ANGLES
-            .into_iter()
-            .find(|a| way_back(*a) < room);
+        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
         let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))

@@ -250,7 +250,7 @@ impl<'a> Selection<'a> {
         }
         let least = best_of(running)?.rank();
         let guess = best.and_then(|s| pruned(&self.context, &s));
-        let tidy = guess.and_then(|s| self.refined(s, STEPS_AFTER_PRUNING, clock))?;
+        let tidy = guess.and_then(|s| refined(&self.context, s, STEPS_AFTER_PRUNING, clock))?;
         (tidy.rank() <= (1.0 + PRUNING_COST) * least).then_some(tidy)
     }
 
@@ -265,15 +265,8 @@ impl<'a> Selection<'a> {
         if clock.is_up() {
             return None;
         }
-        self.refined(
-            with_insertions(&self.context, guess, uncut)?,
-            STEPS_AFTER_INSERTION,
-            clock,
-        )
-    }
-
-    fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
-        refined(&self.context, guess, most, clock)
+        let guess = with_insertions(&self.context, guess, uncut)?;
+        refined(&self.context, guess, STEPS_AFTER_INSERTION, clock)
     }
 
     /// Tests the refinements' results in the given order until one passes.

@@ -7,8 +7,8 @@
 
 use super::{Selection, leaders, race, refined};
 use crate::planner::clock::Clock;
-use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
+use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::route::Route;
@@ -294,19 +294,16 @@ fn simplified(
     tidy: &Tidiness,
 ) -> Option<InitialGuess> {
     let normal = speeds.normal;
-    let given = guess.structure.variables.iter().zip(&guess.lengths);
-    let given: Vec<_> = given.filter(|(_, length)| **length > 0.0).collect();
+    let given: Vec<_> = guess.pieces().filter(|piece| piece.1 > 0.0).collect();
     let is_run = |variable: &SegmentVariable| matches!(variable, SegmentVariable::Run { .. });
     let (last_speed, slow) = match pattern {
         Speeds::One(speed) => (speed, None),
         Speeds::SlowThen { slow, then } => {
-            let is_slow = |(variable, _): &(&SegmentVariable, &f64)| variable.speed() == slow;
+            let is_slow = |(variable, _): &(SegmentVariable, f64)| variable.speed() == slow;
             let first = given.iter().position(is_slow)?;
             let last = given.iter().rposition(is_slow)?;
-            let time: f64 = given[first..=last]
-                .iter()
-                .map(|(_, length)| **length / slow)
-                .sum();
+            let times = given[first..=last].iter().map(|(_, length)| length / slow);
+            let time: f64 = times.sum();
             if time < DROPPED * tidy.speed_time {
                 return None;
             }
@@ -318,10 +315,10 @@ fn simplified(
         let speed = match slow {
             Some((first, last, slow)) if (first..=last).contains(&i) => slow,
             Some((first, ..)) if i < first => normal,
-            None if is_run(variable) && variable.speed() != last_speed => normal,
+            None if is_run(&variable) && variable.speed() != last_speed => normal,
             _ => last_speed,
         };
-        join(&mut parts, variable.at_speed(speed), *length);
+        join(&mut parts, variable.at_speed(speed), length);
     }
     let is_arc = |part: &(SegmentVariable, f64)| matches!(part.0, SegmentVariable::Arc { .. });
     loop {
@@ -346,17 +343,11 @@ fn simplified(
     if follows && slow.is_none() || returns && !parts.iter().any(is_arc) {
         return None;
     }
-    let mut lengths: Row = [0.0; MAX_VARIABLES];
-    for (to, (variable, length)) in lengths.iter_mut().zip(&parts) {
-        *to = length.max(tidy.segment_time * variable.speed());
+    for (variable, length) in &mut parts {
+        *length = length.max(tidy.segment_time * variable.speed());
     }
-    Some(InitialGuess {
-        structure: Structure {
-            variables: parts.into_iter().map(|part| part.0).collect(),
-            ending: guess.structure.ending.at_speed(last_speed),
-        },
-        lengths,
-    })
+    let ending = guess.structure.ending.at_speed(last_speed);
+    Some(InitialGuess::new(&parts, ending))
 }
 
 /// Appends a segment variable, or lengthens the last one of its kind.
@@ -441,22 +432,9 @@ mod tests {
             (arc(Port, 6.0), 70.0),
             (arc(Starboard, 6.0), 25.0),
         ];
-        let mut lengths: Row = [0.0; MAX_VARIABLES];
-        for (to, part) in lengths.iter_mut().zip(&parts) {
-            *to = part.1;
-        }
-        let guess = InitialGuess {
-            structure: Structure {
-                variables: parts.iter().map(|part| part.0).collect(),
-                ending: Ending::Return { leg: 0, speed: 6.0 },
-            },
-            lengths,
-        };
+        let guess = InitialGuess::new(&parts, Ending::Return { leg: 0, speed: 6.0 });
         let simple = simplified(&guess, &speeds, Speeds::One(6.0), &tidy).expect("a manoeuvre");
-        let kept = simple.structure.variables.iter().zip(&simple.lengths);
-        let kept: Vec<_> = kept
-            .map(|(variable, length)| (*variable, *length))
-            .collect();
+        let kept: Vec<_> = simple.pieces().collect();
         let expected = [
             (SegmentVariable::Run { speed: 5.0 }, 300.0),
             (arc(Starboard, 6.0), 120.0),

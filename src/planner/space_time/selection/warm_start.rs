@@ -5,7 +5,6 @@ use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::InitialGuess;
-use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
 use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
 use crate::planner::space_time::refinement::trial::Context;
@@ -46,14 +45,7 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
     let found = Route::new(problem, clock).and_then(|route| {
         let guess = initial_guess_from(problem, &route, motion)?;
         let blocks = land::proxies(problem);
-        let context = Context {
-            problem,
-            route: &route,
-            proxies,
-            blocks: &blocks,
-            chord: FINE_CHORD_RAD,
-            segment_time: 0.0,
-        };
+        let context = Context::new(problem, &route, proxies, &blocks);
         let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], &[], clock);
