@@ -58,7 +58,7 @@ const NEVER: &[(&str, &str)] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/parry"]),
-    ("geojson", &["map/"]),
+    ("geojson", &["map/", "report/route.rs"]),
     ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/import/"]),

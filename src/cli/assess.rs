@@ -96,15 +96,17 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = args.figure.as_ref().map(|path| {
-        assessment_figure(&situation, &query.sections)
-            .titled(&format!("{}, {sets} sets", scenario.title))
-            .write(path)
+        let figure = assessment_figure(&situation, &query.sections)
+            .titled(&format!("{}, {sets} sets", scenario.title));
+        match figure.write(path) {
+            Ok(()) => output.wrote(path),
+            Err(error) => return output.refuse(&error),
+        }
+        ExitStatus::Good
     });
-    let drawn = match drawn {
-        Some(Err(error)) => output.refuse(&error),
-        Some(Ok(())) | None => ExitStatus::Good,
-    };
-    drawn.max(output.show(args.json, &assessment, || {
-        assessment_text(&situation, &assessment)
-    }))
+    drawn
+        .unwrap_or_default()
+        .max(output.show(args.json, &assessment, || {
+            assessment_text(&situation, &assessment)
+        }))
 }

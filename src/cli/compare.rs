@@ -62,8 +62,14 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         status = status.max(c.status());
     }
     let documents: Vec<_> = compared.iter().map(Compared::document).collect();
-    if let Err(error) = write(args, &compared, &documents) {
-        status = status.max(output.refuse(&format_args!("{error:#}")));
+    match write(args, &compared, &documents) {
+        Ok(()) => {
+            let files = args.csv.iter().chain(&args.written.figure);
+            files
+                .filter(|file| file.exists())
+                .for_each(|file| output.wrote(file));
+        }
+        Err(error) => status = status.max(output.refuse(&format_args!("{error:#}"))),
     }
     for (c, document) in compared.iter().zip(&documents) {
         let Ok(scenario) = &c.scenario else {
@@ -75,7 +81,9 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     if products.wants_report() {
         status = status.max(output.written(report(&compared, &documents, &products)));
     }
-    Ok(status.max(show(args, documents, output)))
+    status = status.max(show(args, documents, output));
+    products.announce(status, output);
+    Ok(status)
 }
 
 fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Compared {

@@ -54,6 +54,11 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                     Ok(()) => ExitStatus::Good,
                     Err(error) => output.refuse(&format_args!("{error:#}")),
                 };
+                let status = written.max(routed);
+                products.announce(status, output);
+                if let (ExitStatus::Good, Some(file)) = (status, &args.route) {
+                    output.wrote(file);
+                }
                 shown
                     .max(written)
                     .max(routed)

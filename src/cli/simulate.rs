@@ -99,6 +99,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     } else if several {
         status = status.max(output.result(&simulations_line(&documents, failed)));
     }
+    products.announce(status, output);
     Ok(status)
 }
 

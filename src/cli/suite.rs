@@ -105,7 +105,9 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         let table = suite_table(&document.runs, output.colour);
         format!("{table}\n{}", document.summary)
     });
-    Ok(tally.status.max(written).max(shown))
+    let status = tally.status.max(written).max(shown);
+    products.announce(status, output);
+    Ok(status)
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {

@@ -5,6 +5,7 @@ pub mod status;
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -132,6 +133,11 @@ impl Output {
     pub fn note(&self, note: &impl Display) {
         let note = printable_lines(&note.to_string());
         let _ = writeln!(std::io::stderr(), "note: {note}");
+    }
+
+    /// Notes that a file was written.
+    pub fn wrote(&self, file: &Path) {
+        self.note(&format_args!("wrote {}", file.display()));
     }
 
     /// Creates a progress bar on standard error; hidden unless that is a terminal.

@@ -15,8 +15,8 @@ use searoom::study::compare::Entry;
 
 use super::super::input::files::{Found, refuse_clashes, shown};
 use super::super::runner::guarded;
-use super::json;
 use super::status::ExitStatus;
+use super::{Output, json};
 
 /// Destinations of recordings, figures and plans.
 #[derive(Debug)]
@@ -105,6 +105,30 @@ impl Products {
             }
             Ok(())
         })
+    }
+
+    /// Notes where the results are and how to open them, unless something could not be written.
+    pub fn announce(&self, status: ExitStatus, output: &Output) {
+        if matches!(status, ExitStatus::BadInput | ExitStatus::InternalFault) {
+            return;
+        }
+        if let Some(place) = &self.recordings {
+            let (path, file) = (place.path().display(), place.file("NAME", "rrd"));
+            let file = file.display();
+            output.note(&format_args!("wrote {path}; to open it: rerun {file}"));
+        }
+        if let Some(place) = &self.figures {
+            output.wrote(place.path());
+        }
+        if let Some(folder) = &self.plans {
+            let folder = folder.display();
+            output.note(&format_args!(
+                "wrote {folder}; to check the plans: searoom verify {folder}"
+            ));
+        }
+        if let Some(folder) = &self.report {
+            output.wrote(&folder.join("index.html"));
+        }
     }
 
     /// Names and links of a scenario in a report. Call it after all other results are written.
@@ -256,6 +280,11 @@ impl Place {
         }
         make_parent(path)?;
         Ok(Self::File(path.to_owned()))
+    }
+
+    fn path(&self) -> &Path {
+        let (Self::File(path) | Self::Folder(path)) = self;
+        path
     }
 
     fn file(&self, stem: &str, ending: &str) -> PathBuf {
