@@ -301,13 +301,17 @@ impl Integrand<'_> {
         near.map(|(leg, _)| *leg).collect()
     }
 
-    /// Index of the nearest leg, and whether the nearest point is beyond its start and before its
-    /// end.
-    fn regime(&self, time: f64) -> (usize, bool, bool) {
+    /// Where the nearest point is: between the ends of this leg, or at its start, which is the end
+    /// of the leg before.
+    fn regime(&self, time: f64) -> (usize, bool) {
         let nearest = self.at(time);
         let leg = &self.desired.legs()[nearest.leg];
         let along = nearest.distance - leg.start_distance;
-        (nearest.leg, along > 0.0, along < leg.length)
+        match (along > 0.0, along < leg.length) {
+            (true, true) => (nearest.leg, true),
+            (true, false) => (nearest.leg + 1, false),
+            (false, _) => (nearest.leg, false),
+        }
     }
 
     fn integral(&self, from: f64, duration: f64, halvings: u32) -> f64 {
