@@ -28,10 +28,11 @@ pub(crate) fn is_line(text: &str) -> bool {
     !text.trim().is_empty() && !text.chars().any(is_unprintable) && text.chars().count() <= CHARS
 }
 
-/// True for control characters and for those that break a line or change its direction.
+/// True for control characters, for those that break a line or change its direction, and for those
+/// that XML forbids.
 pub(crate) fn is_unprintable(c: char) -> bool {
     c.is_control()
-        || matches!(c, '\u{061c}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{061c}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{fffe}' | '\u{ffff}')
 }
 
 /// An untrusted text on one line: control characters appear as their codes, `\u001b` as in JSON.

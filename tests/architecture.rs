@@ -70,10 +70,10 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("SpaceTimePlanner", &["planner/"]),
     ("PathTimePlanner", &["planner/"]),
     ("OptimalControlPlanner", &["planner/"]),
-    ("println", &["cli/output.rs"]),
-    ("print", &["cli/output.rs"]),
-    ("eprintln", &["cli/output.rs"]),
-    ("eprint", &["cli/output.rs"]),
+    ("println", &["cli/output/mod.rs"]),
+    ("print", &["cli/output/mod.rs"]),
+    ("eprintln", &["cli/output/mod.rs"]),
+    ("eprint", &["cli/output/mod.rs"]),
     ("dbg", &[]),
 ];
 
@@ -320,7 +320,7 @@ geometry/disc.rs | #[cfg(test)] pub(crate) mod tests;
 geometry/disc.rs | const A: &str = "use crate::vessel";
 planner/space_time/graph/mod.rs | use super::super::{Problem, cost}; use super::route;
 scenario/mod.rs | use crate::planner::SearchKind;
-cli/output.rs | fn f() { println!("x"); }
+cli/output/mod.rs | fn f() { println!("x"); }
 cli/plan.rs | use searoom::recording::record; use clap::Args;
 recording/file.rs | use rerun::external::re_log;
 lib.rs | pub mod cli; pub use crate::planner::Plan;

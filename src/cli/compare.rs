@@ -71,19 +71,21 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         }
         Err(error) => status = status.max(output.refuse(&format_args!("{error:#}"))),
     }
+    let mut written = ExitStatus::Good;
     for (c, document) in compared.iter().zip(&documents) {
         let Ok(scenario) = &c.scenario else {
             continue;
         };
-        let written = products.write_comparison(&c.stem, scenario, &c.entries, document);
-        status = status.max(output.written(written));
+        let result = products.write_comparison(&c.stem, scenario, &c.entries, document);
+        written = written.max(output.written(result));
     }
     if products.wants_report() {
-        status = status.max(output.written(report(&compared, &documents, &products)));
+        written = written.max(output.written(report(&compared, &documents, &products)));
     }
-    status = status.max(show(args, documents, output));
-    products.announce(status, output);
-    Ok(status)
+    if compared.iter().any(|c| c.scenario.is_ok()) {
+        products.announce(written, output);
+    }
+    Ok(status.max(written).max(show(args, documents, output)))
 }
 
 fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Compared {

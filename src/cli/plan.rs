@@ -2,19 +2,20 @@
 
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};
 use searoom::report::page::HtmlReport;
 use searoom::report::{
-    RouteFormat, legs_text, no_return_line, no_return_reason, plan_document_text, write_atomically,
+    RouteError, RouteFormat, legs_text, no_return_line, no_return_reason, plan_document_text,
+    write_atomically,
 };
 
 use super::args::PlanArgs;
 use super::input::files::{Found, shown};
 use super::input::scenes;
 use super::output::Output;
-use super::output::products::{Failure, Products};
+use super::output::products::{Failure, Products, make_parent};
 use super::output::status::ExitStatus;
 use super::runner::{Attempt, Previous, attempt};
 
@@ -52,11 +53,16 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
                 let routed = match routed {
                     Ok(()) => ExitStatus::Good,
-                    Err(error) => output.refuse(&format_args!("{error:#}")),
+                    Err(error) => {
+                        output.error(&format_args!("{error:#}"));
+                        match error.downcast_ref() {
+                            Some(RouteError::NoPlan | RouteError::NotSafe) => ExitStatus::NoPlan,
+                            _ => ExitStatus::BadInput,
+                        }
+                    }
                 };
-                let status = written.max(routed);
-                products.announce(status, output);
-                if let (ExitStatus::Good, Some(file)) = (status, &args.route) {
+                products.announce(written, output);
+                if let (ExitStatus::Good, Some(file)) = (routed, &args.route) {
                     output.wrote(file);
                 }
                 shown
@@ -82,13 +88,15 @@ impl<'a> Route<'a> {
             let (found, allowed) = (file.display(), RouteFormat::ENDINGS);
             format!("--route: found {found}; allowed: a file that ends in {allowed}")
         })?;
+        make_parent(file)?;
         Ok(Self { file, format })
     }
 
     fn write(&self, run: &Run, plan: &PlanDocument) -> anyhow::Result<()> {
         let route = self.format.write(plan, run.scenario.earth.as_ref());
         let route = route.with_context(|| format!("--route {}", self.file.display()))?;
-        Ok(write_atomically(self.file, route.as_bytes())?)
+        // the message already includes its cause
+        write_atomically(self.file, route.as_bytes()).map_err(|error| anyhow!("{error}"))
     }
 }
 

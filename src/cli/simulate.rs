@@ -35,6 +35,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let mut failed = 0;
     let mut report = HtmlReport::new();
     let several = scenes.len() > 1;
+    let mut all_written = ExitStatus::Good;
     for scene in scenes {
         let sailed = match &scene {
             Ok(scene) => {
@@ -59,6 +60,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                     ExitStatus::NoPlan
                 };
                 documents.push(document);
+                all_written = all_written.max(written);
                 shown.max(written).max(reached)
             }
             Ok(Err(error)) => {
@@ -84,8 +86,10 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
         }
     }
     let lead = "Sailed by Searoom in the closed loop.";
-    let written = products.write_report(&report, "Searoom: simulations", lead);
-    status = status.max(output.written(written));
+    let written = output.written(products.write_report(&report, "Searoom: simulations", lead));
+    status = status.max(written);
+    all_written = all_written.max(written);
+    let sailed = !documents.is_empty();
     if args.written.json {
         status = status.max(match documents.pop() {
             Some(document) if !several => output.document(&document),
@@ -99,7 +103,9 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     } else if several {
         status = status.max(output.result(&simulations_line(&documents, failed)));
     }
-    products.announce(status, output);
+    if sailed {
+        products.announce(all_written, output);
+    }
     Ok(status)
 }
 

@@ -25,6 +25,8 @@ struct Tally {
     errors: Vec<String>,
     report: HtmlReport,
     status: ExitStatus,
+    /// Whether all results could be written.
+    written: ExitStatus,
 }
 
 impl Tally {
@@ -105,9 +107,10 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         let table = suite_table(&document.runs, output.colour);
         format!("{table}\n{}", document.summary)
     });
-    let status = tally.status.max(written).max(shown);
-    products.announce(status, output);
-    Ok(status)
+    if document.runs.iter().any(|run| run.cost.is_some()) {
+        products.announce(tally.written.max(written), output);
+    }
+    Ok(tally.status.max(written).max(shown))
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
@@ -120,6 +123,7 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
             tally.runs.push(SuiteRunDocument::of(name, &plan, notes));
             if let Err((status, error)) = products.write(&scene.found.stem, &run, &plan) {
                 tally.reach(status);
+                tally.written = tally.written.max(status);
                 tally.errors.push(error);
             }
             if products.wants_report() {

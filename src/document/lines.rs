@@ -218,7 +218,11 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
     };
     let first = match manoeuvre.lead_s {
         None => "no alteration".to_owned(),
-        Some(lead) => format!("first alteration {lead:.0} s before the closest approach"),
+        // without a negative zero
+        Some(lead) => {
+            let lead = lead.round() + 0.0;
+            format!("first alteration {lead} s before the closest approach")
+        }
     };
     let smallest = match manoeuvre.smallest_turn_deg {
         Some(degrees) if manoeuvre.turns > 0 => format!(" of {degrees:.0}° or more"),

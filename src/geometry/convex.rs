@@ -193,8 +193,9 @@ impl ConvexPolygon {
 
     /// Indices of [`Self::extremes`].
     ///
-    /// The farthest vertices are sorted likewise, so each search starts at the last result. It
-    /// passes vertices that rounding alone may put below it; far from the origin that is more.
+    /// Directions of lengths up to 2. The farthest vertices are sorted likewise, so each search
+    /// starts at the last result. It goes on past vertices that are lower by no more than rounding,
+    /// which grows with the distance from the origin.
     pub(crate) fn farthest<'a>(
         &'a self,
         directions: &'a [Vector],

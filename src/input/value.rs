@@ -102,7 +102,10 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
         let value = Value::Table(table_of(document.get_ref(), &line));
         return Some(Node { value, line: None });
     };
-    let allowed = "valid TOML; a bracket or a quote left open above also leads here";
+    let allowed = match first.message().contains("duplicate") {
+        true => "valid TOML",
+        false => "valid TOML; a bracket or a quote left open above also leads here",
+    };
     faults.note(Fault {
         line: start(&first).map(line),
         ..Fault::new("", first.message(), allowed)

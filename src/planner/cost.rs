@@ -306,8 +306,11 @@ impl Integrand<'_> {
     fn regime(&self, time: f64) -> (usize, bool) {
         let nearest = self.at(time);
         let leg = &self.desired.legs()[nearest.leg];
-        let along = nearest.distance - leg.start_distance;
-        match (along > 0.0, along < leg.length) {
+        let end = leg.start_distance + leg.length;
+        match (
+            nearest.distance > leg.start_distance,
+            nearest.distance < end,
+        ) {
             (true, true) => (nearest.leg, true),
             (true, false) => (nearest.leg + 1, false),
             (false, _) => (nearest.leg, false),

@@ -10,13 +10,16 @@ use crate::document::{
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
-use crate::text::{printable, signed, square_metres, tenths};
+use crate::text::{counted, printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
 
 /// Maximum number of legs that are listed.
 const MOST_LEGS: usize = 40;
+
+/// Least turn that a table of legs shows, degrees.
+const LEAST_TURN_DEG: f64 = 0.05;
 
 /// Column name of the planning time.
 pub(super) const TIME_COLUMN: &str = "time\n[ms]";
@@ -141,20 +144,29 @@ pub fn legs_text(plan: &PlanDocument) -> String {
     grid.rows.truncate(MOST_LEGS);
     let more = match more {
         0 => String::new(),
-        _ => format!("\n{more} more legs: --route writes all"),
+        _ => format!(
+            "\n{} more: `--route FILE.csv` writes all",
+            counted(more, "leg")
+        ),
     };
     format!("{}{more}", grid.text(false))
 }
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
     let row = |(index, leg): (usize, PlannedLeg)| {
-        let turn = match leg.turn_deg() {
+        let sided = |turn: f64| {
+            let side = if turn > 0.0 { "starboard" } else { "port" };
+            format!("{side} {:.*}°", usize::from(turn.abs() < 0.5), turn.abs())
+        };
+        let [corner, turn] = [leg.corner_deg, leg.turn_deg()].map(|turn| {
+            let shown = turn.abs() >= LEAST_TURN_DEG;
+            shown.then(|| sided(turn))
+        });
+        let turn = match (corner, turn) {
             _ if leg.waits() => "waits".to_owned(),
-            0.0 => "–".to_owned(),
-            turn => {
-                let side = if turn > 0.0 { "starboard" } else { "port" };
-                format!("{side} {:.0}°", turn.abs())
-            }
+            (None, turn) => turn.unwrap_or("–".to_owned()),
+            (Some(corner), None) => format!("{corner} at once"),
+            (Some(corner), Some(turn)) => format!("{corner} at once, {turn}"),
         };
         // 359.9° is 000
         let course = leg.course_deg().round() % 360.0;

@@ -7,46 +7,60 @@ use std::path::Path;
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
 use crate::document::{PlanDocument, PlannedLeg};
-use crate::frame::{Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps};
+use crate::frame::{
+    GEOREFERENCE_REACH_M, Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps,
+};
 use crate::text::printable;
 use crate::trajectory::Segment;
 
 /// Largest turn between two points of a GeoJSON line, degrees.
 const POINT_DEG: f64 = 5.0;
 
-/// Radius and stay that RTZ cannot state any more: nautical miles and seconds.
-const RTZ_RADIUS_NMI: f64 = 10.0;
+/// Longest turning radius of RTZ, nautical miles.
+const RTZ_RADIUS_NMI: f64 = 5.0;
+
+/// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
 /// Format of a route, by the ending of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RouteFormat {
-    /// A row per leg; places also in degrees where the scenario has an origin.
+    /// A row per leg; places also in degrees where the scenario has an origin within reach.
     Csv,
     /// A line per leg (RFC 7946). Needs an origin.
     GeoJson,
     /// Waypoints with turning radii and speeds for navigation systems: RTZ 1.1 of IEC 61174. Needs
-    /// an origin. Legs are loxodromes; a wait is a stay. A scenario has no date, so there are no
+    /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a stay. A scenario has no date, so there are no
     /// times of arrival.
     Rtz,
 }
 
 /// Why there is no route.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum RouteError {
-    /// No plan, or one of another kind.
-    #[error("there are no legs: only a plan of segments has them; `--json` holds every plan")]
+    /// There is no plan.
+    #[error("there is no plan, so no route is written")]
+    NoPlan,
+    /// The plan enters a hard set, a hull or land.
+    #[error("the plan is not safe, so no route is written; `--json` writes any plan")]
+    NotSafe,
+    /// The plan has no segments.
+    #[error("there are no legs: only a plan of segments has them; `--json` writes any plan")]
     NoLegs,
-    /// Nobody knows where on the Earth the plan is.
+    /// The scenario has no origin.
     #[error(
         "found a scenario without 'origin'; allowed: one with it, or a route that ends in .csv"
     )]
     NoOrigin,
+    /// The plane is no map of the Earth so far from its origin.
+    #[error("the plan goes farther than 100 km from 'origin'; allowed: a nearer one, or .csv")]
+    TooFar,
     /// A radius or a stay beyond what the format can state.
-    #[error(
-        "RTZ states turning radii below 10 nmi and stays below a day; allowed: .csv or .geojson"
-    )]
+    #[error("RTZ states radii up to 5 nmi and stays below a day; allowed: .csv or .geojson")]
     BeyondRtz,
+    /// The rows of a CSV file could not be made.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
 }
 
 impl RouteFormat {
@@ -69,36 +83,42 @@ impl RouteFormat {
         plan: &PlanDocument,
         earth: Option<&Georeference>,
     ) -> Result<String, RouteError> {
+        if plan.trajectory.is_none() {
+            return Err(RouteError::NoPlan);
+        }
+        if !plan.safe {
+            return Err(RouteError::NotSafe);
+        }
         let legs = plan.legs();
         if legs.is_empty() {
             return Err(RouteError::NoLegs);
         }
+        let ends = legs
+            .iter()
+            .flat_map(|leg| [leg.motion.start, leg.motion.end()]);
+        let far = |place: Vector| place.norm() > GEOREFERENCE_REACH_M;
+        let is_far = ends.into_iter().any(|end| far(end.position));
         match (self, earth) {
-            (Self::Csv, _) => Ok(csv(&legs, earth)),
+            (Self::Csv, _) => Ok(csv(&legs, earth.filter(|_| !is_far))?),
             (_, None) => Err(RouteError::NoOrigin),
+            (_, Some(_)) if is_far => Err(RouteError::TooFar),
             (Self::GeoJson, Some(earth)) => Ok(geojson(&legs, earth)),
             (Self::Rtz, Some(earth)) => rtz(&plan.scenario, &waypoints(&legs), earth),
         }
     }
 }
 
-fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> String {
+fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> csv::Result<String> {
     let mut header = vec!["leg", "from_s", "to_s"];
     header.extend(["from_east_m", "from_north_m", "to_east_m", "to_north_m"]);
     if earth.is_some() {
         header.extend(["from_lat_deg", "from_lon_deg", "to_lat_deg", "to_lon_deg"]);
     }
-    header.extend([
-        "course_deg",
-        "turn_deg",
-        "radius_m",
-        "speed_mps",
-        "length_m",
-    ]);
-    header.push("what_happens");
+    header.extend(["course_deg", "corner_deg", "turn_deg", "radius_m"]);
+    header.extend(["speed_mps", "length_m"]);
+    header.push("events");
     let mut writer = csv::Writer::from_writer(Vec::new());
-    // writing into memory does not fail
-    let _ = writer.write_record(&header);
+    writer.write_record(&header)?;
     for (index, leg) in legs.iter().enumerate() {
         let motion = &leg.motion;
         let ends = [motion.start.position, motion.end().position];
@@ -110,17 +130,17 @@ fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> String {
             let degrees = places.iter().flat_map(|p| [p.lat_deg, p.lon_deg]);
             row.extend(degrees.map(fixed::<8>));
         }
-        row.extend([leg.course_deg(), leg.turn_deg()].map(fixed::<4>));
+        row.extend([leg.course_deg(), leg.corner_deg, leg.turn_deg()].map(fixed::<4>));
         row.push(match motion.is_arc() {
             true => fixed::<3>(motion.radius().abs()),
             false => String::new(),
         });
         row.extend([motion.speed, motion.length()].map(fixed::<3>));
         row.push(leg.events.join("; "));
-        let _ = writer.write_record(&row);
+        writer.write_record(&row)?;
     }
-    let bytes = writer.into_inner().unwrap_or_default();
-    String::from_utf8_lossy(&bytes).into_owned()
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Decimals without a negative zero.
@@ -139,21 +159,28 @@ fn geojson(legs: &[PlannedLeg], earth: &Georeference) -> String {
         let points = (0..=steps).map(|k| {
             let elapsed = motion.duration * f64::from(k) / f64::from(steps);
             let place = earth.to_geographic(motion.pose_after(elapsed).position);
-            Position::from([place.lon_deg, place.lat_deg])
+            // on past 180° without a jump
+            let west = earth.origin().lon_deg;
+            let east = (place.lon_deg - west + 540.0).rem_euclid(360.0) - 180.0;
+            Position::from([west + east, place.lat_deg])
         });
         let mut properties = JsonObject::new();
         for (key, value) in [
             ("from_s", motion.start_time),
             ("to_s", motion.end_time()),
             ("course_deg", leg.course_deg()),
+            ("corner_deg", leg.corner_deg),
             ("turn_deg", leg.turn_deg()),
             ("speed_mps", motion.speed),
             ("length_m", motion.length()),
         ] {
             properties.insert(key.to_owned(), value.into());
         }
+        if motion.is_arc() {
+            properties.insert("radius_m".to_owned(), motion.radius().abs().into());
+        }
         properties.insert("leg".to_owned(), (index + 1).into());
-        properties.insert("what_happens".to_owned(), leg.events.clone().into());
+        properties.insert("events".to_owned(), leg.events.clone().into());
         let line = GeometryValue::LineString {
             coordinates: points.collect(),
         };
@@ -183,8 +210,8 @@ struct Waypoint {
     stay: f64,
 }
 
-/// A turn is one corner, and one per quarter turn where it is longer. Where the speed changes is a
-/// waypoint of its own.
+/// A turn is one corner, and one per quarter turn where it is longer. Where the speed or the course
+/// changes at once is a waypoint of its own. At least two waypoints, as RTZ requires.
 fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     let first = &legs[0].motion;
     let at = |place, radius, speed| Waypoint {
@@ -193,7 +220,9 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         speed,
         stay: 0.0,
     };
-    let mut all = vec![at(first.start.position, 0.0, first.speed)];
+    let moves = legs.iter().find(|leg| !leg.waits());
+    let speed = moves.map_or(0.0, |leg| leg.motion.speed);
+    let mut all = vec![at(first.start.position, 0.0, speed)];
     for (index, leg) in legs.iter().enumerate() {
         let motion = &leg.motion;
         if leg.waits() {
@@ -204,10 +233,17 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         if motion.is_arc() {
             all.extend(corners(motion).map(|(place, radius)| at(place, radius, motion.speed)));
         }
-        let next = legs.get(index + 1);
-        if next.is_none_or(|next| next.motion.speed != motion.speed) {
+        // the tangents of an arc lead on
+        let leads_on = legs.get(index + 1).is_some_and(|next| {
+            let curved = motion.is_arc() || next.motion.is_arc();
+            curved && next.motion.speed == motion.speed && next.corner_deg == 0.0
+        });
+        if !leads_on {
             all.push(at(motion.end().position, 0.0, motion.speed));
         }
+    }
+    if let [only] = all[..] {
+        all.push(Waypoint { stay: 0.0, ..only });
     }
     all
 }
@@ -240,19 +276,19 @@ fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, Ro
             lon_deg
         };
         let radius = waypoint.radius / NAUTICAL_MILE_M;
-        if radius >= RTZ_RADIUS_NMI || waypoint.stay.round() >= RTZ_STAY_S {
+        if radius > RTZ_RADIUS_NMI || waypoint.stay.round() >= RTZ_STAY_S {
             return Err(RouteError::BeyondRtz);
         }
         let leg = if id == 1 {
             ""
         } else {
-            "<leg geometryType=\"Loxodrome\"/>"
+            "<leg geometryType=\"Orthodrome\"/>"
         };
         // writing into a text does not fail
         let _ = writeln!(
             text,
             "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.8}\" \
-             lon=\"{lon_deg:.8}\"/>{leg}</waypoint>"
+             lon=\"{lon_deg}\"/>{leg}</waypoint>"
         );
         let speed = knots_from_mps(waypoint.speed);
         let stay = match waypoint.stay {
@@ -287,6 +323,7 @@ fn in_xml(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ConvexPolygon;
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -383,7 +420,43 @@ mod tests {
             .expect("without an origin");
         assert!(!plain.contains("lat_deg"));
         let refused = RouteFormat::GeoJson.write(&plan, None);
-        assert_eq!(refused, Err(RouteError::NoOrigin));
+        assert!(matches!(refused, Err(RouteError::NoOrigin)));
+    }
+
+    /// Along a path the course changes at once at the corners.
+    #[test]
+    fn every_leg_begins_where_the_last_one_ends() {
+        for name in [
+            "harbour/alternative-path",
+            "harbour/canal-transit",
+            "colregs/stand-on",
+        ] {
+            let file = format!("scenarios/{name}.toml");
+            let scenario = Scenario::read(file.as_ref()).expect("valid");
+            let plan = PlanDocument::of(&pipeline::run(scenario));
+            let legs = plan.legs();
+            let mut way = legs[0].motion.start.position;
+            for leg in &legs {
+                assert!((leg.motion.start.position - way).norm() < 1e-3, "{leg:?}");
+                assert!(leg.motion.duration > 0.0);
+                way = leg.motion.end().position;
+            }
+            // a place between two waypoints of a line is on it
+            let corners = waypoints(&legs);
+            let off = |p: Vector| {
+                let lines = corners.windows(2).map(|ends| {
+                    let line = ends.iter().map(|w| w.place).collect::<Vec<_>>();
+                    ConvexPolygon::hull(&line)
+                        .expect("finite")
+                        .signed_distance(p)
+                });
+                lines.fold(f64::INFINITY, f64::min)
+            };
+            for leg in legs.iter().filter(|leg| !leg.motion.is_arc()) {
+                let middle = leg.motion.pose_after(0.5 * leg.motion.duration);
+                assert!(off(middle.position) < 0.01, "{leg:?} {corners:?}");
+            }
+        }
     }
 
     /// A turn of more than half a circle has no single corner.

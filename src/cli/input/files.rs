@@ -19,7 +19,7 @@ pub struct Found {
     pub in_folder: bool,
 }
 
-/// File, or a part of it, without a scenario.
+/// File, a part of it, or a folder that cannot be read as what is asked for.
 #[derive(Debug)]
 pub struct Unread {
     /// File path.
@@ -29,24 +29,24 @@ pub struct Unread {
 }
 
 /// What is looked for in a folder.
-pub struct Kind {
+pub struct FileKind {
     name: &'static str,
     endings: &'static [&'static str],
 }
 
 /// Scenario files, and files of imported formats.
-pub const SCENARIOS: Kind = Kind {
+pub const SCENARIOS: FileKind = FileKind {
     name: "scenarios (.toml, .json or .xml files)",
     endings: &["toml", "json", "xml"],
 };
 
 /// Plan documents, and recordings that hold one.
-pub const PLANS: Kind = Kind {
+pub const PLANS: FileKind = FileKind {
     name: "plan documents (.json or .rrd files)",
     endings: &["json", "rrd"],
 };
 
-impl Kind {
+impl FileKind {
     fn holds(&self, file: &Path) -> bool {
         let ending = file.extension().and_then(|ending| ending.to_str());
         ending.is_some_and(|ending| self.endings.contains(&ending))
@@ -55,7 +55,7 @@ impl Kind {
 
 /// Lists the files of a kind at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(paths: &[PathBuf], kind: &Kind, output: &Output) -> Vec<Result<Found, Unread>> {
+pub fn find(paths: &[PathBuf], kind: &FileKind, output: &Output) -> Vec<Result<Found, Unread>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
     for found in meant(paths, kind) {
@@ -72,7 +72,7 @@ pub fn find(paths: &[PathBuf], kind: &Kind, output: &Output) -> Vec<Result<Found
     all
 }
 
-fn meant(paths: &[PathBuf], kind: &Kind) -> Vec<Result<Found, Unread>> {
+fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Unread>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -135,7 +135,7 @@ fn stem(relative: &Path) -> String {
 
 /// Collects files of a kind, depth first in order of names. Hidden entries are skipped. Links to
 /// folders are not followed, which prevents loops.
-fn walk(folder: &Path, kind: &Kind, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+fn walk(folder: &Path, kind: &FileKind, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let unread = || format!("{}: cannot be read", folder.display());
     let mut entries = fs::read_dir(folder)
         .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())

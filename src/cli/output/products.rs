@@ -107,15 +107,18 @@ impl Products {
         })
     }
 
-    /// Notes where the results are and how to open them, unless something could not be written.
-    pub fn announce(&self, status: ExitStatus, output: &Output) {
-        if matches!(status, ExitStatus::BadInput | ExitStatus::InternalFault) {
+    /// Notes where the results are, unless one could not be written.
+    pub fn announce(&self, written: ExitStatus, output: &Output) {
+        if written != ExitStatus::Good {
             return;
         }
-        if let Some(place) = &self.recordings {
-            let (path, file) = (place.path().display(), place.file("NAME", "rrd"));
-            let file = file.display();
-            output.note(&format_args!("wrote {path}; to open it: rerun {file}"));
+        match &self.recordings {
+            Some(Place::File(file)) => {
+                let file = file.display();
+                output.note(&format_args!("wrote {file}; to open it: rerun {file}"));
+            }
+            Some(Place::Folder(folder)) => output.wrote(folder),
+            None => {}
         }
         if let Some(place) = &self.figures {
             output.wrote(place.path());
@@ -301,7 +304,7 @@ fn is_another_file(path: &Path) -> bool {
     path.extension().is_some() && !path.is_dir() && !asks
 }
 
-fn make_parent(file: &Path) -> anyhow::Result<()> {
+pub fn make_parent(file: &Path) -> anyhow::Result<()> {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => make(folder),
         _ => Ok(()),

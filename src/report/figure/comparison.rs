@@ -4,8 +4,9 @@
 use super::outline::{marks, sampled_boundary};
 use super::panel::window_around;
 use super::path_time::run_panel;
-use super::plan::{DESIRED, LAND, land_areas, moments};
+use super::plan::{DESIRED, INSTANTS, LAND, land_areas, round_times};
 use super::sections::PLAN;
+use super::sections::seconds_list;
 use super::{Figure, Panel, Stroke};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
@@ -110,9 +111,10 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
     let mut sets: Vec<Vec<Vector>> = Vec::new();
+    let times = round_times(end, INSTANTS);
     let first = entries.iter().find_map(|e| e.motion.as_ref());
     for obstacle in first.iter().flat_map(|motion| &motion.obstacles) {
-        for time in moments(end) {
+        for time in &times {
             let boundary = sampled_boundary(&obstacle.section(time.min(scenario.horizon)));
             if boundary.iter().any(within) {
                 shown.extend(boundary.iter().copied().filter(within));
@@ -136,8 +138,8 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel.line_key("desired", DESIRED);
     let wide = |colour| Stroke::solid(colour, 3.0);
     if !sets.is_empty() {
-        let moments = moments(end).map(|time| format!("{time:.0}")).join(", ");
-        panel.line_key(&format!("sets at {moments} s"), wide(SETS));
+        let times = seconds_list(&times);
+        panel.line_key(&format!("sets at {times} s"), wide(SETS));
     }
     if land.is_some() {
         panel.line_key("land", wide(LAND));

@@ -7,7 +7,7 @@ use super::forces::force_panels;
 use super::outline::{area, curve, mark, sampled_boundary};
 use super::panel::window_around;
 use super::path_time::{run_panel, target_colour};
-use super::sections::{PLAN, seconds_list, sections_beside};
+use super::sections::{PLAN, seconds, seconds_list, sections_beside};
 use super::{Figure, Panel, Stroke};
 use crate::document;
 use crate::evaluation::Safety;
@@ -37,12 +37,21 @@ pub(super) const LAND: &str = "#d9cba3";
 /// Outline of land.
 const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
-/// Number of instants at which the sets are drawn, including the start.
-const MOMENTS: usize = 4;
+/// Most instants after the start at which the sets are drawn.
+pub(super) const INSTANTS: f64 = 4.0;
 
-/// Evenly spaced instants from 0 to `end` seconds.
-pub(super) fn moments(end: f64) -> [f64; MOMENTS] {
-    std::array::from_fn(|k| end * k as f64 / (MOMENTS - 1) as f64)
+/// Seconds between instants that are drawn.
+const INTERVALS: [f64; 13] = [
+    5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0,
+];
+
+/// Round times from 0 to `end` seconds, at most `most` of them after the start.
+pub(super) fn round_times(end: f64, most: f64) -> Vec<f64> {
+    let interval = INTERVALS.into_iter().find(|i| end <= most * i);
+    let interval = interval.unwrap_or(end / most);
+    (0..=(end / interval) as usize)
+        .map(|k| k as f64 * interval)
+        .collect()
 }
 
 /// Time step of a curve in seconds, and the maximum number of points besides its joints.
@@ -98,24 +107,48 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let desired = run.scenario.desired.duration();
     let end = trajectory.map_or(desired, |t| t.end_time());
     let end = end.min(run.scenario.horizon);
-    let times = moments(end).to_vec();
+    let times = round_times(end, INSTANTS);
     let at = |t: &Trajectory, time: f64| t.pose_at(time).position;
     let sampled = trajectory.map(|t| t.sample_times(STEP, MOST_POINTS));
     let track = trajectory.zip(sampled);
     let track = track.map(|(t, sampled)| sampled.into_iter().map(|time| at(t, time)).collect());
     let own = trajectory.map(|t| times.iter().map(|time| at(t, *time)).collect());
     let obstacles: Vec<&Obstacle> = run.obstacles().collect();
+    let own: Vec<Vector> = own.unwrap_or_default();
     let traffic = Traffic {
         track: track.unwrap_or_default(),
-        own: own.unwrap_or_default(),
-        times,
+        own: own.clone(),
+        times: times.clone(),
         targets: obstacles.iter().map(|o| o.name()).collect(),
         area: &|target, time| sampled_boundary(&obstacles[target].section(time)),
         words: ["planned", "sets", "set of "],
         dashed: true,
         others,
     };
-    traffic_chart(title, &run.scenario, traffic)
+    let mut panel = traffic_chart(title, &run.scenario, traffic);
+    for (k, time) in times.iter().enumerate() {
+        let label = format!("{} s", seconds(*time));
+        let sections = obstacles
+            .iter()
+            .map(|o| middle(&sampled_boundary(&o.section(*time))));
+        let sections: Vec<Vector> = sections.filter(|p| panel.window().contains(*p)).collect();
+        if let Some(own) = own.get(k) {
+            let apart = |p: &&Vector| (**p - own).norm();
+            let nearest = sections.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+            // above or below, so that no frame cuts it
+            let north = nearest.map_or(1.0, |p| (own.y - p.y).signum());
+            panel.note_beside(&label, *own, Vector::new(0.0, north));
+        }
+        for section in sections {
+            panel.note(&label, section);
+        }
+    }
+    panel
+}
+
+/// Mean of the points of a boundary.
+fn middle(boundary: &[Vector]) -> Vector {
+    boundary.iter().sum::<Vector>() / boundary.len() as f64
 }
 
 /// Own ship's track and the area of each target at the same times.

@@ -2,7 +2,7 @@
 
 use super::outline::{curve, marks};
 use super::path_time::target_colour;
-use super::plan::{Traffic, traffic_chart};
+use super::plan::{Traffic, round_times, traffic_chart};
 use super::sections::seconds;
 use super::{Figure, Panel, Stroke};
 use crate::document::SimulationDocument;
@@ -14,11 +14,7 @@ use crate::text::tenths;
 /// Stroke between the centres of the hulls at the closest approach.
 const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.6);
 
-/// Seconds between the instants at which hulls are drawn: the first that gives at most `INSTANTS`
-/// of them after t = 0.
-const INTERVALS: [f64; 12] = [
-    5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0, 7200.0,
-];
+/// Most instants after the start at which hulls are drawn.
 const INSTANTS: f64 = 6.0;
 
 /// Seconds between the points of a curve, and the most points of it.
@@ -42,10 +38,7 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
     let steps = (end / step).ceil() as usize;
     let sampled = (0..=steps).map(|k| (k as f64 * step).min(end));
     let sampled: Vec<f64> = sampled.collect();
-    let interval = INTERVALS.into_iter().find(|i| end <= INSTANTS * i);
-    let interval = interval.unwrap_or(end / INSTANTS);
-    let times = (0..=(end / interval) as usize).map(|k| k as f64 * interval);
-    let times: Vec<f64> = times.collect();
+    let times = round_times(end, INSTANTS);
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose.position);
     let targets = &simulation.targets;
     let mut others = Vec::new();
