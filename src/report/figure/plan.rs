@@ -40,6 +40,9 @@ const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 /// Most instants after the start at which the sets are drawn.
 pub(super) const INSTANTS: f64 = 4.0;
 
+/// Least distance between the times of two sets, as a fraction of the width of the chart.
+const LABELS_APART: f64 = 0.04;
+
 /// Seconds between instants that are drawn.
 const INTERVALS: [f64; 13] = [
     5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0,
@@ -126,6 +129,8 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
         others,
     };
     let mut panel = traffic_chart(title, &run.scenario, traffic);
+    let apart = LABELS_APART * panel.window().size().x;
+    let mut labelled: Vec<Vector> = Vec::new();
     for (k, time) in times.iter().enumerate() {
         let label = format!("{} s", seconds(*time));
         let sections = obstacles
@@ -133,14 +138,21 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
             .map(|o| middle(&sampled_boundary(&o.section(*time))));
         let sections: Vec<Vector> = sections.filter(|p| panel.window().contains(*p)).collect();
         if let Some(own) = own.get(k) {
-            let apart = |p: &&Vector| (**p - own).norm();
-            let nearest = sections.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+            let distance = |p: &&Vector| (**p - own).norm();
+            let nearest = sections
+                .iter()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
             // above or below, so that no frame cuts it
             let north = nearest.map_or(1.0, |p| (own.y - p.y).signum());
             panel.note_beside(&label, *own, Vector::new(0.0, north));
+            labelled.push(*own);
         }
         for section in sections {
-            panel.note(&label, section);
+            // a set that hardly moves is named once
+            if labelled.iter().all(|p| (p - section).norm() > apart) {
+                panel.note(&label, section);
+                labelled.push(section);
+            }
         }
     }
     panel
