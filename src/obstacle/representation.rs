@@ -115,16 +115,24 @@ impl Obstacle {
         if !(time > 0.0) {
             return self.clone();
         }
-        let later = self.sets().velocities.into_iter();
+        // the last set never ends, so one remains, and the ends increase
+        Self::new(self.name(), self.remaining_sets(time)).unwrap_or_else(|_| self.clone())
+    }
+
+    /// The sets of [`Self::remainder`].
+    pub fn remaining_sets(&self, time: f64) -> Uncertainty {
+        let sets = self.sets();
+        // negated so that a NaN counts as 0
+        if !(time > 0.0) {
+            return sets;
+        }
+        let later = sets.velocities.into_iter().filter(|set| set.until > time);
         let mut later: Vec<TimedVelocitySet> = later
-            .filter(|set| set.until > time)
             .map(|set| TimedVelocitySet::new(set.until - time, set.velocities))
             .collect();
         // two ends may round to one
         later.dedup_by(|next, set| !(next.until > set.until));
-        let sets = Uncertainty::new(self.section(time), later);
-        // the last set never ends, so one remains, and the ends increase
-        Self::new(self.name(), sets).unwrap_or_else(|_| self.clone())
+        Uncertainty::new(self.section(time), later)
     }
 
     /// The velocity obstacle as a union of convex regions.

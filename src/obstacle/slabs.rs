@@ -190,22 +190,19 @@ impl SlabObstacle {
         }
     }
 
-    /// Dependence of each face of a slab on alpha. O(faces of the slab × previous slabs).
-    fn faces_of(&self, index: usize, obstacle: &PolytopeObstacle) -> Vec<SlabFace> {
-        let past: Vec<(f64, &ConvexSet, Vector)> = (self.slabs()[..index].iter())
-            .zip(&self.sets().velocities)
-            .map(|(slab, set)| (slab.end - slab.start, &set.velocities))
-            .map(|(duration, set)| (duration, set, set.center()))
-            .collect();
+    /// Dependence of each face of a slab on alpha. O(faces): the section at the slab's start is the
+    /// sum of `O_0`, the nominal displacement and the spreads before.
+    fn faces_of(&self, slab: &Slab, obstacle: &PolytopeObstacle) -> Vec<SlabFace> {
         let centroid = obstacle.velocity().centroid();
-        let of = |face: &HalfSpace| SlabFace {
-            normal: face.normal,
-            initial_support: self.sets().initial.support(face.normal),
-            spread_before: past
-                .iter()
-                .map(|(d, set, c)| d * (set.support(face.normal) - face.normal.dot(c)))
-                .sum(),
-            spread_rate: face.velocity_support - face.normal.dot(&centroid),
+        let of = |face: &HalfSpace| {
+            let initial_support = self.sets().initial.support(face.normal);
+            let nominal = initial_support + face.normal.dot(&slab.nominal);
+            SlabFace {
+                normal: face.normal,
+                initial_support,
+                spread_before: (face.initial_support - nominal).max(0.0),
+                spread_rate: face.velocity_support - face.normal.dot(&centroid),
+            }
         };
         obstacle.faces().iter().map(of).collect()
     }
@@ -262,7 +259,7 @@ impl SlabObstacle {
                 let Obstacle::Polytope(whole) = &slab.obstacle else {
                     continue;
                 };
-                let faces = slab.faces.get_or_init(|| self.faces_of(*index, whole));
+                let faces = slab.faces.get_or_init(|| self.faces_of(slab, whole));
                 // from the faces of the whole set, so that a risk of 0 gives the set itself
                 let less = 1.0 - alpha;
                 let both = whole.faces().iter().zip(faces);
@@ -380,7 +377,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         };
         let q = position - slab.nominal - velocities.center() * elapsed;
         let mut most = 0.0_f64;
-        for face in slab.faces.get_or_init(|| self.faces_of(index, obstacle)) {
+        for face in slab.faces.get_or_init(|| self.faces_of(slab, obstacle)) {
             let beyond = face.normal.dot(&q) - face.initial_support;
             if beyond.is_nan() {
                 return 0.0;

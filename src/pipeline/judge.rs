@@ -92,7 +92,7 @@ fn judged(
             SpaceTimeSet {
                 name: o.name().to_owned(),
                 from,
-                sets: o.remainder(from).sets(),
+                sets: o.remaining_sets(from),
             }
         })
         .collect();

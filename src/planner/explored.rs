@@ -57,8 +57,6 @@ pub enum EdgeVerdict {
         /// Index of the obstacle: the first, in their order, that the first blocked segment meets.
         obstacle: usize,
     },
-    /// Never reached by the search, hence not tested.
-    Untested,
 }
 
 /// Motion between two nodes.

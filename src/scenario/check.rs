@@ -258,12 +258,24 @@ fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
     let points: Vec<Option<Vector>> = fields.iter().map(|e| plane.position(e)).collect();
     let mut sound = true;
     for (pair, field) in points.windows(2).zip(&fields[1..]) {
-        if let [Some(before), Some(here)] = pair
-            && (here - before).norm() < limits::LENGTH.low
-        {
+        let [Some(before), Some(here)] = pair else {
+            continue;
+        };
+        let length = (here - before).norm();
+        if length < limits::LENGTH.low {
             field.fault(
                 "the waypoint before it again",
                 format_args!("a point at least {} m away", limits::LENGTH.low),
+            );
+            sound = false;
+        }
+        if length > limits::LEG_M {
+            field.fault(
+                format_args!("{:.0} km from the waypoint before it", length / 1e3),
+                format_args!(
+                    "at most {} km: a plane is no chart for more",
+                    limits::LEG_M / 1e3
+                ),
             );
             sound = false;
         }

@@ -17,6 +17,8 @@ pub(super) const SHIPS: usize = 1000;
 
 /// Waypoints of a mission: the cost of a plan grows with their square.
 pub(super) const WAYPOINTS: usize = 100;
+/// Metres between two waypoints of a mission: on a plane a longer leg is most likely a slip.
+pub(super) const LEG_M: f64 = 5e6;
 /// Alternatives of a mission: the points that paths share are found pair by pair.
 pub(super) const ALTERNATIVES: usize = 20;
 /// Speeds of the finite set: the graph grows with the square of their number.

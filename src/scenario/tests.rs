@@ -126,6 +126,7 @@ const MISTAKES: &str = r#"
     beam_m = 8 | beam_m = 8\nspeeds_mps = [-1, 2] | own_ship.speeds_mps[0]
     _radius_m = 100 | _radius_m = 0 | own_ship.turning_radius_m
     east_m = 1500, north_m = 0 } | east_m = 0, north_m = 0 } | mission.waypoints[1]
+    north_m = 400 } | north_m = 5.1e6 } | mission.waypoints[2]
     [mission] | [mission]\nleg_speeds_mps = [1] | mission.leg_speeds_mps
     [mission] | [mission]\nleg_speeds_mps = [1, 2]\nspeed_kn = 1 | mission.leg_speeds_mps
     [mission] | [mission]\nspeed_mps = 0 | mission.speed_mps

@@ -80,6 +80,15 @@ impl OwnShip {
         self.speeds.iter().copied().filter(|u| *u > 0.0)
     }
 
+    /// At most `most` of the speeds, increasing: the least, the greatest and some between.
+    pub(crate) fn some_speeds(&self, most: usize) -> impl Iterator<Item = f64> + '_ {
+        let (last, most) = (
+            self.speeds.len().saturating_sub(1),
+            most.min(self.speeds.len()),
+        );
+        (0..most).map(move |k| self.speeds[k * last / (most - 1).max(1)])
+    }
+
     /// The smallest speed, m/s; zero when own ship may stop.
     pub fn min_speed(&self) -> f64 {
         self.speeds.first().copied().unwrap_or(0.0)

@@ -11,12 +11,11 @@
 //! gets farthest. It breaks ties by the shortest distance, then by the lowest speed. After the
 //! candidate is permanently clear, the regular planner continues the motion.
 
-use std::time::Instant;
-
 use super::profile::Profile;
 use super::scene::{Aim, Scene};
 use super::{Found, TOUCH_M, finished, search};
 use crate::obstacle::{Obstacle, PathTime, SpaceTimeObstacle};
+use crate::planner::clock::Clock;
 use crate::planner::{Outcome, Planned, Problem};
 use crate::trajectory::PathNetwork;
 
@@ -38,11 +37,10 @@ const ABOUT: f64 = 1.1;
 /// Plans the least-harm motion against the whole sets; `None` for invalid paths. Takes some
 /// milliseconds.
 pub fn least_harm(problem: &Problem) -> Option<Planned> {
-    let started = Instant::now();
+    let clock = Clock::new(problem.deadline);
     let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
-    let out_of_time = || started.elapsed() >= problem.deadline;
-    let scenes: Vec<Scene> = (LEVELS.iter())
-        .take_while(|risk| **risk == LEVELS[0] || !out_of_time())
+    let mut scenes: Vec<Scene> = (LEVELS.iter())
+        .take_while(|risk| **risk == LEVELS[0] || !clock.is_up())
         .map(|risk| {
             let sets = problem.obstacles.iter().map(|set| set.at_risk(*risk));
             let obstacles: Vec<Obstacle> = sets.collect();
@@ -53,10 +51,9 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
             Scene::new(&level, &network, Aim::Last)
         })
         .collect();
-    let scene = &scenes[0];
     let mut judged: Vec<Judged> = Vec::new();
-    for profile in candidates(scene) {
-        if judged.is_empty() || !out_of_time() {
+    for profile in candidates(&scenes[0]) {
+        if judged.is_empty() || !clock.is_up() {
             judged.push(Judged::new(&scenes, profile));
         }
     }
@@ -64,11 +61,16 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
     let best = (judged.into_iter())
         .filter(|j| j.harm <= ABOUT * least)
         .min_by(|a, b| a.left.total_cmp(&b.left))?;
+    let scene = &mut scenes[0];
     if let Some(clear) = best.clear_from {
         let begun = best.profile.until(scene, clear);
         for aim in [Aim::Arrive, Aim::Last] {
-            let scene = Scene::new(problem, &network, aim);
-            let onward = search(problem, &scene, &begun, 1.0);
+            scene.aim = aim;
+            let rest = Problem {
+                deadline: clock.left(),
+                ..problem.clone()
+            };
+            let onward = search(&rest, scene, &begun, 1.0);
             if onward.outcome.plan().is_some() {
                 return Some(onward);
             }

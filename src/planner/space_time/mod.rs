@@ -82,7 +82,7 @@ impl Planner for SpaceTimePlanner {
     }
 
     fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
-        let planned = plan_normalised(problem, |problem, _, _| {
+        let planned = plan_normalised(problem, Clock::new(problem.deadline), |problem, _, _| {
             let wide = hybrid_a_star::hybrid_a_star(problem);
             Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
         });
@@ -103,7 +103,7 @@ impl Planner for SpaceTimePlanner {
 /// plan unless the deadline is reached. Waypoints on a straight line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
-    plan_normalised(problem, |problem, proxies, _| {
+    plan_normalised(problem, clock, |problem, proxies, _| {
         plan_clear_of(problem, proxies, clock)
     })
 }
@@ -112,6 +112,7 @@ pub fn plan(problem: &Problem) -> Planned {
 /// without scaling; where that touches too, plans the original problem.
 fn plan_normalised(
     problem: &Problem,
+    clock: Clock,
     plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Planned {
     let desired = problem.desired.straightened();
@@ -122,9 +123,9 @@ fn plan_normalised(
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let similarity = Similarity::of(problem, &proxies);
-    let found = plan_transformed(problem, &proxies, &similarity, &plan).or_else(|| {
+    let found = plan_transformed(problem, &proxies, &similarity, clock, &plan).or_else(|| {
         let similarity = similarity.without_scaling()?;
-        plan_transformed(problem, &proxies, &similarity, &plan)
+        plan_transformed(problem, &proxies, &similarity, clock, &plan)
     });
     found.unwrap_or_else(|| plan(problem, &proxies, None))
 }
@@ -133,9 +134,10 @@ fn plan_transformed(
     problem: &Problem,
     proxies: &[Proxy],
     similarity: &Similarity,
+    clock: Clock,
     plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Option<Planned> {
-    let normalised = similarity.normalised(problem)?;
+    let normalised = similarity.normalised(problem, clock)?;
     let normalised = normalised.problem(problem);
     let pieces = pieces(normalised.obstacles, normalised.horizon);
     let planned = plan(

@@ -32,6 +32,9 @@ const SHORTEST_M: f64 = 1e-3;
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
+/// Returns to schedule on what is left of a piece. Hundreds would slow the refinement down.
+const MOST_ALTERNATIONS: f64 = 50.0;
+
 /// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
 /// mixed from thousands of parts.
 const LEAST_ALTERNATION_M: f64 = 50.0;
@@ -462,8 +465,13 @@ impl Route {
                 left
             }
         };
+        // a shorter way would overshoot by more than it makes good, a thousand times a metre
+        let is_worth_it = |way: f64| way >= SHORTEST_M.min(left);
         if late > ON_TIME_S {
-            return (fastest, regained(late, slowness - 1.0 / fastest));
+            let way = regained(late, slowness - 1.0 / fastest);
+            if is_worth_it(way) {
+                return (fastest, way);
+            }
         }
         if late < -ON_TIME_S {
             let slower = match self.speed_time > 0.0 && self.listed(slowness).is_none() {
@@ -473,7 +481,10 @@ impl Route {
             if slower == 0.0 {
                 return (0.0, 0.0);
             }
-            return (slower, regained(-late, 1.0 / slower - slowness));
+            let way = regained(-late, 1.0 / slower - slowness);
+            if is_worth_it(way) {
+                return (slower, way);
+            }
         }
         // a stretch that is due at once, or was due before, is not waited for: zero-length waits
         // would repeat for ever
@@ -493,7 +504,7 @@ impl Route {
             Some(&fast) => {
                 let slow = self.slower(slowness);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
-                let mut cycles = (left / ALTERNATION_M).ceil();
+                let mut cycles = (left / ALTERNATION_M).ceil().min(MOST_ALTERNATIONS);
                 if let Some(slow) = slow.filter(|_| self.speed_time > 0.0) {
                     let least = self.speed_time * (fast / share).max(slow / (1.0 - share));
                     cycles = cycles.min((left / least).floor());

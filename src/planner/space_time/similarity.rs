@@ -12,6 +12,7 @@ use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
+use crate::planner::clock::Clock;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{
     EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, PlannedManoeuvre, Problem,
@@ -214,15 +215,16 @@ impl Similarity {
         ConvexPolygon::hull(&vertices).unwrap_or(exact)
     }
 
-    /// Normalised problem; `None` where no digits would remain.
-    pub(crate) fn normalised(&self, problem: &Problem) -> Option<NormalisedProblem> {
+    /// Normalised problem; `None` where no digits would remain, or the time is up.
+    pub(crate) fn normalised(&self, problem: &Problem, clock: Clock) -> Option<NormalisedProblem> {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
         let legs = problem.desired.legs().iter();
         let speeds: Vec<f64> = legs.map(|l| rounded(l.speed / speed)).collect();
-        let obstacles = self
-            .within
-            .iter()
-            .map(|i| self.obstacle(&problem.obstacles[*i], horizon));
+        // hundreds of sets that change with time take tens of milliseconds
+        let obstacles = self.within.iter().map(|i| {
+            let obstacle = &problem.obstacles[*i];
+            (!clock.is_up()).then(|| self.obstacle(obstacle, horizon))?
+        });
         let ship = |e: &Encountered| Encountered {
             ship: SteadyShip {
                 pose: self.pose(e.ship.pose),

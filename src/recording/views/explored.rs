@@ -70,7 +70,6 @@ pub fn log_explored(
         let (kind, obstacle) = match edge.verdict {
             EdgeVerdict::Free => (&mut kinds[0], None),
             EdgeVerdict::Blocked { obstacle } => (&mut kinds[1], Some(obstacle)),
-            EdgeVerdict::Untested => continue,
         };
         let strip = edge_line(edge);
         // an edge that takes no time is a point

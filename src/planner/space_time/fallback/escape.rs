@@ -245,7 +245,7 @@ fn exits(
     };
     let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
-        for speed in speeds(own) {
+        for speed in own.some_speeds(MOST_SPEEDS) {
             if clock.is_up() && !is_coarse || speed == 0.0 && turn != 0.0 {
                 continue;
             }
@@ -297,20 +297,6 @@ fn turns() -> impl Iterator<Item = (f64, bool)> {
             .take(if k == 0 { 1 } else { 2 })
             .map(move |side| (side.turn_sign() * TURN_RAD * f64::from(k), is_coarse))
     })
-}
-
-/// Candidate speeds of own ship, the least first.
-fn speeds(own: &OwnShip) -> Vec<f64> {
-    let (count, most) = (own.speeds.len(), MOST_SPEEDS.min(own.speeds.len()));
-    (0..most)
-        .map(|k| {
-            own.speeds[if most > 1 {
-                k * (count - 1) / (most - 1)
-            } else {
-                0
-            }]
-        })
-        .collect()
 }
 
 /// Initial motions: every exit held for a while; none where own ship is in no set.
@@ -451,10 +437,10 @@ mod tests {
             assert!((pair[1].0 - pair[0].0 - TURN_RAD).abs() < 1e-9);
         }
         let many: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
-        let tried = speeds(&own_ship(&many));
+        let tried: Vec<f64> = own_ship(&many).some_speeds(MOST_SPEEDS).collect();
         assert_eq!(tried.len(), MOST_SPEEDS);
         assert_eq!((tried[0], tried[MOST_SPEEDS - 1]), (many[0], many[19]));
-        assert_eq!(speeds(&own_ship(&[5.0])), [5.0]);
+        assert!(own_ship(&[5.0]).some_speeds(MOST_SPEEDS).eq([5.0]));
     }
 
     /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as

@@ -22,6 +22,9 @@ use crate::trajectory::Segment;
 /// Turns of the motion primitives, radians.
 const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
 
+/// Largest number of speeds: the memory of the search grows with it.
+const MOST_SPEEDS: usize = 6;
+
 /// Courses that are distinguished at one position and time.
 const COURSES: f64 = 12.0;
 
@@ -173,7 +176,7 @@ impl Space for Lattice<'_> {
         let radius = own.turning_radius;
         let way = self.resolution.way * self.grid.cell;
         let end = self.problem.desired.end();
-        for speed in own.speeds.iter().copied() {
+        for speed in own.some_speeds(MOST_SPEEDS) {
             if speed == 0.0 {
                 let duration = self.grid.step;
                 out.extend(self.after(from, Primitive::Wait { duration }, false));

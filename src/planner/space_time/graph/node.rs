@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use petgraph::graph::NodeIndex;
+
 use crate::frame::Pose;
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::planner::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
@@ -85,32 +87,36 @@ pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
     path
 }
 
-/// Everything that a search generated, with the known test result of each edge.
+/// The start, and every edge that a search tested with its end.
 pub(crate) fn explored(search: Search<State>) -> ExploredGraph {
     let nodes = search.into_nodes();
     let costs: Vec<f64> = nodes.iter().map(|n| n.cost).collect();
-    let mut graph = ExploredGraph::with_capacity(nodes.len(), nodes.len());
-    for node in nodes {
+    let mut graph = ExploredGraph::default();
+    let mut index_of: Vec<Option<NodeIndex>> = vec![None; nodes.len()];
+    for (index, node) in nodes.into_iter().enumerate() {
         let state = node.state;
-        let index = graph.add_node(ExploredNode {
+        let verdict = match (node.fate, state.met.get()) {
+            (_, Some(obstacle)) => EdgeVerdict::Blocked { obstacle },
+            (Fate::Queued | Fate::Rejected, None) if index > 0 => continue,
+            _ => EdgeVerdict::Free,
+        };
+        let added = graph.add_node(ExploredNode {
             kind: state.kind,
             pose: state.pose,
             time: state.time,
             cost: node.cost,
             expanded: node.fate == Fate::Expanded,
         });
-        let Some(parent) = node.parent else { continue };
-        let verdict = match (node.fate, state.met.get()) {
-            (_, Some(obstacle)) => EdgeVerdict::Blocked { obstacle },
-            (Fate::Queued | Fate::Rejected, None) => EdgeVerdict::Untested,
-            (Fate::Expanded | Fate::Goal, None) => EdgeVerdict::Free,
+        index_of[index] = Some(added);
+        let Some((parent, before)) = node.parent.and_then(|p| Some((p, index_of[p]?))) else {
+            continue;
         };
         let edge = ExploredEdge {
             segments: state.motion,
             cost: node.cost - costs[parent],
             verdict,
         };
-        graph.add_edge(petgraph::graph::NodeIndex::new(parent), index, edge);
+        graph.add_edge(before, added, edge);
     }
     graph
 }

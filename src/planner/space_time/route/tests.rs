@@ -3,11 +3,10 @@
 use super::*;
 use crate::frame::Vector;
 
-/// A ship that may stop, on a line whose end is due before its start, or at zero speed.
-#[test]
-fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
-    for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {
-        let piece = RoutePiece {
+/// A ship that may stop, on a line of 1,000 m.
+fn line(slowness: f64) -> Route {
+    Route {
+        pieces: vec![RoutePiece {
             start: Pose::new(Vector::zeros(), 0.0),
             distance: 0.0,
             length: 1000.0,
@@ -16,15 +15,36 @@ fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
             slowness,
             leg: None,
             speed: None,
-        };
-        let route = Route {
-            pieces: vec![piece],
-            least_change: 0.0,
-            speed_time: 0.0,
-            speeds: vec![0.0, 2.0, 4.0],
-        };
-        let (speed, length) = route.speed_and_length(&piece, 0.0, piece.length, 0.0);
+        }],
+        least_change: 0.0,
+        speed_time: 0.0,
+        speeds: vec![0.0, 2.0, 4.0],
+    }
+}
+
+/// The end is due before the start, or at zero speed.
+#[test]
+fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
+    for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {
+        let route = line(slowness);
+        let (speed, length) = route.speed_and_length(&route.pieces[0], 0.0, 1000.0, 0.0);
         assert_eq!(speed, if fastest { 4.0 } else { 2.0 }, "{slowness}");
         assert!(length >= LEAST_ALTERNATION_M, "{slowness}: {length}");
+    }
+}
+
+/// At a desired speed that is not one of own ship's, microseconds are not made good in steps of a
+/// millimetre.
+#[test]
+fn a_slip_in_the_schedule_adds_few_segments() {
+    let route = Route {
+        speed_time: 30.0,
+        ..line(0.375)
+    };
+    for late in [-1e-4, -1e-5, 0.0, 1e-5, 1e-4] {
+        let motion = route.follow(0.0, late);
+        let end = motion.last().expect("a motion").end_time();
+        assert!((end - 375.0).abs() < 1.0, "{late}: {end}");
+        assert!(motion.len() < 20, "{late}: {}", motion.len());
     }
 }

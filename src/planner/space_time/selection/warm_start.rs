@@ -3,6 +3,7 @@
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
+use crate::planner::space_time::plan_normalised;
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
@@ -31,14 +32,16 @@ const RUNS_AND_DEPENDENTS: usize = 5;
 /// very many turns give no initial guess, and then no plan. A duty of own ship is not regarded.
 pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
-    crate::planner::space_time::plan_normalised(problem, |problem, proxies, similarity| {
-        match similarity {
+    plan_normalised(
+        problem,
+        clock,
+        |problem, proxies, similarity| match similarity {
             Some(similarity) => {
                 refined(problem, proxies, &similarity.motion(from.segments()), clock)
             }
             None => refined(problem, proxies, from.segments(), clock),
-        }
-    })
+        },
+    )
 }
 
 fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
