@@ -125,14 +125,13 @@ impl Relaxer<'_> {
     /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
     /// without a plan says that the time ran out. The flag is true where ship domains are asked
     /// for. When all fail, [`Self::leaving_sets`] answers.
-    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 9] = [
+    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 8] = [
         Self::remainder_by_the_rules,
         Self::by_the_rules,
         Self::clear_of_domains,
         Self::remainder,
         Self::clear_of_hard_sets,
         Self::around_hard_sets,
-        Self::clear_of_half_domains,
         Self::waiting,
         Self::at_least_risk,
     ];
@@ -325,7 +324,13 @@ impl Relaxer<'_> {
             return None;
         }
         if with_domain {
-            return self.clear_of_scaled(0.0);
+            let found = self.found(0.0)?;
+            let Some(trajectory) = found.trajectory() else {
+                return Some(found);
+            };
+            let retained = self.retained_along(trajectory, found.risk);
+            let clear = self.clear_of(&found, &retained, RelaxationLevel::ReducedDomains);
+            return Some(self.with_larger_domains(clear, &retained));
         }
         // a plan along paths for a larger set is also found for the smaller one
         if self.follows_paths() {
@@ -376,13 +381,6 @@ impl Relaxer<'_> {
         }
         let retained = self.retained_along(found.trajectory()?, risk);
         Some(self.with_larger_domains(self.clear_of(&found, &retained, level), &retained))
-    }
-
-    /// [`RelaxationLevel::ReducedDomains`] from half of each domain: the planner may find a way
-    /// around the larger sets that it misses for the smaller ones.
-    fn clear_of_half_domains(&self, with_domain: bool) -> Option<Attempt> {
-        (with_domain && self.has_domains() && !self.follows_paths())
-            .then(|| self.clear_of_scaled(HALF))?
     }
 
     /// [`RelaxationLevel::Waiting`]: a motion along paths that does not arrive in time, clear of
@@ -598,17 +596,6 @@ impl Relaxer<'_> {
         let level = RelaxationLevel::ReducedDomains;
         let attempt = self.attempt(level, &self.scales(scale), self.scenario.max_risk);
         (!attempt.is_infeasible()).then_some(attempt)
-    }
-
-    /// A plan against domains of one scale factor, with the largest domains that are found for it.
-    fn clear_of_scaled(&self, scale: f64) -> Option<Attempt> {
-        let found = self.found(scale)?;
-        let Some(trajectory) = found.trajectory() else {
-            return Some(found);
-        };
-        let retained = self.retained_along(trajectory, found.risk);
-        let clear = self.clear_of(&found, &retained, RelaxationLevel::ReducedDomains);
-        Some(self.with_larger_domains(clear, &retained))
     }
 
     /// The plan of an attempt refined for another risk, without a search; `None` where that fails.

@@ -54,14 +54,6 @@ pub trait Space {
     /// turns A* into Dijkstra.
     fn bound(&mut self, state: &Self::State) -> f64;
 
-    /// A tighter bound that costs more time.
-    ///
-    /// It is evaluated once per node, when the node would be expanded next. A node whose bound
-    /// increases returns to the queue.
-    fn tight_bound(&mut self, _: &Self::State) -> f64 {
-        0.0
-    }
-
     /// True at a goal.
     fn is_goal(&self, state: &Self::State) -> bool;
 
@@ -79,7 +71,7 @@ pub trait Space {
 /// Status of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// In the queue; its edge is untested, or the tighter bound put it back.
+    /// In the queue; its edge is untested.
     Queued,
     /// Its edge is not admitted.
     Rejected,
@@ -144,8 +136,6 @@ struct Entry {
     estimate: OrderedFloat<f64>,
     cost: OrderedFloat<f64>,
     node: usize,
-    /// Its edge is tested and its bound is the tighter one.
-    ready: bool,
 }
 
 impl Ord for Entry {
@@ -172,7 +162,6 @@ impl<S> Search<S> {
             estimate: zero,
             cost: zero,
             node: 0,
-            ready: true,
         }));
         Self {
             nodes: vec![Node {
@@ -256,7 +245,7 @@ impl<S> Search<S> {
                 self.queue.push(Reverse(entry));
                 return Stop::Budget;
             }
-            if !entry.ready {
+            if self.nodes[index].parent.is_some() {
                 self.counts.tested += 1;
                 if !space.admits(&self.nodes[index].state) {
                     self.nodes[index].fate = Fate::Rejected;
@@ -266,22 +255,6 @@ impl<S> Search<S> {
             if space.is_goal(&self.nodes[index].state) {
                 self.nodes[index].fate = Fate::Goal;
                 return Stop::Goal(index);
-            }
-            if !entry.ready {
-                let to_go = space.tight_bound(&self.nodes[index].state);
-                let estimate = entry.cost + self.weight * to_go;
-                if estimate > entry.estimate {
-                    if estimate.is_finite() {
-                        self.queue.push(Reverse(Entry {
-                            estimate,
-                            ready: true,
-                            ..entry
-                        }));
-                    } else {
-                        self.nodes[index].fate = Fate::Rejected;
-                    }
-                    continue;
-                }
             }
             self.nodes[index].fate = Fate::Expanded;
             self.counts.expanded += 1;
@@ -299,7 +272,6 @@ impl<S> Search<S> {
                         estimate: OrderedFloat(estimate),
                         cost: OrderedFloat(cost),
                         node,
-                        ready: false,
                     }));
                 }
                 let fate = if comparable {

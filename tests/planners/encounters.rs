@@ -107,7 +107,7 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
         blind += b;
     }
     println!("expanded {expanded}, without the bound {blind}; {equal} of the same cost");
-    assert!(2 * expanded < blind, "{expanded} {blind}");
+    assert!(3 * expanded < 2 * blind, "{expanded} {blind}");
     let enough = equal >= 90 && hasty.len() >= 15 && by_land > 12;
     assert!(enough, "{equal} {} {by_land}", hasty.len());
     let found = [0.5, 0.9, 1.0].map(|share| quantile(&hasty, share));

@@ -7,7 +7,8 @@
 //! of the maximum speed, each weighted by the risk. Stopping to let a target pass is therefore
 //! better than passing through its set, and leaving a set is better than staying in it.
 //!
-//! Among candidates of nearly the least harm, the planner selects the one that still arrives or
+//! Candidates that meet no hull on its nominal track come first. Among those of nearly the least
+//! harm, the planner selects the one that still arrives or
 //! gets farthest. It breaks ties by the shortest distance, then by the lowest speed. After the
 //! candidate is permanently clear, the regular planner continues the motion.
 
@@ -16,7 +17,9 @@ use super::scene::{Aim, Scene};
 use super::{Found, TOUCH_M, finished, search};
 use crate::obstacle::{Obstacle, PathTime, SpaceTimeObstacle};
 use crate::planner::clock::Clock;
-use crate::planner::{Outcome, Planned, Problem};
+use crate::planner::space_time::NominalHulls;
+use crate::planner::space_time::piece::pieces;
+use crate::planner::{NominalTarget, Outcome, Planned, Problem};
 use crate::trajectory::PathNetwork;
 
 /// Candidate speeds as fractions of the maximum speed.
@@ -35,8 +38,8 @@ const SECOND: f64 = 0.1;
 const ABOUT: f64 = 1.1;
 
 /// Plans the least-harm motion against the whole sets; `None` for invalid paths. Takes some
-/// milliseconds.
-pub fn least_harm(problem: &Problem) -> Option<Planned> {
+/// milliseconds. Once the time is up no more candidates are looked at.
+pub fn least_harm(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
     let clock = Clock::new(problem.deadline);
     let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
     let mut scenes: Vec<Scene> = (LEVELS.iter())
@@ -57,10 +60,25 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
             judged.push(Judged::new(&scenes, profile));
         }
     }
-    let least = (judged.iter().map(|j| j.harm)).fold(f64::INFINITY, f64::min);
-    let best = (judged.into_iter())
-        .filter(|j| j.harm <= ABOUT * least)
-        .min_by(|a, b| a.left.total_cmp(&b.left))?;
+    let (hulls, own): (Vec<_>, Vec<_>) = nominal.iter().map(|t| (t.hull.clone(), t.own)).unzip();
+    let hulls = pieces(&hulls, problem.horizon);
+    let hulls = NominalHulls::new(&hulls, &own);
+    let is_clear = |judged: &Judged| {
+        let trajectory = judged.profile.trajectory(&scenes[0], problem.own.pose)?;
+        let depth = hulls.depth(problem.own, trajectory.segments(), f64::INFINITY);
+        (depth == 0.0).then_some(judged.harm)
+    };
+    let mut by_harm: Vec<&Judged> = judged.iter().collect();
+    by_harm.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+    let mut in_time = by_harm.iter().take_while(|_| !clock.is_up());
+    // without a candidate that is clear of the hulls, the least harm to sets decides
+    let clear_harm = in_time.find_map(|judged| is_clear(judged));
+    let least = clear_harm.unwrap_or(by_harm[0].harm);
+    let best = (judged.iter())
+        .filter(|j| j.harm >= least && j.harm <= ABOUT * least)
+        .filter(|j| clear_harm.is_none_or(|harm| j.harm == harm || is_clear(j).is_some()))
+        .min_by(|a, b| a.left.total_cmp(&b.left))?
+        .clone();
     let scene = &mut scenes[0];
     if let Some(clear) = best.clear_from {
         let begun = best.profile.until(scene, clear);
@@ -89,6 +107,7 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
 }
 
 /// Evaluated candidate.
+#[derive(Clone)]
 struct Judged {
     profile: Profile,
     /// Harm in metres.

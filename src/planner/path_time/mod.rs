@@ -87,8 +87,8 @@ impl Planner for PathTimePlanner {
         }
     }
 
-    fn leaving_sets(&self, problem: &Problem, _nominal: &[NominalTarget]) -> Option<Planned> {
-        least_harm(problem)
+    fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
+        least_harm(problem, nominal)
     }
 }
 

@@ -27,6 +27,7 @@ mod selection;
 mod similarity;
 
 pub use fallback::escape::{after_holding, nominal_motion};
+pub(super) use fallback::harm::NominalHulls;
 pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;

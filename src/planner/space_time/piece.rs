@@ -44,9 +44,6 @@ pub(crate) struct BoundedEllipsoid {
     /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
     /// their sum.
     pub around: PolytopeObstacle,
-    /// Inner polytope: two polygons of 16 boundary points of its sets. It is within their sum,
-    /// which is within the ellipsoid.
-    pub within: PolytopeObstacle,
 }
 
 /// Convex pieces of all obstacles until the horizon, in their order.
@@ -96,17 +93,11 @@ fn body(obstacle: Obstacle, horizon: f64) -> Option<Body> {
 fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
     let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
-    let within = |e: &Ellipse| {
-        // boundary points of a finite ellipse are finite
-        ConvexPolygon::hull(&e.sampled_boundary(DISC_SIDES))
-            .unwrap_or_else(|_| ConvexPolygon::point(e.center()))
-    };
     let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
         PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
     };
     Body::Ellipsoid(Box::new(BoundedEllipsoid {
         around: polytope(&around),
-        within: polytope(&within),
         exact,
     }))
 }

@@ -20,8 +20,6 @@ pub(crate) struct Proxy<'a> {
     /// Polytope of the piece; for an ellipsoid its outer polytope. Its time counts from the
     /// window's start.
     pub body: &'a PolytopeObstacle,
-    /// Polytope within the piece: a motion clear of the piece is clear of it.
-    pub within: &'a PolytopeObstacle,
     /// Ellipsoid of the piece, where it is one.
     pub ellipsoid: Option<&'a EllipsoidObstacle>,
     /// Time window of the piece; `None` for ever.
@@ -34,9 +32,9 @@ pub(crate) struct Proxy<'a> {
 
 impl<'a> Proxy<'a> {
     pub(crate) fn new(part: &'a Piece) -> Self {
-        let (body, within, ellipsoid) = match &part.body {
-            Body::Polytope(polytope) => (polytope, polytope, None),
-            Body::Ellipsoid(e) => (&e.around, &e.within, Some(&e.exact)),
+        let (body, ellipsoid) = match &part.body {
+            Body::Polytope(polytope) => (polytope, None),
+            Body::Ellipsoid(e) => (&e.around, Some(&e.exact)),
         };
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
         let (radius, growth) = match ellipsoid {
@@ -50,7 +48,6 @@ impl<'a> Proxy<'a> {
         Self {
             obstacle: part.obstacle,
             body,
-            within,
             ellipsoid,
             window: part.window,
             centre,
@@ -66,7 +63,6 @@ impl<'a> Proxy<'a> {
         Self {
             obstacle,
             body,
-            within: body,
             ellipsoid: None,
             window: None,
             centre,

@@ -15,7 +15,6 @@ use crate::geometry::outer_simplified;
 use crate::obstacle::{PolytopeObstacle, along_path};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::bound::Heuristic;
-use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
@@ -116,15 +115,8 @@ impl<'a> Graph<'a> {
             })
             .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
-        let heuristic = (problem.search != SearchKind::Dijkstra).then(|| {
-            let obstacle_bound = ObstacleBound::new(problem, proxies);
-            Heuristic::new(
-                problem.desired,
-                problem.time_weight,
-                problem.own,
-                obstacle_bound,
-            )
-        });
+        let heuristic = (problem.search != SearchKind::Dijkstra)
+            .then(|| Heuristic::new(problem.desired, problem.time_weight, problem.own));
         Self {
             problem,
             proxies,
@@ -459,15 +451,7 @@ impl Space for Graph<'_> {
     fn bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) if heuristic.is_dead_end(&state.pose, state.time) => f64::INFINITY,
             (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
-        }
-    }
-
-    fn tight_bound(&mut self, state: &State) -> f64 {
-        match (&self.heuristic, state.kind) {
-            (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) => heuristic.tight_cost_to_go(&state.pose, state.time),
         }
     }
 

@@ -21,16 +21,10 @@
 //! replaces `c`. It decreases by at most `u_max` per second and is zero at the end:
 //! `h = d³ / (3 u_max T_d)`.
 //!
-//! The obstacles give a second bound, [`ObstacleBound`]; the greater of two bounds is a bound.
-//! Nodes that would be expanded next get a third one, [`TightBound`].
-
-pub(crate) mod half_plane;
-pub(crate) mod obstacle;
-pub(crate) mod tight;
+//! Bounds by the obstacles would be tighter. Measured on 600 encounters with one target they saved
+//! no time and changed no plan, so there are none.
 
 use crate::frame::{Pose, Vector, cross, direction, heading_of, to_port};
-use crate::planner::space_time::bound::obstacle::ObstacleBound;
-use crate::planner::space_time::bound::tight::TightBound;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -47,77 +41,21 @@ pub(crate) struct Heuristic<'a> {
     max_speed: f64,
     /// Metres.
     radius: f64,
-    /// Lower bound that the obstacles add.
-    obstacle_bound: ObstacleBound,
-    /// Tight bound, for one straight leg.
-    tight_bound: Option<TightBound<'a>>,
 }
 
 impl<'a> Heuristic<'a> {
-    pub(crate) fn new(
-        desired: &'a DesiredTrajectory,
-        time_weight: f64,
-        own: &OwnShip,
-        obstacle_bound: ObstacleBound,
-    ) -> Self {
+    pub(crate) fn new(desired: &'a DesiredTrajectory, time_weight: f64, own: &OwnShip) -> Self {
         let (max_speed, radius) = (own.max_speed(), own.turning_radius);
-        let tight_bound = match desired.legs() {
-            [leg] => {
-                let kappa = time_weight / (time_weight + leg.speed * leg.speed);
-                Some(TightBound::new(
-                    leg,
-                    kappa,
-                    max_speed,
-                    radius,
-                    &obstacle_bound,
-                ))
-            }
-            _ => None,
-        };
         Self {
             desired,
             time_weight,
             max_speed,
             radius,
-            obstacle_bound,
-            tight_bound,
         }
     }
 
     /// Lower bound of the space-time error from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let obstacle_bound =
-            |from: f64| self.obstacle_bound.cost_from(from) / self.desired.duration();
-        let (across, lag) = self.unobstructed_bounds(pose, time);
-        // bounds over disjoint time intervals add up
-        let both = across.cost + lag.cost + obstacle_bound(time + across.span.max(lag.span));
-        both.max(across.cost + obstacle_bound(time + across.span))
-            .max(obstacle_bound(time))
-    }
-
-    /// Tighter lower bound for one straight leg, m²; slower than [`Self::cost_to_go`].
-    pub(crate) fn tight_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let Some(tight_bound) = &self.tight_bound else {
-            return 0.0;
-        };
-        let arrival = (self.desired.end() - pose.position).norm() / self.max_speed;
-        tight_bound.cost_to_go(&self.obstacle_bound, pose, time, arrival) / self.desired.duration()
-    }
-
-    /// True when no trajectory from here clears the obstacles.
-    pub(crate) fn is_dead_end(&self, pose: &Pose, time: f64) -> bool {
-        let [leg] = self.desired.legs() else {
-            return false;
-        };
-        let offset = pose.position - leg.start;
-        let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
-        let kappa = self.time_weight / (self.time_weight + leg.speed * leg.speed);
-        let error = (cross(leg.direction, offset).powi(2) + kappa * lag * lag).sqrt();
-        self.obstacle_bound.forbids(error, time)
-    }
-
-    /// Bounds that ignore obstacles: cross-track and lag.
-    fn unobstructed_bounds(&self, pose: &Pose, time: f64) -> (CostInterval, CostInterval) {
         let legs = self.desired.legs();
         if let [leg] = legs {
             let offset = pose.position - leg.start;
@@ -137,7 +75,7 @@ impl<'a> Heuristic<'a> {
             // heading relative to the direction straight to the path
             let toward = Vector::new(-across.signum() * sine, cosine.abs());
             let aside = self.decreasing_bound(across.abs(), toward, 0.0, f64::INFINITY);
-            return (aside.scaled(scale), along.scaled(kappa * scale));
+            return (aside + kappa * along) * scale;
         }
         let off = legs
             .iter()
@@ -147,17 +85,13 @@ impl<'a> Heuristic<'a> {
                 (offset - l.direction * along).norm()
             })
             .fold(f64::INFINITY, f64::min);
-        let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
-        (
-            aside.scaled(1.0 / self.desired.duration()),
-            CostInterval::EMPTY,
-        )
+        squared_ramp(off, -self.max_speed, f64::INFINITY) / self.desired.duration()
     }
 
     /// Lower sum, up to `until`, of the integral of the squared positive part of
     /// `start + growth tau - P(u_max tau)`. `off` is the cosine and sine of the angle, up to pi,
     /// between the heading and the direction that reduces the error fastest.
-    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> CostInterval {
+    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> f64 {
         let (u, r) = (self.max_speed, self.radius);
         let angle = heading_of(off);
         let turning = (r * angle / u).min(until);
@@ -176,55 +110,23 @@ impl<'a> Heuristic<'a> {
                 before = now;
             }
         }
-        let after = squared_ramp(before, growth - u, until - turning);
-        CostInterval {
-            cost: sum + after.cost,
-            span: turning.max(0.0) + after.span,
-        }
+        sum + squared_ramp(before, growth - u, until - turning)
     }
 }
 
-/// Cost over the next `span` seconds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CostInterval {
-    pub cost: f64,
-    span: f64,
-}
-
-impl CostInterval {
-    const EMPTY: Self = Self {
-        cost: 0.0,
-        span: 0.0,
-    };
-
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            cost: self.cost * factor,
-            ..self
-        }
-    }
-}
-
-/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and the time
-/// until which that is positive. A decreasing ramp may extend to infinity.
-pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> CostInterval {
+/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`. A decreasing
+/// ramp may extend to infinity.
+fn squared_ramp(start: f64, slope: f64, duration: f64) -> f64 {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return CostInterval::EMPTY;
+        return 0.0;
     }
     if slope < 0.0 {
         let span = duration.min(-start / slope).max(0.0);
         let end = (start + slope * span).max(0.0);
-        return CostInterval {
-            cost: (start.powi(3) - end.powi(3)) / (-3.0 * slope),
-            span,
-        };
+        return (start.powi(3) - end.powi(3)) / (-3.0 * slope);
     }
     // not decreasing: the start value remains a bound
-    let span = duration.min(1e9);
-    CostInterval {
-        cost: start * start * span,
-        span,
-    }
+    start * start * duration.min(1e9)
 }
 
 #[cfg(test)]
@@ -252,7 +154,7 @@ mod tests {
             let points = if round % 3 == 0 { &bent } else { &straight };
             let desired = DesiredTrajectory::new(points, &[5.0, 5.0]).expect("valid");
             let own = own_ship(&[6.0]);
-            let bound = Heuristic::new(&desired, 25.0, &own, ObstacleBound::none());
+            let bound = Heuristic::new(&desired, 25.0, &own);
             let mut pose = Pose::new(
                 Vector::new(
                     rng.random_range(0.0..1300.0),
