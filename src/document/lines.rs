@@ -5,15 +5,11 @@ use super::{
     ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
     MemoryDocument, PlanDocument, RelaxationDocument,
 };
-use crate::evaluation::facts;
+use crate::evaluation::{facts, skipped_waypoints};
 use crate::text::{printable, signed, square_metres, tenths};
 
 /// Maximum number of passing sides that are listed; the rest is counted.
 const LISTED: usize = 3;
-
-/// A waypoint that is passed at more turning radii than this is called skipped. A corner is rounded
-/// at less.
-const SKIPPED_RADII: f64 = 2.0;
 
 /// Name of the line with the planning time.
 pub(crate) const TIME_LINE: &str = "time";
@@ -233,16 +229,6 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
     format!("manoeuvre: {first}, {turns}{smallest}, {speeds}")
 }
 
-/// The waypoints that are passed at more than [`SKIPPED_RADII`] turning radii.
-fn skipped_waypoints(plan: &PlanDocument, cost: &CostDocument) -> String {
-    let far = SKIPPED_RADII * plan.own_ship.turning_radius_m;
-    let all = cost.waypoint_distances_m.iter().enumerate();
-    let skipped = all.filter(|(_, distance)| **distance > far);
-    // the mission's first waypoint is the start
-    let words = skipped.map(|(k, distance)| format!("waypoint {} by {distance:.0} m", k + 2));
-    words.collect::<Vec<_>>().join(", ")
-}
-
 fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
     add("turn", turn(cost));
     let error = square_metres(cost.space_time_error_m2);
@@ -261,7 +247,8 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         }
         None => add("delay", format!("does not arrive ({way} at the horizon)")),
     }
-    let skipped = skipped_waypoints(plan, cost);
+    let radius = plan.own_ship.turning_radius_m;
+    let skipped = skipped_waypoints(&cost.waypoint_distances_m, radius);
     if !skipped.is_empty() {
         add("skips", skipped);
     }

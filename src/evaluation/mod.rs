@@ -28,7 +28,7 @@ pub(crate) use sets::moving_slabs::MovingSlabs;
 pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use words::risk_figure;
-pub use words::{NOT_BY_THE_RULES, facts, outcome_word, without_rules};
+pub use words::{NOT_BY_THE_RULES, facts, outcome_word, skipped_waypoints, without_rules};
 
 use distance::least::Least;
 use distance::piece::Piece;

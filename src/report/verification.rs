@@ -1,7 +1,7 @@
 //! Text of a plan document's verification.
 
 use super::table::{Grid, Tone, columns, or_dash, plain};
-use crate::evaluation::{Violation, facts, outcome_word};
+use crate::evaluation::{Violation, facts, outcome_word, skipped_waypoints};
 use crate::text::{counted, printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
 
@@ -87,6 +87,10 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         let target = printable(target);
         format!("The set of '{target}' is entered: nothing is claimed of it {until}")
     }));
+    let skipped = skipped_waypoints(&evaluation.waypoint_distances, checked.turning_radius);
+    if !skipped.is_empty() {
+        lines.push(format!("Skips {skipped}"));
+    }
     if evaluation.min_land_distance.is_finite() {
         lines.push(format!(
             "Least distance from land {} m, at {} s",

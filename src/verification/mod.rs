@@ -54,6 +54,8 @@ pub struct Verification {
     pub outcome: String,
     /// Accepted risk, in `[0, 1)`.
     pub max_risk: f64,
+    /// Own ship's turning radius, metres.
+    pub turning_radius: f64,
     /// Largest risk taken according to the document; 0 without a plan.
     pub risk_taken: f64,
     /// Names of the targets, in the document's order, which is that of the encounters.
@@ -162,6 +164,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         planner: claim.file.planner.clone(),
         outcome: claim.file.outcome.clone(),
         max_risk: claim.file.max_risk,
+        turning_radius: claim.own.turning_radius,
         risk_taken: claim.file.cost.as_ref().map_or(0.0, |cost| cost.max_risk),
         targets: claim.targets.iter().map(|t| t.name.clone()).collect(),
         claimed_from: claim

@@ -247,6 +247,19 @@ fn a_suite_says_what_was_given_up() {
     assert_eq!(given_up[0]["kind"], "risk");
 }
 
+/// A plan that passes a waypoint from afar says so, and so does its verification.
+#[test]
+fn skipped_waypoints_are_told() {
+    let folder = Folder::new();
+    let skips = "waypoint 2 by 183 m";
+    run("plan tests/faults/near-round-trip.toml").stdout(contains(format!("skips        {skips}")));
+    let plan = run("plan tests/faults/near-round-trip.toml --json");
+    let file = folder.write("plan.json", stdout(&plan));
+    searoom(&["verify", &file])
+        .success()
+        .stdout(contains(format!("Skips {skips}")));
+}
+
 /// A page that is given to others does not tell where its files were on this machine.
 #[test]
 fn a_report_has_no_folder_of_this_machine() {
