@@ -119,8 +119,8 @@ impl Obstacle {
         Self::new(self.name(), self.remaining_sets(time)).unwrap_or_else(|_| self.clone())
     }
 
-    /// The sets of [`Self::remainder`].
-    pub fn remaining_sets(&self, time: f64) -> Uncertainty {
+    /// The sets of [`Self::remainder`], for a finite time.
+    pub(crate) fn remaining_sets(&self, time: f64) -> Uncertainty {
         let sets = self.sets();
         // negated so that a NaN counts as 0
         if !(time > 0.0) {

@@ -1,7 +1,7 @@
 //! Relaxation levels: which requirements are given up, in order, so that there is always an answer.
 //!
 //! A level is tried when the levels above it gave no plan. A planner may find a way around a larger
-//! set and miss it for a smaller one. So a level also plans against more than it requires.
+//! set and miss it for a smaller one. So some levels also plan against more than they require.
 
 use std::time::{Duration, Instant};
 

@@ -70,5 +70,5 @@ pub struct ExploredEdge {
     pub verdict: EdgeVerdict,
 }
 
-/// All nodes and edges that a search generated.
+/// The start, and every edge that a search tested, with the node at its end.
 pub type ExploredGraph = DiGraph<ExploredNode, ExploredEdge>;

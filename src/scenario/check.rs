@@ -271,11 +271,8 @@ fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
         }
         if length > limits::LEG_M {
             field.fault(
-                format_args!("{:.0} km from the waypoint before it", length / 1e3),
-                format_args!(
-                    "at most {} km: a plane is no chart for more",
-                    limits::LEG_M / 1e3
-                ),
+                format_args!("{:.1} km from the waypoint before it", length / 1e3),
+                format_args!("at most {} km", limits::LEG_M / 1e3),
             );
             sound = false;
         }

@@ -178,20 +178,26 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
     }
 }
 
-/// From within several sets, holding the speed clears every hull that a target may have; waiting
-/// would meet one on its nominal track. The hulls decide, not the time in the sets.
+/// From within sets: holding the speed clears every hull, and waiting meets one; or a ship lies at
+/// anchor ahead, and own ship has to turn before it moves. The hulls decide, not the time in the
+/// sets.
 #[test]
 fn the_least_harm_meets_no_nominal_hull_where_that_can_be() {
-    let run = verified(include_str!("../faults/least-harm-to-hulls.toml"));
-    assert_eq!(run.level, RelaxationLevel::Inside);
-    let own = &run.scenario.own_ship;
-    let trajectory = trajectory(&run);
-    for time in trajectory.sample_times(0.5, 10_000) {
-        let hull = own.hull.polygon(&trajectory.pose_at(time));
-        for target in &run.scenario.targets {
-            let ship = target.ship().expect("a ship");
-            let apart = hull.separation(&ship.hull.polygon(&ship.pose_at(time)));
-            assert!(apart > 0.0, "{} at {time} s: {apart}", target.name);
+    for text in [
+        include_str!("../faults/least-harm-to-hulls.toml"),
+        include_str!("../faults/least-harm-at-anchor.toml"),
+    ] {
+        let run = verified(text);
+        assert_eq!(run.level, RelaxationLevel::Inside);
+        let own = &run.scenario.own_ship;
+        let trajectory = trajectory(&run);
+        for time in trajectory.sample_times(0.5, 10_000) {
+            let hull = own.hull.polygon(&trajectory.pose_at(time));
+            for target in &run.scenario.targets {
+                let ship = target.ship().expect("a ship");
+                let apart = hull.separation(&ship.hull.polygon(&ship.pose_at(time)));
+                assert!(apart > 0.0, "{} at {time} s: {apart}", target.name);
+            }
         }
     }
 }

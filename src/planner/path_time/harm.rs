@@ -7,10 +7,10 @@
 //! of the maximum speed, each weighted by the risk. Stopping to let a target pass is therefore
 //! better than passing through its set, and leaving a set is better than staying in it.
 //!
-//! Candidates that meet no hull on its nominal track come first. Among those of nearly the least
-//! harm, the planner selects the one that still arrives or
-//! gets farthest. It breaks ties by the shortest distance, then by the lowest speed. After the
-//! candidate is permanently clear, the regular planner continues the motion.
+//! Candidates that meet no hull on its nominal track come first, unless the time is up. Among those
+//! of nearly the least harm, the planner selects the one that still arrives or gets farthest. It
+//! breaks ties by the shortest distance, then by the lowest speed. After the candidate is
+//! permanently clear, the regular planner continues the motion.
 
 use super::profile::Profile;
 use super::scene::{Aim, Scene};
@@ -64,19 +64,20 @@ pub fn least_harm(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planne
     let hulls = pieces(&hulls, problem.horizon);
     let hulls = NominalHulls::new(&hulls, &own);
     let is_clear = |judged: &Judged| {
-        let trajectory = judged.profile.trajectory(&scenes[0], problem.own.pose)?;
-        let depth = hulls.depth(problem.own, trajectory.segments(), f64::INFINITY);
-        (depth == 0.0).then_some(judged.harm)
+        let trajectory = judged.profile.trajectory(&scenes[0], problem.own.pose);
+        trajectory.is_some_and(|t| {
+            hulls.depth(problem.own, t.segments(), f64::INFINITY) == 0.0 && !clock.is_up()
+        })
     };
     let mut by_harm: Vec<&Judged> = judged.iter().collect();
     by_harm.sort_by(|a, b| a.harm.total_cmp(&b.harm));
     let mut in_time = by_harm.iter().take_while(|_| !clock.is_up());
     // without a candidate that is clear of the hulls, the least harm to sets decides
-    let clear_harm = in_time.find_map(|judged| is_clear(judged));
-    let least = clear_harm.unwrap_or(by_harm[0].harm);
+    let clear = in_time.find(|judged| is_clear(judged));
+    let least = clear.unwrap_or(&by_harm[0]).harm;
     let best = (judged.iter())
         .filter(|j| j.harm >= least && j.harm <= ABOUT * least)
-        .filter(|j| clear_harm.is_none_or(|harm| j.harm == harm || is_clear(j).is_some()))
+        .filter(|j| clear.is_none_or(|clear| std::ptr::eq(*j, *clear) || is_clear(j)))
         .min_by(|a, b| a.left.total_cmp(&b.left))?
         .clone();
     let scene = &mut scenes[0];

@@ -83,8 +83,9 @@ impl Planner for SpaceTimePlanner {
     }
 
     fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
-        let planned = plan_normalised(problem, Clock::new(problem.deadline), |problem, _, _| {
-            let wide = hybrid_a_star::hybrid_a_star(problem);
+        let clock = Clock::new(problem.deadline);
+        let planned = plan_normalised(problem, clock, |problem, _, _| {
+            let wide = hybrid_a_star::hybrid_a_star(problem, clock);
             Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
         });
         planned.outcome.into_plan()

@@ -6,7 +6,7 @@
 //! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
 //! obstacle.
 
-use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
+use crate::geometry::{DISC_SIDES, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
@@ -37,7 +37,7 @@ pub(crate) enum Body {
     Ellipsoid(Box<BoundedEllipsoid>),
 }
 
-/// Ellipsoid between two polytopes.
+/// Ellipsoid with a polytope around it.
 #[derive(Debug)]
 pub(crate) struct BoundedEllipsoid {
     pub exact: EllipsoidObstacle,
@@ -93,11 +93,8 @@ fn body(obstacle: Obstacle, horizon: f64) -> Option<Body> {
 fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
     let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
-    let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
-        PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
-    };
     Body::Ellipsoid(Box::new(BoundedEllipsoid {
-        around: polytope(&around),
+        around: PolytopeObstacle::new("", around(exact.initial()), around(exact.velocity())),
         exact,
     }))
 }

@@ -32,7 +32,7 @@ const SHORTEST_M: f64 = 1e-3;
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
-/// Returns to schedule on what is left of a piece. Hundreds would slow the refinement down.
+/// Cycles of a faster and a slower part on one piece, about: with hundreds the refinement is slow.
 const MOST_ALTERNATIONS: f64 = 50.0;
 
 /// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
@@ -504,7 +504,8 @@ impl Route {
             Some(&fast) => {
                 let slow = self.slower(slowness);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
-                let mut cycles = (left / ALTERNATION_M).ceil().min(MOST_ALTERNATIONS);
+                let least = ALTERNATION_M.max(piece.length / MOST_ALTERNATIONS);
+                let mut cycles = (left / least).ceil();
                 if let Some(slow) = slow.filter(|_| self.speed_time > 0.0) {
                     let least = self.speed_time * (fast / share).max(slow / (1.0 - share));
                     cycles = cycles.min((left / least).floor());

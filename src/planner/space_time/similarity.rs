@@ -220,7 +220,7 @@ impl Similarity {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
         let legs = problem.desired.legs().iter();
         let speeds: Vec<f64> = legs.map(|l| rounded(l.speed / speed)).collect();
-        // hundreds of sets that change with time take tens of milliseconds
+        // the clock is read for each: hundreds of sets that change with time take tens of milliseconds
         let obstacles = self.within.iter().map(|i| {
             let obstacle = &problem.obstacles[*i];
             (!clock.is_up()).then(|| self.obstacle(obstacle, horizon))?

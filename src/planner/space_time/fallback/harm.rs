@@ -108,7 +108,8 @@ impl<'a> NominalHulls<'a> {
             let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
             let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
             while let Some(segment) = motion.get(at) {
-                if segment.end_time() < time {
+                // its closing speed is not that of the next one, which may begin at rest
+                if segment.end_time() <= time && at + 1 < motion.len() {
                     at += 1;
                     continue;
                 }

@@ -87,7 +87,7 @@ pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
     path
 }
 
-/// The start, and every edge that a search tested with its end.
+/// The start, and every tested edge, with the node at its end.
 pub(crate) fn explored(search: Search<State>) -> ExploredGraph {
     let nodes = search.into_nodes();
     let costs: Vec<f64> = nodes.iter().map(|n| n.cost).collect();

@@ -3,13 +3,13 @@
 use super::*;
 use crate::frame::Vector;
 
-/// A ship that may stop, on a line of 1,000 m.
-fn line(slowness: f64) -> Route {
+/// A ship that may stop, on a line.
+fn line(slowness: f64, length: f64) -> Route {
     Route {
         pieces: vec![RoutePiece {
             start: Pose::new(Vector::zeros(), 0.0),
             distance: 0.0,
-            length: 1000.0,
+            length,
             curvature: 0.0,
             due: 0.0,
             slowness,
@@ -26,7 +26,7 @@ fn line(slowness: f64) -> Route {
 #[test]
 fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
     for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {
-        let route = line(slowness);
+        let route = line(slowness, 1000.0);
         let (speed, length) = route.speed_and_length(&route.pieces[0], 0.0, 1000.0, 0.0);
         assert_eq!(speed, if fastest { 4.0 } else { 2.0 }, "{slowness}");
         assert!(length >= LEAST_ALTERNATION_M, "{slowness}: {length}");
@@ -39,7 +39,7 @@ fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
 fn a_slip_in_the_schedule_adds_few_segments() {
     let route = Route {
         speed_time: 30.0,
-        ..line(0.375)
+        ..line(0.375, 1000.0)
     };
     for late in [-1e-4, -1e-5, 0.0, 1e-5, 1e-4] {
         let motion = route.follow(0.0, late);
@@ -47,4 +47,12 @@ fn a_slip_in_the_schedule_adds_few_segments() {
         assert!((end - 375.0).abs() < 1.0, "{late}: {end}");
         assert!(motion.len() < 20, "{late}: {}", motion.len());
     }
+}
+
+/// On a long way at a desired speed that is not one of own ship's, the speed alternates less often
+/// than every 400 m.
+#[test]
+fn the_speed_alternates_seldom_on_a_long_line() {
+    let motion = line(0.3, 1e5).follow(0.0, 0.0);
+    assert!(motion.len() < 200, "{}", motion.len());
 }
