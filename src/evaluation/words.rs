@@ -25,12 +25,12 @@ pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String 
 
 /// A waypoint that is passed at more turning radii than this is called skipped. A corner is rounded
 /// at less.
-const SKIPPED_RADII: f64 = 2.0;
+const SKIPPED_FROM_RADII: f64 = 2.0;
 
-/// The waypoints that are passed at more than [`SKIPPED_RADII`] turning radii; empty if there are
-/// none. `distances` are [`super::Evaluation::waypoint_distances`].
+/// The waypoints that are passed at more than two turning radii, in words; empty if there are none.
+/// `distances` are [`super::Evaluation::waypoint_distances`].
 pub fn skipped_waypoints(distances: &[f64], turning_radius: f64) -> String {
-    let far = SKIPPED_RADII * turning_radius;
+    let far = SKIPPED_FROM_RADII * turning_radius;
     let skipped = distances.iter().enumerate().filter(|(_, d)| **d > far);
     // the mission's first waypoint is the start
     let words = skipped.map(|(k, distance)| format!("waypoint {} by {distance:.0} m", k + 2));
