@@ -97,6 +97,9 @@ enum Campaign {
         /// Own ship sails its first plan to the end
         #[arg(long)]
         once: bool,
+        /// Degrees: how much farther to starboard each target may steer, as own ship assumes
+        #[arg(long, default_value_t = 0.0)]
+        starboard_turn: f64,
     },
     /// Traffic among land, a third of the scenes in each of three waters
     Harbour(Scenes<300>),
@@ -189,6 +192,7 @@ fn run(campaign: Campaign) -> Report {
             seen,
             ship,
             once,
+            starboard_turn,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             let how = simulation::How {
@@ -197,6 +201,7 @@ fn run(campaign: Campaign) -> Report {
                 seen,
                 ship,
                 replan: !once,
+                starboard_turn,
             };
             simulation::run(scenes.of_each(5), &meeting, &how)
         }

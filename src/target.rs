@@ -57,8 +57,11 @@ pub struct ShipTrack {
     pub speed_spread: f64,
     /// Half-width of the course, radians.
     pub course_spread: f64,
+    /// How much farther to starboard the course may be, radians, not negative: a ship that gives way
+    /// turns there (docs/scenario.md).
+    pub starboard_turn: f64,
     /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
-    /// within `course_spread + turn_rate t`.
+    /// within `course_spread + turn_rate t`, to starboard `starboard_turn` more.
     pub turn_rate: f64,
     /// Positions at t = 0 about the estimate that earlier plans allow, metres; `None` for any.
     pub kept_positions: Option<ConvexPolygon>,
@@ -79,6 +82,7 @@ impl ShipTrack {
             position_std: 0.0,
             speed_spread: 0.0,
             course_spread: 0.0,
+            starboard_turn: 0.0,
             turn_rate: 0.0,
             kept_positions: None,
             kept_velocities: None,
@@ -99,7 +103,19 @@ impl ShipTrack {
         )
     }
 
-    /// Half-width of the heading, and so of the course, at `time`, radians: at most half a turn.
+    /// The middle of the possible courses, and half their width, radians.
+    pub fn courses(&self) -> (f64, f64) {
+        let half = 0.5 * self.starboard_turn;
+        (self.pose.heading - half, self.course_spread + half)
+    }
+
+    /// The position, with the heading in the middle of the possible ones.
+    pub fn middle_pose(&self) -> Pose {
+        Pose::new(self.pose.position, self.courses().0)
+    }
+
+    /// Half-width of the heading, and so of the course, at `time` about the middle, radians: at most
+    /// half a turn.
     pub fn heading_spread(&self, time: f64) -> f64 {
         let turned = if self.turn_rate == 0.0 {
             0.0
@@ -107,13 +123,13 @@ impl ShipTrack {
             self.turn_rate.abs() * time
         };
         // `min` of a NaN and a number is the number: every heading
-        (self.course_spread + turned).min(std::f64::consts::PI)
+        (self.courses().1 + turned).min(std::f64::consts::PI)
     }
 
     /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of
     /// three standard deviations, less what earlier plans exclude.
     pub fn outer_positions(&self) -> ConvexPolygon {
-        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.pose.heading);
+        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.courses().0);
         match &self.kept_positions {
             Some(kept) => all.outer_intersection(kept).unwrap_or(all),
             None => all,
@@ -126,9 +142,9 @@ impl ShipTrack {
     /// larger. Its sides are among those of [`crate::geometry::outer_disc`] about the heading, so
     /// the sum with such a disc has no more vertices than the disc.
     pub fn outer_hull(&self, time: f64) -> ConvexPolygon {
-        let spread = self.heading_spread(time);
+        let (spread, pose) = (self.heading_spread(time), self.middle_pose());
         if spread == 0.0 {
-            return self.hull.polygon(&self.pose);
+            return self.hull.polygon(&pose);
         }
         let reach = self.hull.half_diagonal();
         let corner = self.hull.beam.atan2(self.hull.length);
@@ -154,7 +170,7 @@ impl ShipTrack {
         let bow: Vec<Vector> = sides.windows(2).map(meet).collect();
         let mirrored = |x: f64, y: f64| {
             let there = bow.iter().map(move |p| Vector::new(p.x * x, p.y * y));
-            there.map(|p| self.pose.world_coordinates(p))
+            there.map(|p| pose.world_coordinates(p))
         };
         let mut points: Vec<Vector> = mirrored(1.0, 1.0).collect();
         points.extend(mirrored(-1.0, 1.0).rev());
@@ -164,16 +180,17 @@ impl ShipTrack {
     }
 
     /// An outer polygon of the velocities with a speed in `[speed - spread, speed + spread]`, at
-    /// least 0, and a course within `course_spread`.
+    /// least 0, and a course within `course_spread`, to starboard `starboard_turn` more.
     ///
     /// Tangents at most 5° from their touching points replace the outer arc. It exceeds the largest
     /// speed by at most 0.4 %.
     pub fn outer_velocity_set(&self) -> ConvexPolygon {
-        self.outer_velocities_within(self.course_spread)
+        self.outer_velocities_within(self.courses().1)
     }
 
     /// Outer velocity sets of the ship while it turns at up to `turn_rate` radians per second to
-    /// either side, so that its course at `t` is within `course_spread + turn_rate t`.
+    /// either side, so that its course at `t` is within `course_spread + turn_rate t`, to starboard
+    /// `starboard_turn` more.
     ///
     /// Each set is that of the end of its time interval, when it is widest. An interval lasts at
     /// most until 5° of turn, so a half-width is at most 5° too wide. All courses are possible from
@@ -184,7 +201,7 @@ impl ShipTrack {
             |until, spread| TimedVelocitySet::new(until, self.outer_velocities_within(spread));
         let rate = turn_rate.abs();
         if rate == 0.0 {
-            return vec![timed(f64::INFINITY, self.course_spread)];
+            return vec![timed(f64::INFINITY, self.courses().1)];
         }
         let all = std::f64::consts::PI;
         let duration = TURN_PER_INTERVAL / rate;
@@ -192,7 +209,7 @@ impl ShipTrack {
         let mut start = 0.0;
         while start < horizon && rate.is_finite() {
             let until = f64::min(start + duration, horizon);
-            let spread = self.course_spread + rate * until;
+            let spread = self.courses().1 + rate * until;
             if !(spread < all && until > start) {
                 break;
             }
@@ -206,10 +223,10 @@ impl ShipTrack {
     fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
         let slow = (self.speed - self.speed_spread).max(0.0);
         let fast = self.speed + self.speed_spread;
-        let spread = course_spread.min(std::f64::consts::PI);
+        let (middle, spread) = (self.courses().0, course_spread.min(std::f64::consts::PI));
         let mut points = Vec::new();
         for edge in [-spread, spread] {
-            let ahead = direction(self.pose.heading + edge);
+            let ahead = direction(middle + edge);
             points.push(ahead * slow);
             points.push(ahead * fast);
         }
@@ -217,8 +234,8 @@ impl ShipTrack {
             let pieces = (spread / TANGENT_SPACING).ceil().max(1.0);
             let half = spread / pieces;
             for piece in 0..pieces as usize {
-                let middle = self.pose.heading - spread + half * (2 * piece + 1) as f64;
-                points.push(direction(middle) * (fast / half.cos()));
+                let touching = middle - spread + half * (2 * piece + 1) as f64;
+                points.push(direction(touching) * (fast / half.cos()));
             }
         }
         // finite by construction; should a number overflow, every velocity is possible

@@ -52,6 +52,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
             position_std: POSITION_STD,
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },
+            starboard_turn: 0.0,
             turn_rate: 0.0,
             kept_positions: None,
             kept_velocities: None,

@@ -228,6 +228,7 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
     // a wider spread says that less is known
     if ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
         && ship.course_spread <= then.course_spread * (1.0 + ASSUMED)
+        && ship.starboard_turn <= then.starboard_turn * (1.0 + ASSUMED)
     {
         ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
             true => velocities,
@@ -488,6 +489,7 @@ pub(crate) fn track(ship: &ShipDocument) -> ShipTrack {
         position_std: ship.position_std_m,
         speed_spread: ship.speed_spread_mps,
         course_spread: radians_from_deg(ship.course_spread_deg),
+        starboard_turn: radians_from_deg(ship.starboard_turn_deg),
         turn_rate: radians_from_deg(ship.turn_rate_deg_per_s),
         kept_positions: match &ship.kept_positions {
             Some(InitialSetDocument::Polygon { vertices_m }) => polygon(vertices_m),

@@ -32,6 +32,8 @@ pub struct ShipDocument {
     pub position_std_m: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
+    #[serde(default)]
+    pub starboard_turn_deg: f64,
     pub turn_rate_deg_per_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_positions: Option<InitialSetDocument>,
@@ -75,6 +77,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         position_std_m: track.position_std,
         speed_spread_mps: track.speed_spread,
         course_spread_deg: deg_from_radians(track.course_spread),
+        starboard_turn_deg: deg_from_radians(track.starboard_turn),
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
         kept_positions: (track.kept_positions.as_ref())
             .map(|set| initial_set(&ConvexSet::from(set.clone()))),

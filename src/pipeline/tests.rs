@@ -81,6 +81,7 @@ fn track(x: f64, y: f64, heading: f64, speed: f64) -> ShipTrack {
         position_std: 0.0,
         speed_spread: 0.5,
         course_spread: 0.08,
+        starboard_turn: 0.0,
         turn_rate: 0.0,
         kept_positions: None,
         kept_velocities: None,

@@ -11,13 +11,14 @@ use crate::target::{TimedVelocitySet, Uncertainty};
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
 /// Keys of a tracked ship, speeds aside.
-const SHIP_KEYS: [&str; 8] = [
+const SHIP_KEYS: [&str; 9] = [
     "position",
     "course_deg",
     "length_m",
     "beam_m",
     "position_std_m",
     "course_spread_deg",
+    "starboard_turn_deg",
     "turn_rate_deg_per_s",
     "domain",
 ];

@@ -171,6 +171,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let position_std = table.number("position_std_m", limits::DISTANCE);
     let speed_spread = table.speed("speed_spread", limits::SPEED);
     let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
+    let starboard_turn = table.number("starboard_turn_deg", limits::COURSE_SPREAD);
     let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
     let domain = table.read_or("domain", DomainKind::Colregs, domain);
     Some(ShipTrack {
@@ -180,6 +181,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         position_std: position_std.unwrap_or(0.0),
         speed_spread: speed_spread.unwrap_or(0.0),
         course_spread: radians_from_deg(course_spread.unwrap_or(0.0)),
+        starboard_turn: radians_from_deg(starboard_turn.unwrap_or(0.0)),
         turn_rate: radians_from_deg(turn_rate.unwrap_or(0.0)),
         kept_positions: None,
         kept_velocities: None,

@@ -5,6 +5,8 @@ fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
     ShipTrack {
         speed_spread: rng.random_range(0.0..3.0),
         course_spread: rng.random_range(0.0..1.0),
+        // half of them
+        starboard_turn: rng.random_range(-1.0_f64..1.0).max(0.0),
         ..ShipTrack::exact(
             Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
             rng.random_range(0.0..10.0),
@@ -29,14 +31,16 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
         for _ in 0..100 {
             let t = rng.random_range(0.0..500.0);
             let turned = ship.course_spread + rate * t;
-            let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * turned;
+            let off = rng.random_range(-turned - ship.starboard_turn..=turned);
+            let course = ship.pose.heading + off;
             let speed = (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
             let now = sets.iter().find(|s| t <= s.until).expect("a last one");
             let v = direction(course) * speed;
             let now = now.velocities.as_polygon().expect("a polygon");
             assert!(now.signed_distance(v) <= 1e-9, "{ship:?} {t}");
             if t < horizon {
-                let widest = ship.outer_velocities_within(turned + TURN_PER_INTERVAL + 1e-9);
+                let half = ship.courses().1 + rate * t;
+                let widest = ship.outer_velocities_within(half + TURN_PER_INTERVAL + 1e-9);
                 for v in now.vertices() {
                     assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
                 }
@@ -76,8 +80,9 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
             ship.hull.polygon(&pose)
         };
         let mut all = Vec::new();
-        for k in -100..=100 {
-            let heading = turned(spread * f64::from(k) / 100.0);
+        for k in 0..=200 {
+            let width = 2.0 * spread + ship.starboard_turn;
+            let heading = turned(spread - width * f64::from(k) / 200.0);
             all.extend_from_slice(heading.vertices());
         }
         assert!(all.iter().all(|p| hull.signed_distance(*p) < 1e-9));
@@ -85,11 +90,11 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         let excess = hull.vertices().iter().map(|p| swept.signed_distance(*p));
         let excess = excess.fold(0.0, f64::max) / ship.hull.half_diagonal();
         assert!(excess < 0.021, "{excess} {ship:?}");
-        let around = crate::geometry::outer_disc(40.0, ship.pose.heading);
+        let around = crate::geometry::outer_disc(40.0, ship.courses().0);
         assert!(hull.minkowski_sum(&around).vertices().len() <= DISC_SIDES);
     }
     let mut known = turning_ship(&mut rng);
-    known.course_spread = 0.0;
+    (known.course_spread, known.starboard_turn) = (0.0, 0.0);
     assert_eq!(known.outer_hull(100.0), known.hull.polygon(&known.pose));
     known.speed_spread = 0.0;
     assert_eq!(known.outer_velocity_set().vertices().len(), 1);

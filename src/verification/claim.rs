@@ -310,11 +310,14 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
             let speed_spread = number("speed_spread_mps", ship.speed_spread_mps)?;
             let spread = &at("course_spread_deg");
             let course_spread = within(spread, ship.course_spread_deg, 0.0, 180.0)?;
+            let spread = &at("starboard_turn_deg");
+            let starboard_turn = within(spread, ship.starboard_turn_deg, 0.0, 180.0)?;
             let turn_rate = number("turn_rate_deg_per_s", ship.turn_rate_deg_per_s)?;
             Motion::Ship(ShipTrack {
                 position_std,
                 speed_spread,
                 course_spread: radians_from_deg(course_spread),
+                starboard_turn: radians_from_deg(starboard_turn),
                 turn_rate: radians_from_deg(turn_rate),
                 // The ship domain is no part of the proof.
                 kept_positions: kept(&at("kept_positions"), ship.kept_positions.as_ref())?,

@@ -60,6 +60,8 @@ pub(super) struct ShipFile {
     pub position_std_m: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
+    #[serde(default)]
+    pub starboard_turn_deg: f64,
     pub turn_rate_deg_per_s: f64,
     pub kept_positions: Option<SetFile>,
     pub kept_velocities: Option<SetFile>,

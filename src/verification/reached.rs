@@ -173,7 +173,7 @@ impl<'a> Known<'a> {
         let way = largest(reached.iter().zip(&self.initial).map(|(a, b)| way(a, b)));
         let spread = match &self.motion {
             Moving::Ship(ship) => {
-                let turned = ship.course_spread + ship.turn_rate * time;
+                let turned = ship.courses().1 + ship.turn_rate * time;
                 let fast = ship.speed + ship.speed_spread;
                 (2.0 * fast * turned.min(1.0) + 2.0 * ship.speed_spread) * time
             }
@@ -210,7 +210,8 @@ pub(super) fn widest(ellipse: &Ellipse) -> f64 {
 /// is the best. After that, the greatest speed is.
 fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
     let (slow, fast) = speeds(ship);
-    let off = wrap(heading_of(n) - ship.pose.heading).abs() - ship.course_spread;
+    let (middle, half) = ship.courses();
+    let off = wrap(heading_of(n) - middle).abs() - half;
     let turned_to = |angle: f64| {
         if off > angle {
             ((off - angle) / ship.turn_rate).min(time)
@@ -245,8 +246,8 @@ pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
         return ship.outer_velocity_set().vertices().to_vec();
     }
     let (slow, fast) = speeds(ship);
-    let heading = ship.pose.heading;
-    let spread = (ship.course_spread + ship.turn_rate * until).min(PI);
+    let (heading, half) = ship.courses();
+    let spread = (half + ship.turn_rate * until).min(PI);
     let edges = [-spread, spread].map(|edge| direction(heading + edge));
     let mut points: Vec<Vector> = edges
         .into_iter()

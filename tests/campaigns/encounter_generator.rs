@@ -347,6 +347,7 @@ fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<
         position_std,
         speed_spread,
         course_spread,
+        starboard_turn: 0.0,
         turn_rate: 0.0,
         kept_positions: None,
         kept_velocities: None,

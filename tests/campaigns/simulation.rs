@@ -6,6 +6,7 @@ use searoom::scenario::{
     Behaviour, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
 use searoom::simulation::Simulation;
+use searoom::target::Motion;
 
 use super::encounter_generator::{EncounterKind, Meeting};
 use super::statistics::{failure_bound, quantiles, share_cells};
@@ -66,6 +67,8 @@ pub struct How {
     pub ship: Ship,
     /// False where own ship sails its first plan to the end.
     pub replan: bool,
+    /// Degrees: how much farther to starboard each target may steer, as own ship assumes.
+    pub starboard_turn: f64,
 }
 
 impl How {
@@ -149,6 +152,11 @@ impl How {
     pub fn equip(&self, scenario: &mut Scenario, seed: u64) {
         if self.ship != Ship::Kinematic {
             scenario.own_ship.tracking_margin = 0.5 * scenario.own_ship.safety_margin;
+        }
+        for target in &mut scenario.targets {
+            if let Motion::Ship(ship) = &mut target.motion {
+                ship.starboard_turn = radians_from_deg(self.starboard_turn);
+            }
         }
         scenario.simulation = SimulationSettings {
             seed,

@@ -16,6 +16,7 @@ const CONSTANT: How = How {
     seen: Seen::Exact,
     ship: Ship::Kinematic,
     replan: true,
+    starboard_turn: 0.0,
 };
 
 fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
@@ -29,6 +30,26 @@ fn targets_within_their_sets_are_never_met_and_every_plan_has_a_successor() {
     for truth in [Truth::Random, Truth::Extremes, Truth::Pursuit] {
         run(0..5, &Meeting::NEAR, &How { truth, ..CONSTANT }).assert_met();
     }
+}
+
+/// Targets that give way: a plan for sets with that turn in them stays clear, and one for other sets
+/// does not always.
+#[test]
+fn a_target_that_gives_way_as_assumed_takes_no_certificate_away() {
+    let lost = |starboard_turn: f64| -> usize {
+        let how = How {
+            truth: Truth::GivesWayLate,
+            starboard_turn,
+            ..CONSTANT
+        };
+        let kinds = [EncounterKind::HeadOn, EncounterKind::Overtaken];
+        let scenes = (0..12).flat_map(|seed| kinds.map(|kind| meeting(kind, seed, &how)));
+        let sailed: Vec<_> = scenes.map(sail).collect();
+        assert!(sailed.iter().all(|sailed| !sailed.contact));
+        sailed.iter().map(|s| s.conduct.lost_remainders).sum()
+    };
+    let (assumed, not) = (lost(45.0), lost(0.0));
+    assert!(assumed == 0 && not > 0, "{assumed} of {not} are lost");
 }
 
 /// Two loops of separate code: the one of the campaign makes no simulation.

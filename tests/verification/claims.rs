@@ -30,6 +30,7 @@ a target on another course | /targets/0/ship/course_deg + 1 | too small for the 
 a faster target | /targets/0/ship/speed_mps + 0.1 | too small for the velocities of the target
 more course spread | /targets/0/ship/course_spread_deg + 1 | too small for the velocities of the target
 more speed spread | /targets/0/ship/speed_spread_mps + 0.1 | too small for the velocities of the target
+a target that may turn to starboard | /targets/0/ship/starboard_turn_deg + 2 | too small for the velocities of the target
 a target that may turn | /targets/0/ship/turn_rate_deg_per_s + 0.1 | too small for the velocities of the target
 a set over the plan | /obstacles/0/initial_set/vertices_m/*/0 * 1.2; /obstacles/0/initial_set/vertices_m/*/1 * 5 | set of 'target'
 fewer velocities | /obstacles/0/velocity_set/vertices_mps/*/1 * 0.9 | too small for the velocities of the target

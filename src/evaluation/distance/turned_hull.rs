@@ -30,7 +30,7 @@ impl TurnedHull {
         let corners = [(l, b), (-l, b), (-l, -b), (l, -b)];
         Self {
             center: ship.pose.position,
-            corners: corners.map(|(x, y)| ship.pose.heading + y.atan2(x)),
+            corners: corners.map(|(x, y)| ship.courses().0 + y.atan2(x)),
             reach: 0.5 * l.hypot(b),
             spread: ship.heading_spread(time),
         }
@@ -117,6 +117,7 @@ mod tests {
                     0 => 10.0_f64.powf(rng.random_range(-12.0..-3.0)),
                     _ => rng.random_range(0.0..0.4),
                 },
+                starboard_turn: [0.0, 0.5][case % 2],
                 turn_rate: [0.0, 0.01, 0.2][case % 3],
                 ..ShipTrack::exact(
                     Pose::new(position, rng.random_range(-3.0..3.0)),
@@ -129,7 +130,8 @@ mod tests {
             let (outer, planned) = (hull.outer_polygon(), ship.outer_hull(time));
             let points: Vec<Vector> = hull.outer_points(0.1).collect();
             let spread = ship.course_spread + ship.turn_rate * time;
-            let turned = (-400..=400).map(|k| spread * f64::from(k) / 400.0);
+            let width = 2.0 * spread + ship.starboard_turn;
+            let turned = (0..=800).map(|k| spread - width * f64::from(k) / 800.0);
             let turned: Vec<ConvexPolygon> = turned
                 .map(|turn| Pose::new(position, ship.pose.heading + turn))
                 .map(|pose| ship.hull.polygon(&pose))

@@ -142,6 +142,8 @@ struct AssumedVelocities {
     speed: f64,
     heading_spread: f64,
     speed_spread: f64,
+    /// How much farther to starboard the heading may be.
+    starboard_turn: f64,
 }
 
 impl AssumedVelocities {
@@ -152,6 +154,7 @@ impl AssumedVelocities {
             speed: estimate.speed,
             heading_spread: file.course_spread + SIGMAS * estimate.heading_std,
             speed_spread: file.speed_spread + SIGMAS * estimate.speed_std,
+            starboard_turn: file.starboard_turn,
         }
     }
 
@@ -162,10 +165,22 @@ impl AssumedVelocities {
             && faster <= factor * self.speed_spread + SIGMAS * estimate.speed_std + ROUNDING
     }
 
-    /// Differences of course and speed.
+    /// How far beyond the middle of the set course and speed are.
     fn off(&self, estimate: &Estimate) -> (f64, f64) {
-        let turned = wrap(estimate.heading - self.heading).abs();
+        let to_port = wrap(estimate.heading - self.heading);
+        let turned = to_port.max(-to_port - self.starboard_turn);
         (turned, (estimate.speed - self.speed).abs())
+    }
+
+    /// Follows a target that has turned to starboard within the set: it may turn on from there, and
+    /// no longer back. The set becomes a part of itself.
+    fn follow(&mut self, estimate: &Estimate) {
+        let turned = -wrap(estimate.heading - self.heading) - SIGMAS * estimate.heading_std;
+        if turned > self.heading_spread {
+            let turned = turned.min(self.starboard_turn);
+            self.heading = wrap(self.heading - turned);
+            self.starboard_turn -= turned;
+        }
     }
 
     /// Widens the spreads to hold an estimate.
@@ -229,7 +244,11 @@ impl Track {
 
     /// Begins to wait anew where the estimate has changed.
     fn settle(&mut self) {
-        if !AssumedVelocities::at(&self.settled, &self.file).holds(&self.estimate, SETTLED) {
+        let still = AssumedVelocities {
+            starboard_turn: 0.0,
+            ..AssumedVelocities::at(&self.settled, &self.file)
+        };
+        if !still.holds(&self.estimate, SETTLED) {
             self.settled = self.estimate;
         }
     }
@@ -318,6 +337,8 @@ impl Track {
             self.velocities.widen(&self.estimate);
         } else if self.is_broken {
             self.assume_anew();
+        } else {
+            self.velocities.follow(&self.estimate);
         }
         let age = (time - self.estimate.time).max(0.0);
         let elapsed = age.max(delay);
@@ -330,6 +351,7 @@ impl Track {
             speed_spread: self.velocities.speed_spread,
             // it may have turned since
             course_spread: (self.velocities.heading_spread + turned).min(std::f64::consts::PI),
+            starboard_turn: self.velocities.starboard_turn,
             kept_velocities: None,
             ..self.file.clone()
         };
@@ -358,6 +380,36 @@ mod tests {
     use crate::simulation::closed_loop::stream::{Purpose, normal, stream};
     use crate::vessel::Hull;
     use nalgebra::{DMatrix, DVector};
+
+    /// A target that turns to starboard as far as it may: each set is a part of the one before.
+    #[test]
+    fn the_set_follows_a_target_that_gives_way_and_only_shrinks() {
+        let file = ShipTrack {
+            course_spread: radians_from_deg(5.0),
+            starboard_turn: radians_from_deg(40.0),
+            speed_spread: 0.5,
+            ..ShipTrack::exact(Pose::new(Vector::zeros(), 1.0), 5.0, Hull::new(30.0, 8.0))
+        };
+        let mut track = Track::new(&file, &Sensor::EXACT);
+        let mut last = track.set_at(0.0, 1.0).outer_velocity_set();
+        for turned in [3.0, 4.0, 12.0, 30.0, 44.0, 44.0] {
+            let heading = file.pose.heading - radians_from_deg(turned);
+            let ship = SteadyShip::new(Pose::new(Vector::zeros(), heading), 5.0);
+            track.set_exact(10.0, &ship);
+            let now = track.set_at(10.0, 1.0);
+            assert!(!track.is_broken(), "{turned}");
+            let set = now.outer_velocity_set();
+            assert!(set.signed_distance(ship.velocity()) <= 1e-9);
+            // a tangent of the outer arc may be up to 0.4 % outside
+            let within = |v: &Vector| last.signed_distance(*v) <= 0.004 * v.norm();
+            assert!(set.vertices().iter().all(within), "{turned}");
+            last = set;
+        }
+        let back = SteadyShip::new(Pose::new(Vector::zeros(), file.pose.heading), 5.0);
+        track.set_exact(20.0, &back);
+        track.set_at(20.0, 1.0);
+        assert!(track.is_broken());
+    }
 
     /// Without noise of acceleration the filter is the least-squares line through all positions.
     #[test]

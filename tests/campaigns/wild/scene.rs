@@ -114,6 +114,8 @@ impl Scene {
                     "speed_spread_mps = {speed_spread:?}\ncourse_spread_deg = {course_spread:?}\nposition_std_m = {deviation:?}"
                 ));
                 self.domain(domain, long);
+                let starboard_turn = self.one(&[0.0, 0.0, 0.0, 45.0, 180.0]);
+                self.line(format!("starboard_turn_deg = {starboard_turn:?}"));
                 if kind == "turning" {
                     let rate = self.one(&[0.01, 0.1, 0.5]);
                     self.line(format!("turn_rate_deg_per_s = {rate:?}"));
