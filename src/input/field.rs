@@ -5,9 +5,12 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use super::value::{Node, Value};
-use super::{Fault, Faults, Table};
+use super::{Fault, Faults, InputError, Table};
 use crate::frame::{Vector, mps_from_knots};
 use crate::text::{LINE, is_line, is_unprintable, printable};
+
+/// Faults of another file that are listed: a map of another place has one in every feature.
+const MOST_LISTED: usize = 20;
 
 /// Limits nearer to zero than this are written with a power of ten.
 const SHORT: f64 = 1e-9;
@@ -254,6 +257,39 @@ impl<'a> Field<'a> {
                 Some(folder.join(name))
             }
             _ => self.refuse("the name of a file, relative to the folder of this one"),
+        }
+    }
+
+    /// The content of the file that is named here, or its faults, noted here.
+    pub(crate) fn contents<T>(
+        &self,
+        file: &Path,
+        read: Result<T, InputError>,
+        kind: &str,
+    ) -> Option<T> {
+        match read {
+            Ok(content) => Some(content),
+            Err(InputError::Read { file, source }) => {
+                let found = format_args!("{}, which cannot be read ({source})", file.display());
+                self.reject(found, kind)
+            }
+            Err(InputError::Faults { faults, .. }) => {
+                for fault in faults.iter().take(MOST_LISTED) {
+                    let line = fault.line.map(|line| format!("line {line}: "));
+                    let line = line.unwrap_or_default();
+                    let path = match fault.path.as_str() {
+                        "" => String::new(),
+                        path => format!("{path}: "),
+                    };
+                    let found = format_args!("{}: {line}{path}{}", file.display(), fault.found);
+                    self.fault(found, &fault.allowed);
+                }
+                if let Some(more) = faults.len().checked_sub(MOST_LISTED).filter(|n| *n > 0) {
+                    let found = format_args!("{}: {more} more faults", file.display());
+                    self.fault(found, "none");
+                }
+                None
+            }
         }
     }
 

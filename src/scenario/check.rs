@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::plane::Plane;
+use super::plane::{Plane, near};
 use super::planner::{PlannerTable, planner};
+use super::route::Route;
 use super::simulation::simulation;
 use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, land, limits};
@@ -56,7 +57,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .required_table("mission")
-        .and_then(|table| mission(table, speed, &plane, time));
+        .and_then(|table| mission(table, speed, &plane, folder, time));
     // without a length the file is faulty, and any length serves
     let length = own_ship.as_ref().map_or(1.0, |own| own.hull.length);
     let planner: PlannerTable = root
@@ -217,6 +218,7 @@ fn mission(
     mut table: Table,
     own_speed: Option<f64>,
     plane: &Plane,
+    folder: &Path,
     time: Option<f64>,
 ) -> Option<Mission> {
     let start = table
@@ -225,12 +227,26 @@ fn mission(
     let alternatives = table.read_or("alternatives", Vec::new(), |field| {
         alternatives(field, plane)
     });
-    let fields = table
-        .require("waypoints", "a list of at least 2 positions")
-        .and_then(|field| positions(&field));
-    let legs = fields.as_ref().map(|fields| fields.len() - 1);
-    let waypoints = fields.and_then(|fields| waypoints(&fields, plane));
-    let speeds = leg_speeds(&mut table, legs, own_speed);
+    let (waypoints, speeds) = if let Some(field) = table.take("route") {
+        table.forbid("waypoints", "nothing: the route has them");
+        let route = route(&field, folder, plane);
+        let (waypoints, speeds) = route.unzip();
+        let speeds = leg_speeds(&mut table, speeds.as_deref(), own_speed);
+        (waypoints, speeds)
+    } else {
+        let fields = table
+            .require(
+                "waypoints",
+                "a list of at least 2 positions, or 'route', a file",
+            )
+            .and_then(|field| positions(&field));
+        let legs = fields.as_ref().map(|fields| vec![None; fields.len() - 1]);
+        let waypoints = fields.and_then(|fields| waypoints(&fields, plane));
+        (
+            waypoints,
+            leg_speeds(&mut table, legs.as_deref(), own_speed),
+        )
+    };
     table.finish();
     // every leg is long and fast enough by now
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
@@ -243,6 +259,29 @@ fn mission(
         },
         alternatives: alternatives?,
     })
+}
+
+/// The waypoints of a route file on the plane, and the speeds of its legs.
+fn route(field: &Field, folder: &Path, plane: &Plane) -> Option<(Vec<Vector>, Vec<Option<f64>>)> {
+    let earth = plane.need_earth();
+    let file = field.file_in(folder)?;
+    let kind = "a route file, RTZ 1.0 to 1.2";
+    let Route { places, speeds } = field.contents(&file, Route::read(&file), kind)?;
+    let earth = earth?;
+    let points = every(places.iter().map(|place| near(field, *place, &earth)))?;
+    let sound = (1..).zip(points.windows(2)).all(|(leg, pair)| {
+        let length = (pair[1] - pair[0]).norm();
+        let is_long = length >= limits::LENGTH.low;
+        if !is_long {
+            let found = format_args!("waypoints {leg} and {} in one place", leg + 1);
+            field.fault(
+                found,
+                format_args!("legs of at least {} m", limits::LENGTH.low),
+            );
+        }
+        is_long
+    });
+    sound.then_some((points, speeds))
 }
 
 fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {
@@ -281,7 +320,12 @@ fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
     points.filter(|_| sound)
 }
 
-fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) -> Option<Vec<f64>> {
+/// The speed of each leg: those of the file, else that of the leg in its route, else own ship's.
+fn leg_speeds(
+    table: &mut Table,
+    legs: Option<&[Option<f64>]>,
+    own_speed: Option<f64>,
+) -> Option<Vec<f64>> {
     let one = table.speed("speed", limits::WAY);
     let per_leg = table.speeds("leg_speeds", limits::WAY);
     if let Some((field, speeds)) = per_leg {
@@ -291,7 +335,7 @@ fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) ->
                 "one of the two, not both",
             );
         }
-        let (speeds, legs) = (speeds?, legs?);
+        let (speeds, legs) = (speeds?, legs?.len());
         if speeds.len() != legs {
             return field.reject(
                 format_args!("{} speeds", speeds.len()),
@@ -301,14 +345,23 @@ fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) ->
         return Some(speeds);
     }
     if table.has_speed("speed") {
-        return Some(vec![one?; legs?]);
+        return Some(vec![one?; legs?.len()]);
     }
     if table.has_speed("leg_speeds") {
         return None;
     }
+    let of_route: Option<Vec<f64>> = legs.and_then(|legs| legs.iter().copied().collect());
+    if of_route.is_some() {
+        return of_route;
+    }
     let own_speed = own_speed?;
     if limits::WAY.contains(own_speed) {
-        Some(vec![own_speed; legs?])
+        Some(
+            legs?
+                .iter()
+                .map(|speed| speed.unwrap_or(own_speed))
+                .collect(),
+        )
     } else {
         table.require_speed("speed", limits::WAY);
         None

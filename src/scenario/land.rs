@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::plane::Plane;
 use crate::frame::{Pose, Vector, heading_of};
-use crate::input::{Field, InputError, Table};
+use crate::input::{Field, Table};
 use crate::map::{LandCrossing, Map};
 use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
@@ -14,7 +14,7 @@ use crate::vessel::{Hull, OwnShip};
 /// Metres: resolution of the room for a turn on the spot, which is never overestimated.
 const TURN_SETTLED_M: f64 = 1e-3;
 
-/// Faults of a map or a path that are listed: a map of another place has one in every feature.
+/// Faults of a path that are listed.
 const MAX_LISTED: usize = 20;
 
 /// Land, and the margin that own ship keeps from it.
@@ -73,29 +73,10 @@ pub(super) fn map(root: &mut Table, plane: &Plane, folder: &Path) -> Option<Arc<
     let field = root.take("map")?;
     let earth = plane.need_earth();
     let file = field.file_in(folder)?;
-    match Map::read(&file, &earth?) {
-        Ok(map) => Some(Arc::new(map)),
-        Err(InputError::Read { file, source }) => {
-            let found = format_args!("{}, which cannot be read ({source})", file.display());
-            field.reject(found, "a GeoJSON file of land polygons")
-        }
-        Err(InputError::Faults { file, faults }) => {
-            for fault in faults.iter().take(MAX_LISTED) {
-                let place = if fault.path.is_empty() {
-                    String::new()
-                } else {
-                    format!("{}: ", fault.path)
-                };
-                let found = format_args!("{}: {place}{}", file.display(), fault.found);
-                field.fault(found, &fault.allowed);
-            }
-            if let Some(more) = faults.len().checked_sub(MAX_LISTED).filter(|n| *n > 0) {
-                let found = format_args!("{}: {more} more faults", file.display());
-                field.fault(found, "none");
-            }
-            None
-        }
-    }
+    let kind = "a GeoJSON file of land polygons";
+    field
+        .contents(&file, Map::read(&file, &earth?), kind)
+        .map(Arc::new)
 }
 
 /// Notes a start on land, and every stretch of a path that is too near to land.
@@ -127,8 +108,13 @@ pub(super) fn check(
     let Some(mut mission) = table(root, "mission") else {
         return;
     };
-    let waypoints = mission.take("waypoints").map(positions).unwrap_or_default();
-    check_path(&waypoints, &desired.waypoints(), land, plane, &own.hull);
+    let path = desired.waypoints();
+    // the waypoints of a route have one place in this file
+    let waypoints = match mission.take("route") {
+        Some(route) => vec![route; path.len()],
+        None => mission.take("waypoints").map(positions).unwrap_or_default(),
+    };
+    check_path(&waypoints, &path, land, plane, &own.hull);
     let others = mission
         .take("alternatives")
         .map(positions)

@@ -9,6 +9,7 @@ mod limits;
 mod memory;
 mod plane;
 mod planner;
+mod route;
 mod simulation;
 mod targets;
 #[cfg(test)]

@@ -393,6 +393,48 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
         .stderr(contains("there are no legs"));
 }
 
+/// A route that was written is the mission of the next scenario: its plan is as long, and its speeds
+/// are those of the legs.
+#[test]
+fn a_route_is_a_mission() {
+    let folder = Folder::new();
+    let file = |name: &str| text(&folder.path().join(name)).to_owned();
+    let origin = "origin = { lat_deg = 59.0, lon_deg = 10.5 }";
+    let placed = folder.write("placed.toml", format!("{origin}\n{HEAD_ON}"));
+    searoom(&["plan", &placed, "--route", &file("first.rtz")]).success();
+    let first = json(&format!("plan {placed} --json"));
+    let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
+    let from = alone.find("waypoints = ").expect("waypoints");
+    let to = from + alone[from..].find('\n').expect("a line");
+    let with = |mission: &str| format!("{origin}\n{}{mission}{}", &alone[..from], &alone[to..]);
+    let routed = with("route = \"first.rtz\"");
+    let routed = routed.replace("speed_mps = 5.0\n\n[[", "");
+    let again = folder.write("again.toml", &routed);
+    let plan = json(&format!("plan {again} --json"));
+    let waypoints = list(&plan["mission"]["waypoints"]);
+    let written = fs::read_to_string(file("first.rtz")).expect("written");
+    assert_eq!(waypoints.len(), written.matches("<waypoint id").count());
+    let [first, again] = [&first, &plan].map(|plan| number(&plan["cost"]["length_m"]));
+    assert!((first - again).abs() < 0.02 * first, "{first} {again}");
+    for (mission, found) in [
+        ("route = \"none.rtz\"", "none.rtz, which cannot be read"),
+        ("route = \"placed.toml\"", "placed.toml: line 1: "),
+        ("route = 5", "mission.route: found 5"),
+        (
+            "route = \"first.rtz\"\nwaypoints = []",
+            "nothing: the route has them",
+        ),
+    ] {
+        let bad = folder.write("bad.toml", with(mission));
+        searoom(&["plan", &bad]).code(2).stderr(contains(found));
+    }
+    let far = with("route = \"first.rtz\"").replace("lat_deg = 59.0", "lat_deg = 49.0");
+    let far = folder.write("far.toml", far);
+    searoom(&["plan", &far])
+        .code(2)
+        .stderr(contains("mission.route: found").and(contains("km from the origin")));
+}
+
 #[cfg(not(feature = "recording"))]
 #[test]
 fn recordings_need_their_feature() {

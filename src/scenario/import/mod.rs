@@ -11,7 +11,7 @@ mod imazu;
 mod scenario_text;
 mod situation;
 mod track;
-mod xml;
+pub(super) mod xml;
 
 pub use assumed::{Assumed, Assumption};
 pub use scenario_text::Imported;

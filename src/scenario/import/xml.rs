@@ -48,7 +48,7 @@ fn crowded(text: &str) -> Option<usize> {
 }
 
 /// Parses a text. A document type, which could declare entities, is refused: nothing expands.
-pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
+pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
     if let Some(line) = crowded(text) {
         let found = format_args!("an element of more than {ATTRIBUTES} attributes");
         return Err(Fault {
@@ -71,7 +71,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
 
 /// An element, its place, and the faults found so far.
 #[derive(Debug, Clone)]
-pub(super) struct Xml<'a> {
+pub(in crate::scenario) struct Xml<'a> {
     node: Node<'a, 'a>,
     path: String,
     faults: &'a Faults,
@@ -79,7 +79,7 @@ pub(super) struct Xml<'a> {
 
 impl<'a> Xml<'a> {
     /// The outermost element of a file.
-    pub(super) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
+    pub(in crate::scenario) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
         let node = document.root_element();
         Self {
             path: node.tag_name().name().to_owned(),
@@ -89,17 +89,17 @@ impl<'a> Xml<'a> {
     }
 
     /// The name of the element.
-    pub(super) fn name(&self) -> &'a str {
+    pub(in crate::scenario) fn name(&self) -> &'a str {
         self.node.tag_name().name()
     }
 
     /// Where it is, as in `commonOcean/dynamicObstacle[11]/type`.
-    pub(super) fn path(&self) -> &str {
+    pub(in crate::scenario) fn path(&self) -> &str {
         &self.path
     }
 
     /// Notes a fault at this place.
-    pub(super) fn fault(&self, found: impl Display, allowed: impl Display) {
+    pub(in crate::scenario) fn fault(&self, found: impl Display, allowed: impl Display) {
         let at = self.node.document().text_pos_at(self.node.range().start);
         self.faults.note(Fault {
             line: Some(at.row as usize),
@@ -108,13 +108,17 @@ impl<'a> Xml<'a> {
     }
 
     /// Notes a fault at this place, without which there would be a value.
-    pub(super) fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
+    pub(in crate::scenario) fn reject<T>(
+        &self,
+        found: impl Display,
+        allowed: impl Display,
+    ) -> Option<T> {
         self.fault(found, allowed);
         None
     }
 
     /// The elements in it, in the order of the file.
-    pub(super) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
+    pub(in crate::scenario) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
         let (path, faults) = (self.path.clone(), self.faults);
         self.node
             .children()
@@ -130,18 +134,22 @@ impl<'a> Xml<'a> {
     }
 
     /// Those of one name.
-    pub(super) fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
+    pub(in crate::scenario) fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
         self.elements()
             .filter(move |element| element.name() == name)
     }
 
     /// The first of one name.
-    pub(super) fn take(&self, name: &str) -> Option<Xml<'a>> {
+    pub(in crate::scenario) fn take(&self, name: &str) -> Option<Xml<'a>> {
         self.all(name).next()
     }
 
     /// The first of one name, which must be there.
-    pub(super) fn require(&self, name: &str, allowed: impl Display) -> Option<Xml<'a>> {
+    pub(in crate::scenario) fn require(
+        &self,
+        name: &str,
+        allowed: impl Display,
+    ) -> Option<Xml<'a>> {
         let found = self.take(name);
         if found.is_none() {
             self.fault(
@@ -153,22 +161,22 @@ impl<'a> Xml<'a> {
     }
 
     /// An attribute.
-    pub(super) fn attribute(&self, name: &str) -> Option<&'a str> {
+    pub(in crate::scenario) fn attribute(&self, name: &str) -> Option<&'a str> {
         self.node.attribute(name)
     }
 
     /// The text in it, without the white space around.
-    pub(super) fn text(&self) -> &'a str {
+    pub(in crate::scenario) fn text(&self) -> &'a str {
         self.node.text().unwrap_or_default().trim()
     }
 
     /// The number in it.
-    pub(super) fn number(&self, range: Range) -> Option<f64> {
+    pub(in crate::scenario) fn number(&self, range: Range) -> Option<f64> {
         self.parsed(self.text(), range)
     }
 
     /// The number of an attribute that must be there.
-    pub(super) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
+    pub(in crate::scenario) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
         match self.attribute(name) {
             Some(text) => self.parsed(text, range),
             None => self.reject(
@@ -187,12 +195,12 @@ impl<'a> Xml<'a> {
     }
 
     /// The number of an element that must be there.
-    pub(super) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
+    pub(in crate::scenario) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
         self.require(name, range)?.number(range)
     }
 
     /// The number in the element `exact`; an interval is not a number.
-    pub(super) fn exact(&self, range: Range) -> Option<f64> {
+    pub(in crate::scenario) fn exact(&self, range: Range) -> Option<f64> {
         self.require("exact", range)?.number(range)
     }
 }

@@ -1,0 +1,191 @@
+//! The mission of a route file for navigation systems: RTZ 1.0 to 1.2 (IEC 61174, annex S).
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::import::xml::{self, Xml};
+use super::limits;
+use crate::frame::{Geographic, mps_from_knots};
+use crate::input::{Fault, Faults, InputError, abbreviated, every, read_text};
+
+/// The elements of a schedule that give speeds, the first that there is.
+const SCHEDULES: [&str; 2] = ["calculated", "manual"];
+
+/// A route.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Route {
+    /// The waypoints, in the order of the file.
+    pub places: Vec<Geographic>,
+    /// The speed of each leg, m/s, where the file has one.
+    pub speeds: Vec<Option<f64>>,
+}
+
+impl Route {
+    /// Reads a file. The speed of a leg is that of the schedule at the waypoint where it ends, else
+    /// the highest that the leg allows. Radii, dates and everything else are left out; a stay is a
+    /// fault, as a desired trajectory does not wait.
+    pub fn read(file: &Path) -> Result<Self, InputError> {
+        let text = read_text(file, limits::FILE_MEBIBYTES, "a route file")?;
+        Self::parse(&text).map_err(|faults| InputError::faults(file, faults))
+    }
+
+    fn parse(text: &str) -> Result<Self, Vec<Fault>> {
+        let document = xml::parse(text).map_err(|fault| vec![fault])?;
+        let faults = Faults::default();
+        match route(&Xml::root(&document, &faults)) {
+            Some(route) if faults.is_empty() => Ok(route),
+            _ => Err(faults.take()),
+        }
+    }
+}
+
+fn route(root: &Xml) -> Option<Route> {
+    if root.name() != "route" {
+        let found = format_args!("the element {}", abbreviated(root.name()));
+        return root.reject(found, "route, as in RTZ 1.0 to 1.2");
+    }
+    let list = root.require("waypoints", "the waypoints of the route")?;
+    let waypoints: Vec<Xml> = list.all("waypoint").collect();
+    let count = waypoints.len();
+    if !(2..=limits::WAYPOINTS).contains(&count) {
+        let allowed = format_args!("2 to {}", limits::WAYPOINTS);
+        return list.reject(format_args!("{count} waypoints"), allowed);
+    }
+    let places = every(waypoints.iter().map(place));
+    let by_default = list.take("defaultWaypoint");
+    let by_default = by_default.and_then(|waypoint| waypoint.take("leg"));
+    let planned = planned_speeds(root)?;
+    let speed = |waypoint: &Xml| {
+        if let Some(speed) = waypoint.attribute("id").and_then(|id| planned.get(id)) {
+            return Some(Some(*speed));
+        }
+        let own = waypoint.take("leg");
+        let mut legs = own.iter().chain(&by_default);
+        match legs.find(|leg| leg.attribute("speedMax").is_some()) {
+            Some(leg) => in_mps(leg, "speedMax").map(Some),
+            None => Some(None),
+        }
+    };
+    let speeds = every(waypoints[1..].iter().map(speed));
+    Some(Route {
+        places: places?,
+        speeds: speeds?,
+    })
+}
+
+fn place(waypoint: &Xml) -> Option<Geographic> {
+    let position = waypoint.require("position", "its latitude and longitude")?;
+    let lat_deg = position.attribute_number("lat", limits::LATITUDE);
+    let lon_deg = position.attribute_number("lon", limits::LONGITUDE);
+    Some(Geographic {
+        lat_deg: lat_deg?,
+        lon_deg: lon_deg?,
+    })
+}
+
+/// The speeds of the first schedule, m/s, by the waypoint at which the leg ends.
+fn planned_speeds<'a>(root: &Xml<'a>) -> Option<BTreeMap<&'a str, f64>> {
+    let schedules = root.take("schedules");
+    let first = schedules.and_then(|schedules| schedules.take("schedule"));
+    let Some(first) = first else {
+        return Some(BTreeMap::new());
+    };
+    let found = SCHEDULES.iter().find_map(|kind| first.take(kind));
+    let elements = found.iter().flat_map(|found| found.all("scheduleElement"));
+    let speeds = elements.map(|element| {
+        if let Some(stay) = element.attribute("stay").filter(|stay| is_stay(stay)) {
+            let found = format_args!("a stay of {}", abbreviated(stay));
+            return element.reject(found, "none: a desired trajectory does not wait");
+        }
+        let speed = match element.attribute("speed") {
+            Some(_) => Some(in_mps(&element, "speed")?),
+            None => None,
+        };
+        Some(element.attribute("waypointId").zip(speed))
+    });
+    Some(every(speeds)?.into_iter().flatten().collect())
+}
+
+/// True for a stay of any length: a time of day, or the duration of RTZ 1.2.
+fn is_stay(stay: &str) -> bool {
+    stay.chars().any(|digit| ('1'..='9').contains(&digit))
+}
+
+/// A speed in knots, in m/s.
+fn in_mps(element: &Xml, attribute: &str) -> Option<f64> {
+    let range = limits::WAY.in_knots().in_unit("kn");
+    let knots = element.attribute_number(attribute, range)?;
+    Some(mps_from_knots(knots))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a navigation system writes it; changes are `old => new`, and what the fault names.
+    const ROUTE: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<route version="1.1" xmlns="http://www.cirm.org/RTZ/1/1">
+  <routeInfo routeName="To the pilot" vesselName="Any"/>
+  <waypoints>
+    <defaultWaypoint radius="0.3"><leg speedMax="8" geometryType="Loxodrome"/></defaultWaypoint>
+    <waypoint id="7" radius="0.3"><position lat="59.00" lon="10.50"/></waypoint>
+    <waypoint id="3" radius="0.3"><position lat="59.02" lon="10.50"/><leg speedMax="10"/></waypoint>
+    <waypoint id="9" radius="0.3"><position lat="59.02" lon="10.54"/></waypoint>
+    <waypoint id="4" radius="0.3"><position lat="59.04" lon="10.54"/><leg speedMax="10"/></waypoint>
+  </waypoints>
+  <schedules><schedule id="1"><calculated>
+    <scheduleElement waypointId="7" etd="2026-05-01T08:00:00Z"/>
+    <scheduleElement waypointId="4" speed="6" stay="00:00:00"/>
+  </calculated></schedule></schedules>
+</route>
+"#;
+
+    #[test]
+    fn a_leg_has_the_speed_of_its_schedule_or_its_own_or_that_of_all() {
+        let route = Route::parse(ROUTE).expect("a route");
+        assert_eq!(route.places.len(), 4);
+        assert_eq!(route.places[2].lon_deg, 10.54);
+        let knots = [10.0, 8.0, 6.0].map(|speed| Some(mps_from_knots(speed)));
+        assert_eq!(route.speeds, knots);
+    }
+
+    #[test]
+    fn faults_name_the_element_and_its_line() {
+        for (old, new, line, named) in [
+            (
+                "lat=\"59.02\"",
+                "lat=\"95\"",
+                7,
+                "waypoint[3]/position: found",
+            ),
+            ("lon=\"10.50\"", "", 6, "no attribute lon"),
+            (
+                "speed=\"6\"",
+                "speed=\"-6\"",
+                13,
+                "scheduleElement: found \"-6\"",
+            ),
+            (
+                "Max=\"10\"",
+                "Max=\"fast\"",
+                7,
+                "waypoint[3]/leg: found \"fast\"",
+            ),
+            ("00:00:00", "00:10:00", 13, "a stay of \"00:10:00\""),
+            ("00:00:00", "PT10M", 13, "a stay of \"PT10M\""),
+            ("</waypoints>", "", 15, "expected 'waypoints' tag"),
+            ("waypoints>", "points>", 2, "route: found no waypoints"),
+            ("route", "track", 2, "the element \"track\""),
+        ] {
+            let faults = Route::parse(&ROUTE.replace(old, new)).expect_err(new);
+            assert_eq!(faults[0].line, Some(line), "{new}: {faults:?}");
+            assert!(faults[0].to_string().contains(named), "{}", faults[0]);
+        }
+        let (all, rest) = ROUTE
+            .split_once("    <waypoint id=\"3\"")
+            .expect("a waypoint");
+        let (_, end) = rest.split_once("  </waypoints>").expect("an end");
+        let faults = Route::parse(&format!("{all}  </waypoints>{end}")).expect_err("one");
+        assert_eq!(faults[0].found, "1 waypoints");
+    }
+}
