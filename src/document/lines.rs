@@ -3,7 +3,7 @@
 
 use super::{
     ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
-    MemoryDocument, PlanDocument, RelaxationDocument,
+    MemoryDocument, PlanDocument, RelaxationDocument, breaks,
 };
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::text::{printable, signed, square_metres, tenths};
@@ -17,13 +17,35 @@ pub(crate) const TIME_LINE: &str = "time";
 /// Adds a named line.
 type Add<'a> = dyn FnMut(&'static str, String) + 'a;
 
-/// Title, outcome, and whether the plan is verified and safe.
+/// Title and [`verdict_line`].
 pub(crate) fn headline(plan: &PlanDocument) -> String {
-    let facts = match plan.trajectory {
-        Some(_) => format!(" ({})", facts(plan.verified, plan.safe)),
-        None => String::new(),
+    format!("{}: {}", printable(&plan.scenario), verdict_line(plan))
+}
+
+/// Outcome, whether the plan is verified and safe, the rules that it breaks and the waypoints that it
+/// skips.
+pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
+    let mut all = Vec::new();
+    if plan.trajectory.is_some() {
+        all.push(facts(plan.verified, plan.safe).to_owned());
+    }
+    let broken = breaks(&plan.encounters).unwrap_or_default();
+    if !broken.is_empty() {
+        all.push(format!("breaks {}", broken.join(", ")));
+    }
+    let skipped = plan.cost.as_ref().map(|cost| skipped(plan, cost));
+    if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
+        all.push(format!("skips {skipped}"));
+    }
+    let all = match all.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", all.join("; ")),
     };
-    printable(&format!("{}: {}{facts}", plan.scenario, plan.verdict))
+    printable(&format!("{}{all}", plan.verdict))
+}
+
+fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {
+    skipped_waypoints(&cost.waypoint_distances_m, plan.own_ship.turning_radius_m)
 }
 
 /// Named lines of a plan. A line without a name continues the previous one.
@@ -152,6 +174,10 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
     if met.is_empty() {
         add("encounter", "none".to_owned());
     }
+    let apart = |e: &EncounterDocument| Some((e.dcpa_m?, e.tcpa_s?, e.target.clone()));
+    let all = plan.encounters.iter().filter_map(apart);
+    let nearest = all.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
+    let count_met = met.len();
     for encounter in met {
         let undisturbed = match encounter.undisturbed_dcpa_m {
             Some(distance) if distance > 0.0 => format!("{distance:.1} m"),
@@ -166,6 +192,15 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
             let text = format!("planned {dcpa:.1} m at {tcpa:.0} s, passing {passing}");
             add("", text);
         }
+    }
+    // with one target in an encounter it is in the lines above
+    if let Some((dcpa, tcpa, target)) = nearest
+        && (plan.encounters.len() > 1 || count_met == 0)
+    {
+        add(
+            "closest",
+            format!("{dcpa:.1} m to '{target}' at {tcpa:.0} s"),
+        );
     }
     for encounter in &plan.encounters {
         let Some(conduct) = encounter.conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
@@ -247,8 +282,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         }
         None => add("delay", format!("does not arrive ({way} at the horizon)")),
     }
-    let radius = plan.own_ship.turning_radius_m;
-    let skipped = skipped_waypoints(&cost.waypoint_distances_m, radius);
+    let skipped = skipped(plan, cost);
     if !skipped.is_empty() {
         add("skips", skipped);
     }
@@ -262,6 +296,12 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
         let text = format!("{clearance} m; after {end} {after} m within {hold} s");
         add("clearance", text);
+        if cost.hold_clearance_m.is_some_and(|after| after < 0.0) {
+            add(
+                "warning",
+                format!("a target may run into own ship where it lies after {end}"),
+            );
+        }
     }
     if let Some(distance) = cost.min_land_distance_m {
         add("land", format!("{distance:.1} m off"));

@@ -28,7 +28,7 @@ pub use encounter::{
     RuleViolationDocument, breaks, conduct_breaks,
 };
 pub use legs::PlannedLeg;
-pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
+pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub(crate) use memory::state_document;
 #[cfg(feature = "recording")]

@@ -327,6 +327,12 @@ impl<'a> Field<'a> {
                 let found = format_args!("{} {what}", items.len());
                 self.reject(found, format_args!("at most {most}"))
             }
+            Value::Table(_) if what == "tables" => {
+                let path = &self.path;
+                self.refuse(format_args!(
+                    "[[{path}]], with two brackets, before each of them"
+                ))
+            }
             _ => self.refuse(format_args!("a list of at least {least} {what}")),
         }
     }

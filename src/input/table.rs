@@ -8,6 +8,18 @@ use crate::frame::mps_from_knots;
 /// A known key this similar to an unknown one (Jaro-Winkler) was meant.
 const SIMILAR: f64 = 0.8;
 
+/// Words of other systems in keys, and ours.
+const OTHER_WORDS: [(&str, &str); 8] = [
+    ("heading", "course"),
+    ("hdg", "course"),
+    ("cog", "course"),
+    ("sog", "speed"),
+    ("loa", "length"),
+    ("breadth", "beam"),
+    ("width", "beam"),
+    ("knots", "kn"),
+];
+
 /// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
 #[derive(Debug)]
 pub(crate) struct Table<'a> {
@@ -191,9 +203,18 @@ fn in_unit(range: Range, unit: f64) -> Range {
 
 fn nearest<'k>(name: &str, known: &'k [String]) -> Option<&'k String> {
     let lower = name.to_lowercase();
+    let words = lower.split('_').map(|word| {
+        let other = OTHER_WORDS.iter().find(|(other, _)| *other == word);
+        other.map_or(word, |(_, ours)| ours)
+    });
+    let ours = words.collect::<Vec<_>>().join("_");
+    let alike = |key: &str| {
+        let of = |name: &str| strsim::jaro_winkler(name, key);
+        of(&lower).max(of(&ours))
+    };
     known
         .iter()
-        .map(|key| (strsim::jaro_winkler(&lower, key), key))
+        .map(|key| (alike(key), key))
         .filter(|(similarity, _)| *similarity > SIMILAR)
         // among equals the one that was asked for first
         .rev()

@@ -106,9 +106,14 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
         true => "valid TOML",
         false => "valid TOML; a bracket or a quote left open above also leads here",
     };
+    let line = start(&first).map(line);
+    let found = match line.and_then(|line| text.lines().nth(line - 1)) {
+        Some(there) => format!("{}, in {}", first.message(), abbreviated(there.trim())),
+        None => first.message().to_owned(),
+    };
     faults.note(Fault {
-        line: start(&first).map(line),
-        ..Fault::new("", first.message(), allowed)
+        line,
+        ..Fault::new("", found, allowed)
     });
     None
 }

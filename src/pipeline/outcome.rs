@@ -3,7 +3,7 @@
 use super::Run;
 use super::sets::TargetSets;
 use crate::colregs::Role;
-use crate::evaluation::{Safety, facts, outcome_word, without_rules};
+use crate::evaluation::{Safety, outcome_word, without_rules};
 use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
 use crate::planner::Outcome;
 
@@ -132,15 +132,6 @@ impl Run {
         let ended = Verdict::of(self).word();
         let word = outcome_word(ended, self.safety(), self.greatest_risk());
         without_rules(word, self.gives_up_rules())
-    }
-
-    /// The title, the outcome, and for a plan whether it is verified and safe.
-    pub fn headline(&self) -> String {
-        let word = self.word();
-        let facts = self.evaluation.as_ref().map_or_else(String::new, |found| {
-            format!(" ({})", facts(found.verified(), self.safe()))
-        });
-        format!("{}: {word}{facts}", self.scenario.title)
     }
 
     /// The largest risk along the plan toward any target; 0 without one.

@@ -22,6 +22,10 @@ const RTZ_RADIUS_NMI: f64 = 5.0;
 /// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
+/// Metres and radians: a shorter and smaller turn beside a waypoint is none of its own.
+const SLIVER_M: f64 = 1.0;
+const SLIVER_RAD: f64 = 0.01;
+
 /// Format of a route, by the ending of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RouteFormat {
@@ -230,6 +234,10 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
             all[last].stay += motion.duration;
             continue;
         }
+        let last = all[all.len() - 1].place;
+        if is_sliver(motion) && (motion.start.position - last).norm() < SLIVER_M {
+            continue;
+        }
         if motion.is_arc() {
             all.extend(corners(motion).map(|(place, radius)| at(place, radius, motion.speed)));
         }
@@ -246,6 +254,12 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         all.push(Waypoint { stay: 0.0, ..only });
     }
     all
+}
+
+/// True for a turn that no chart shows.
+fn is_sliver(motion: &Segment) -> bool {
+    let turned = (motion.turn_rate * motion.duration).abs();
+    motion.length() < SLIVER_M && turned < SLIVER_RAD
 }
 
 /// The corners whose lines touch a turn, and its radius.
@@ -288,7 +302,7 @@ fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, Ro
         let _ = writeln!(
             text,
             "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.8}\" \
-             lon=\"{lon_deg}\"/>{leg}</waypoint>"
+             lon=\"{lon_deg:.8}\"/>{leg}</waypoint>"
         );
         let speed = knots_from_mps(waypoint.speed);
         let stay = match waypoint.stay {

@@ -7,8 +7,11 @@ use kuva::render::plots::Plot;
 
 use super::Stroke;
 use super::outline::{area, curve};
-use crate::frame::Vector;
+use super::render::shortened;
+use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, Window};
+use crate::vessel::Hull;
+use std::f64::consts::FRAC_PI_4;
 
 /// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
@@ -29,8 +32,30 @@ const LIFT: f64 = 16.0;
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_FRAME: f64 = 26.0;
 
+/// Letters of a title that fit above a panel.
+const LETTERS: usize = 58;
+
 /// Font size of a note in pixels.
 const NOTE_SIZE: u32 = 11;
+
+/// Shortest ship in pixels, and the beam of one of that length.
+const SHIP: f64 = 15.0;
+const BROAD: f64 = 0.4;
+
+/// Corners of a ship in lengths ahead and beams to port.
+const SHAPE: [[f64; 2]; 5] = [
+    [0.5, 0.0],
+    [0.1, 0.5],
+    [-0.5, 0.5],
+    [-0.5, -0.5],
+    [0.1, -0.5],
+];
+
+/// Pixels between a position and its text, the nearest first.
+const LABEL_PX: [f64; 3] = [7.0, 14.0, 24.0];
+
+/// Sides of a position in eighths of a circle from east, in order of preference.
+const SIDES: [usize; 8] = [2, 6, 0, 4, 1, 3, 7, 5];
 
 /// One pair of axes and its content.
 pub struct Panel {
@@ -41,6 +66,9 @@ pub struct Panel {
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     notes: Vec<TextAnnotation>,
+    /// What labels keep clear of: texts and ships, and lines.
+    taken: Vec<Window>,
+    lines: Vec<Vec<Vector>>,
 }
 
 impl Panel {
@@ -64,6 +92,8 @@ impl Panel {
             plots: Vec::new(),
             legend: Vec::new(),
             notes: Vec::new(),
+            taken: Vec::new(),
+            lines: Vec::new(),
         }
     }
 
@@ -110,6 +140,7 @@ impl Panel {
     /// Draws a polyline, closed on request.
     pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
         self.plots.push(curve(points, closed, stroke));
+        self.lines.push(points.to_vec());
     }
 
     /// Adds a text at a position.
@@ -118,13 +149,55 @@ impl Panel {
         self.notes.push(note);
     }
 
-    /// Adds a text on one side of a position, in the direction of a unit vector.
-    pub(super) fn note_beside(&mut self, text: &str, at: Vector, side: Vector) {
+    /// Metres of a pixel.
+    fn pixel(&self) -> f64 {
+        self.window.size().x / AREA[0]
+    }
+
+    /// Draws a ship: its hull, or a symbol of the same course where the hull would be too small.
+    pub(super) fn ship(&mut self, hull: &Hull, pose: &Pose, colour: &str) {
+        let least = SHIP * self.pixel();
+        let (length, beam) = if hull.length < least {
+            (least, BROAD * least)
+        } else {
+            (hull.length, hull.beam)
+        };
+        let corners = SHAPE.map(|[x, y]| Vector::new(x * length, y * beam));
+        let corners = corners.map(|corner| pose.world_coordinates(corner));
+        self.fill_hull(&corners, colour, 1.0);
+        self.taken.extend(Window::around(&corners));
+    }
+
+    /// Adds a text beside a position, where it covers least of what is there: the frame, texts and
+    /// ships first, then lines.
+    pub(super) fn label(&mut self, text: &str, at: Vector) {
         let size = f64::from(NOTE_SIZE);
-        let half_width = 0.3 * size * text.chars().count() as f64;
-        // a note is above its position
-        let off = Vector::new(side.x * (half_width + size), side.y * 1.4 * size - size);
-        self.note(text, at + off * (self.window.size().x / AREA[0]));
+        let half = Vector::new(0.3 * size * text.chars().count() as f64, 0.5 * size);
+        let place = |(far, side): (f64, usize)| {
+            let side = direction(FRAC_PI_4 * side as f64);
+            let off = Vector::new(side.x * (half.x + far), side.y * (half.y + far));
+            let center = at + off * self.pixel();
+            let half = half * self.pixel();
+            Window::new(center - half, center + half)
+        };
+        let places = LABEL_PX
+            .iter()
+            .flat_map(|far| SIDES.map(|side| place((*far, side))));
+        let cost = |place: &Window| {
+            let [low, high] = [place.low, place.high].map(|corner| self.window.contains(corner));
+            let covered = self.taken.iter().filter(|other| other.meets(place)).count();
+            let crossed = (self.lines.iter())
+                .filter(|line| crosses(line, place))
+                .count();
+            let cut = usize::from(!low) + usize::from(!high);
+            (cut, covered, crossed)
+        };
+        if let Some(best) = places.min_by_key(cost) {
+            // a note is above its position
+            let at = best.center() - Vector::new(0.0, size * self.pixel());
+            self.note(text, at);
+            self.taken.push(best);
+        }
     }
 
     /// Height in pixels below the area for a legend with this many lines.
@@ -154,7 +227,7 @@ impl Panel {
         let Window { low, high } = self.window;
         let [left, _, top] = MARGIN;
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
-            .with_title(self.title.as_str())
+            .with_title(shortened(&self.title, LETTERS))
             .with_x_label(self.axes[0].as_str())
             .with_y_label(self.axes[1].as_str())
             .with_x_axis_min(low.x)
@@ -164,7 +237,7 @@ impl Panel {
             .with_ticks(6)
             .with_box_axes()
             .with_show_grid(false)
-            .with_title_size(15)
+            .with_title_size(13)
             .with_label_size(13)
             .with_tick_size(11)
             .with_body_size(11)
@@ -188,6 +261,23 @@ impl Panel {
     }
 }
 
+/// True where a line runs through a box.
+fn crosses(line: &[Vector], place: &Window) -> bool {
+    let Window { low, high } = *place;
+    let corners = [
+        low,
+        high,
+        Vector::new(low.x, high.y),
+        Vector::new(high.x, low.y),
+    ];
+    line.windows(2).any(|side| {
+        let normal = to_port(side[1] - side[0]);
+        let off = corners.map(|corner| normal.dot(&(corner - side[0])));
+        let divided = off.iter().any(|d| *d > 0.0) && off.iter().any(|d| *d < 0.0);
+        divided && Window::around(side).is_some_and(|side| side.meets(place))
+    })
+}
+
 /// Bounding box of points, with a margin of `share` of its longer side. Without finite points, a
 /// window of size 1 around the origin.
 pub(super) fn window_around(points: impl IntoIterator<Item = Vector>, share: f64) -> Window {
@@ -204,4 +294,42 @@ fn with_ratio(window: Window, ratio: f64) -> Window {
     let half = Vector::new(size.x.max(size.y * ratio), size.y.max(size.x / ratio)) * 0.5;
     let middle = window.center();
     Window::new(middle - half, middle + half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel() -> Panel {
+        let window = Window::new(Vector::zeros(), Vector::new(1000.0, 825.0));
+        Panel::plan("Chart".to_owned(), ["East [m]", "North [m]"], window)
+    }
+
+    #[test]
+    fn labels_keep_off_each_other_and_off_the_frame() {
+        let mut panel = panel();
+        for (at, count) in [(Vector::new(500.0, 400.0), 6), (Vector::new(2.0, 2.0), 2)] {
+            for k in 0..count {
+                panel.label(&format!("{k}00 s"), at);
+            }
+        }
+        let taken = &panel.taken;
+        assert_eq!(taken.len(), 8);
+        for (k, here) in taken.iter().enumerate() {
+            assert!(panel.window.contains(here.low) && panel.window.contains(here.high));
+            assert!(taken[..k].iter().all(|other| !other.meets(here)));
+        }
+    }
+
+    #[test]
+    fn a_label_stands_beside_the_line_through_its_place() {
+        let ends = [Vector::new(0.0, 400.0), Vector::new(1000.0, 420.0)];
+        for line in [ends, ends.map(|p| Vector::new(p.y, p.x))] {
+            let mut panel = panel();
+            panel.curve(&line, false, Stroke::solid("#000000", 1.0));
+            panel.label("600 s", 0.5 * (line[0] + line[1]));
+            assert!(!crosses(&line, &panel.taken[0]));
+            assert!(crosses(&line, &Window::at(line[1]).grown(1.0)));
+        }
+    }
 }

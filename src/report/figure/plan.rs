@@ -4,26 +4,32 @@
 use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
-use super::outline::{area, curve, mark, sampled_boundary};
+use super::outline::{area, curve, sampled_boundary};
 use super::panel::window_around;
 use super::path_time::{run_panel, target_colour};
-use super::sections::{PLAN, seconds, seconds_list, sections_beside};
+use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Stroke};
-use crate::document;
+use crate::colregs::Role;
+use crate::document::{self, PlanDocument};
 use crate::evaluation::Safety;
-use crate::frame::Vector;
+use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Window};
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::Obstacle;
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
 use crate::scenario::{Land, Scenario};
+use crate::text::tenths;
 use crate::trajectory::Trajectory;
+use crate::vessel::Hull;
 
 /// Stroke of the desired trajectory.
 pub(super) const DESIRED: Stroke = Stroke::dashed("#777777", 1.4);
 
 /// Stroke of the planned trajectory.
 pub(super) const PLANNED: Stroke = Stroke::solid("#000000", 2.4);
+
+/// Stroke between the centres of the hulls at the closest approach.
+const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.6);
 
 /// Stroke of alternative paths.
 const ALTERNATIVE: Stroke = Stroke::solid("#b0b0b0", 1.4);
@@ -40,7 +46,7 @@ const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 /// Most instants after the start at which the sets are drawn.
 pub(super) const INSTANTS: f64 = 4.0;
 
-/// Least distance between the times of two sets, as a fraction of the width of the chart.
+/// Least distance between two ships with a time each, as a fraction of the width of the chart.
 const LABELS_APART: f64 = 0.04;
 
 /// Seconds between instants that are drawn.
@@ -66,7 +72,7 @@ const MOST_POINTS: u32 = 5_000;
 pub fn plan_figure(run: &Run) -> Figure {
     let title = match run.safety() {
         None | Some(Safety::Safe) => run.scenario.title.clone(),
-        Some(_) => run.headline(),
+        Some(_) => document::headline(&PlanDocument::of(run)),
     };
     Figure::new(2, plan_panels(run)).titled(&title)
 }
@@ -75,7 +81,8 @@ pub fn plan_figure(run: &Run) -> Figure {
 pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
-    let mut panels = vec![chart_panel("Chart", run)];
+    let verdict = document::verdict_line(&PlanDocument::of(run));
+    let mut panels = vec![chart_panel(&verdict, run)];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(motion));
     }
@@ -106,54 +113,203 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
 
 /// Draws the chart with `others` above the sets and below the plan.
 fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
+    let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
-    let desired = run.scenario.desired.duration();
-    let end = trajectory.map_or(desired, |t| t.end_time());
-    let end = end.min(run.scenario.horizon);
+    let end = trajectory.map_or(scenario.desired.duration(), Trajectory::end_time);
+    let end = end.min(scenario.horizon);
     let times = round_times(end, INSTANTS);
-    let at = |t: &Trajectory, time: f64| t.pose_at(time).position;
-    let sampled = trajectory.map(|t| t.sample_times(STEP, MOST_POINTS));
-    let track = trajectory.zip(sampled);
-    let track = track.map(|(t, sampled)| sampled.into_iter().map(|time| at(t, time)).collect());
-    let own = trajectory.map(|t| times.iter().map(|time| at(t, *time)).collect());
+    let sampled = match trajectory {
+        Some(trajectory) => trajectory.sample_times(STEP, MOST_POINTS),
+        None => vec![0.0, end],
+    };
     let obstacles: Vec<&Obstacle> = run.obstacles().collect();
-    let own: Vec<Vector> = own.unwrap_or_default();
+    let targets = scenario.targets.iter().zip(&obstacles).zip(&run.targets);
+    let targets = targets.map(|((target, obstacle), outcome)| Charted {
+        key: match outcome.sets.encounter.role {
+            Role::None => format!("{}: set and nominal track", target.name),
+            role => format!("{}, {}: set and nominal track", target.name, role.name()),
+        },
+        hull: target.ship().map(|ship| ship.hull),
+        track: sampled
+            .iter()
+            .map(|time| target.position_at(*time))
+            .collect(),
+        poses: (times.iter())
+            .map(|time| target.ship().map(|ship| ship.pose_at(*time)))
+            .collect(),
+        areas: (times.iter())
+            .map(|time| sampled_boundary(&obstacle.section(*time)))
+            .collect(),
+    });
+    let targets: Vec<Charted> = targets.collect();
+    let pose = |time: &f64| trajectory.map(|t| t.pose_at(*time));
+    let passages = run.evaluation.iter().flat_map(|judged| &judged.passages);
+    let nearest = passages
+        .zip(&scenario.targets)
+        .min_by(|(a, _), (b, _)| a.dcpa.total_cmp(&b.dcpa));
+    let closest = nearest.and_then(|(passage, target)| {
+        let ends = [
+            pose(&passage.tcpa)?.position,
+            target.position_at(passage.tcpa),
+        ];
+        let (apart, time) = (tenths(passage.dcpa), passage.tcpa);
+        let label = format!(
+            "closest approach: {apart} m to {} at {time:.0} s",
+            target.name
+        );
+        Some((ends, label))
+    });
     let traffic = Traffic {
-        track: track.unwrap_or_default(),
-        own: own.clone(),
-        times: times.clone(),
-        targets: obstacles.iter().map(|o| o.name()).collect(),
-        area: &|target, time| sampled_boundary(&obstacles[target].section(time)),
-        words: ["planned", "sets", "set of "],
-        dashed: true,
+        own: times.iter().filter_map(pose).collect(),
+        track: (sampled.iter().filter_map(pose))
+            .map(|pose| pose.position)
+            .collect(),
+        times,
+        targets,
+        planned: "planned",
+        closest,
         others,
     };
-    let mut panel = traffic_chart(title, &run.scenario, traffic);
-    let apart = LABELS_APART * panel.window().size().x;
-    let mut labelled: Vec<Vector> = Vec::new();
-    for (k, time) in times.iter().enumerate() {
-        let label = format!("{} s", seconds(*time));
-        let sections = obstacles
-            .iter()
-            .map(|o| middle(&sampled_boundary(&o.section(*time))));
-        let sections: Vec<Vector> = sections.filter(|p| panel.window().contains(*p)).collect();
-        if let Some(own) = own.get(k) {
-            let distance = |p: &&Vector| (**p - own).norm();
-            let nearest = sections
-                .iter()
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            // above or below, so that no frame cuts it
-            let north = nearest.map_or(1.0, |p| (own.y - p.y).signum());
-            panel.note_beside(&label, *own, Vector::new(0.0, north));
-            labelled.push(*own);
+    traffic_chart(title, scenario, traffic)
+}
+
+/// A target of a chart.
+pub(super) struct Charted {
+    /// The words of the legend.
+    pub key: String,
+    /// Its hull, if it has one.
+    pub hull: Option<Hull>,
+    /// Its track, which may be empty.
+    pub track: Vec<Vector>,
+    /// Where it is at each of the times, if it is known.
+    pub poses: Vec<Option<Pose>>,
+    /// The boundary of its set at each of the times; empty without one.
+    pub areas: Vec<Vec<Vector>>,
+}
+
+/// What a chart shows at the same times.
+pub(super) struct Traffic {
+    /// Own ship's track; empty without one.
+    pub track: Vec<Vector>,
+    /// Times in seconds.
+    pub times: Vec<f64>,
+    /// Own ship at these times; empty without a track.
+    pub own: Vec<Pose>,
+    pub targets: Vec<Charted>,
+    /// What own ship's track is.
+    pub planned: &'static str,
+    /// Where own ship and a target are closest, and the words of the legend.
+    pub closest: Option<([Vector; 2], String)>,
+    /// Drawn above the areas and below own ship.
+    pub others: Vec<Plot>,
+}
+
+/// Draws the mission, land, the targets and own ship, with the times beside the ships.
+pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) -> Panel {
+    let waypoints = scenario.desired.waypoints();
+    let paths = scenario.alternatives.iter().flatten();
+    let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
+        .copied()
+        .collect();
+    let reach = window_around(shown.iter().copied(), 0.3);
+    // distant areas and ships are clipped
+    let within = |p: &Vector| reach.contains(*p);
+    for target in &traffic.targets {
+        let areas = target.areas.iter().filter(|area| area.iter().any(within));
+        shown.extend(areas.flatten().copied().filter(within));
+        let places = target.poses.iter().flatten().map(|pose| pose.position);
+        shown.extend(places.filter(within));
+    }
+    let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.09));
+    let window = panel.window();
+    let land = scenario.land.as_ref();
+    panel.plots.extend(land_areas(land, window));
+    for (index, target) in traffic.targets.iter().enumerate() {
+        let colour = target_colour(index);
+        for (k, area) in target.areas.iter().enumerate() {
+            let opacity = 0.10 + 0.30 * (1.0 - k as f64 / traffic.times.len() as f64);
+            panel.fill_hull(area, colour, opacity);
+            let outline = Stroke {
+                dashed: k > 0,
+                ..Stroke::solid(colour, 0.8)
+            };
+            panel.curve(area, true, outline);
         }
-        for section in sections {
-            // a set that hardly moves is named once
-            if labelled.iter().all(|p| (p - section).norm() > apart) {
-                panel.note(&label, section);
-                labelled.push(section);
+    }
+    for path in &scenario.alternatives {
+        panel.curve(path, false, ALTERNATIVE);
+    }
+    panel.plots.extend(traffic.others);
+    panel.curve(&waypoints, false, DESIRED);
+    for (index, target) in traffic.targets.iter().enumerate() {
+        panel.curve(
+            &target.track,
+            false,
+            Stroke::solid(target_colour(index), 1.2),
+        );
+    }
+    if let Some((ends, _)) = &traffic.closest {
+        panel.curve(ends, false, CLOSEST);
+    }
+    panel.curve(&traffic.track, false, PLANNED);
+    let times = traffic
+        .times
+        .iter()
+        .map(|time| format!("{} s", seconds(*time)));
+    let times: Vec<String> = times.collect();
+    // with several targets their numbers stand before the times
+    let number = |index: usize| match traffic.targets.len() {
+        1 => String::new(),
+        _ => format!("{}: ", index + 1),
+    };
+    let mut labels: Vec<(String, Vector)> = Vec::new();
+    for (pose, time) in traffic.own.iter().zip(&times) {
+        panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
+        labels.push((time.clone(), pose.position));
+    }
+    for (index, target) in traffic.targets.iter().enumerate() {
+        for (k, (place, time)) in target.poses.iter().zip(&times).enumerate() {
+            let place = match (place, target.hull, target.areas.get(k)) {
+                (Some(pose), Some(hull), _) => {
+                    panel.ship(&hull, pose, target_colour(index));
+                    pose.position
+                }
+                (_, _, Some(area)) if !area.is_empty() => middle(area),
+                _ => continue,
+            };
+            if window.contains(place) {
+                labels.push((format!("{}{time}", number(index)), place));
             }
         }
+    }
+    // a ship that hardly moves is named once, own ship first
+    let apart = LABELS_APART * window.size().x;
+    let mut named: Vec<Vector> = Vec::new();
+    for (label, place) in labels {
+        if named.iter().all(|p| (p - place).norm() > apart) {
+            panel.label(&label, place);
+            named.push(place);
+        }
+    }
+    if !traffic.track.is_empty() {
+        panel.line_key(&format!("own ship, {}", traffic.planned), PLANNED);
+    }
+    panel.line_key("desired", DESIRED);
+    if land.is_some() {
+        panel.line_key("land", Stroke::solid(LAND, 3.0));
+    }
+    for (index, target) in traffic.targets.iter().enumerate() {
+        let stroke = Stroke::solid(target_colour(index), 3.0);
+        let places = target.poses.iter().flatten().map(|pose| pose.position);
+        let all = target.areas.iter().flatten().copied().chain(places);
+        let place = match all.into_iter().any(|place| window.contains(place)) {
+            true => "",
+            false => ", outside the chart",
+        };
+        panel.line_key(&format!("{}{}{place}", number(index), target.key), stroke);
+    }
+    if let Some((_, label)) = &traffic.closest {
+        panel.line_key(label, CLOSEST);
     }
     panel
 }
@@ -161,86 +317,6 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
 /// Mean of the points of a boundary.
 fn middle(boundary: &[Vector]) -> Vector {
     boundary.iter().sum::<Vector>() / boundary.len() as f64
-}
-
-/// Own ship's track and the area of each target at the same times.
-pub(super) struct Traffic<'a> {
-    /// Own ship's track; empty without one.
-    pub track: Vec<Vector>,
-    /// Times in seconds.
-    pub times: Vec<f64>,
-    /// Own ship's positions at these times; empty without a track.
-    pub own: Vec<Vector>,
-    /// Names of the targets.
-    pub targets: Vec<&'a str>,
-    /// Boundary of a target's area, by its index, at a time.
-    pub area: &'a dyn Fn(usize, f64) -> Vec<Vector>,
-    /// Legend: the track, all areas, the area of one target.
-    pub words: [&'static str; 3],
-    /// True where areas after the first time are dashed.
-    pub dashed: bool,
-    /// Drawn above the areas and below own ship.
-    pub others: Vec<Plot>,
-}
-
-/// Draws the mission, land, the targets and own ship.
-pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) -> Panel {
-    let [sailed, all, area_of] = traffic.words;
-    let waypoints = scenario.desired.waypoints();
-    let paths = scenario.alternatives.iter().flatten();
-    let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
-        .copied()
-        .collect();
-    let reach = window_around(shown.iter().copied(), 0.3);
-    // distant areas are clipped
-    let within = |p: &Vector| reach.contains(*p);
-    let mut areas: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
-    for index in 0..traffic.targets.len() {
-        for (k, time) in traffic.times.iter().enumerate() {
-            let boundary = (traffic.area)(index, *time);
-            if boundary.iter().any(within) {
-                shown.extend(boundary.iter().copied().filter(within));
-                areas.push((index, k, boundary));
-            }
-        }
-    }
-    let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.06));
-    let land = scenario.land.as_ref();
-    panel.plots.extend(land_areas(land, panel.window()));
-    for (index, k, boundary) in &areas {
-        let colour = target_colour(*index);
-        let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / traffic.times.len() as f64);
-        panel.fill_hull(boundary, colour, opacity);
-        let outline = Stroke {
-            dashed: traffic.dashed && *k > 0,
-            ..Stroke::solid(colour, 1.0)
-        };
-        panel.curve(boundary, true, outline);
-    }
-    for path in &scenario.alternatives {
-        panel.curve(path, false, ALTERNATIVE);
-    }
-    panel.plots.extend(traffic.others);
-    panel.curve(&waypoints, false, DESIRED);
-    if !traffic.track.is_empty() {
-        panel.curve(&traffic.track, false, PLANNED);
-        for at in &traffic.own {
-            panel.plots.push(mark(*at, PLANNED.colour));
-        }
-        panel.line_key(sailed, PLANNED);
-        let list = seconds_list(&traffic.times);
-        let label = format!("own ship, and {all}, at {list} s");
-        panel.point_key(&label, PLANNED.colour);
-    }
-    panel.line_key("desired", DESIRED);
-    if land.is_some() {
-        panel.line_key("land", Stroke::solid(LAND, 3.0));
-    }
-    for (index, name) in traffic.targets.iter().enumerate() {
-        let stroke = Stroke::solid(target_colour(index), 3.0);
-        panel.line_key(&format!("{area_of}{name}"), stroke);
-    }
-    panel
 }
 
 /// Chart of a run of the space-time planner with every collision-free motion found by its search.

@@ -16,7 +16,7 @@ const PNG_SCALE: f32 = 2.0;
 
 /// Font size of a title in pixels, and the number of letters that fit above one panel.
 const TITLE_SIZE: u32 = 18;
-const LETTERS: usize = 54;
+const LETTERS: usize = 44;
 
 /// Prefix of clip path names in the drawing library. A process-wide counter follows it.
 const CLIP: &str = "kuva-clip-";
@@ -81,15 +81,8 @@ impl Figure {
 
     /// Sets a title above all panels, shortened to their width.
     pub fn titled(self, title: &str) -> Self {
-        let fits = self.columns.max(1) * LETTERS;
-        let title = if title.chars().count() > fits {
-            let kept: String = title.chars().take(fits - 1).collect();
-            format!("{}…", kept.trim_end())
-        } else {
-            title.to_owned()
-        };
         Self {
-            title: Some(title),
+            title: Some(shortened(title, self.columns.max(1) * LETTERS)),
             ..self
         }
     }
@@ -153,6 +146,15 @@ impl Figure {
         };
         Ok(write_atomically(file, &bytes)?)
     }
+}
+
+/// A text of at most so many letters.
+pub(super) fn shortened(text: &str, letters: usize) -> String {
+    if text.chars().count() <= letters {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(letters.saturating_sub(1)).collect();
+    format!("{}…", kept.trim_end())
 }
 
 /// Renumbers the clip paths from 0, so that equal figures give equal bytes.

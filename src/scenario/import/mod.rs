@@ -58,7 +58,10 @@ fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
     let root = document.root_element().tag_name().name();
     if root != "commonOcean" {
         let found = format_args!("XML that begins with {root}");
-        let allowed = "a CommonOcean scenario (commonOcean)";
+        let allowed = match root {
+            "route" => "a scenario: one whose [mission] has 'route' reads this file",
+            _ => "a CommonOcean scenario (commonOcean)",
+        };
         return Err(vec![Fault::new(root, found, allowed)]);
     }
     Ok(Contents::Situations(commonocean::situations(&document)?))
