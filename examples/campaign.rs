@@ -102,7 +102,13 @@ enum Campaign {
         starboard_turn: f64,
     },
     /// Traffic among land, a third of the scenes in each of three waters
-    Harbour(Scenes<300>),
+    Harbour {
+        #[command(flatten)]
+        scenes: Scenes<300>,
+        /// Sail them in the closed loop, half of them under the rules
+        #[arg(long)]
+        sail: bool,
+    },
     /// The path-time planner against a fine grid: least time, error, ellipsoids and alternatives
     PathTime(Scenes<7_000>),
     /// The optimal-control planner on random scenes and from random starts
@@ -205,7 +211,8 @@ fn run(campaign: Campaign) -> Report {
             };
             simulation::run(scenes.of_each(5), &meeting, &how)
         }
-        Campaign::Harbour(scenes) => harbour::run(scenes.of_each(3)),
+        Campaign::Harbour { scenes, sail: true } => harbour::sail_all(scenes.of_each(2)),
+        Campaign::Harbour { scenes, .. } => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
         Campaign::Control { count, starts } => {
             let mut report = control::run_scenes(count.div_ceil(2));

@@ -7,8 +7,9 @@
 use std::path::Path;
 
 use searoom::pipeline;
-use searoom::report::figure::{comparison_figure, plan_figure};
+use searoom::report::figure::{comparison_figure, plan_figure, simulation_figure};
 use searoom::scenario::Scenario;
+use searoom::simulation::Simulation;
 use searoom::study::compare::compare;
 
 /// Output folder.
@@ -22,6 +23,9 @@ const PLANS: [&str; 5] = [
     "harbour/ferry-crossing",
     "paper/figure_9",
 ];
+
+/// Scenario that is sailed in the closed loop.
+const SAILED: &str = "closed-loop/harbour-ferries";
 
 /// Scenario of the comparison, and its accepted risks.
 const COMPARED: (&str, [f64; 4]) = ("colregs/give-way", [0.0, 0.1, 0.2, 0.4]);
@@ -42,6 +46,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let run = pipeline::run(read(name)?);
         plan_figure(&run).write(&picture(name, ""))?;
     }
+    let scenario = read(SAILED)?;
+    let mut simulation = Simulation::new(scenario.clone(), false).map_err(|f| f.to_string())?;
+    while !simulation.finished() {
+        simulation.step();
+    }
+    simulation_figure(&scenario, &simulation.record()).write(&picture(SAILED, ""))?;
     let (name, risks) = COMPARED;
     let scenario = read(name)?;
     let entries = compare(&scenario, &risks);

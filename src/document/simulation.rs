@@ -18,7 +18,7 @@ pub struct SimulationDocument {
     pub build: String,
     pub scenario: String,
     pub settings: SimulationSettingsDocument,
-    /// True without a contact, and where every plan was safe and in time.
+    /// True without a contact with a hull or land, and where every plan was safe and in time.
     pub safe: bool,
     pub contact: bool,
     pub arrived: bool,
@@ -26,6 +26,9 @@ pub struct SimulationDocument {
     pub interrupted: bool,
     pub duration_s: f64,
     pub targets: Vec<SimulatedTargetDocument>,
+    /// Null without a map.
+    #[serde(default)]
+    pub land: Option<SailedLandDocument>,
     pub conduct: SailedDocument,
     pub alarms: Vec<AlarmDocument>,
     pub replans: Vec<ReplanDocument>,
@@ -105,6 +108,19 @@ pub struct SimulatedTargetDocument {
     pub track: Vec<StateDocument>,
     #[serde(flatten)]
     pub conduct: ConductDocument,
+}
+
+/// Own hull and the land.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SailedLandDocument {
+    /// Least distance of own hull from land, null where it is no number; negative on land. Infinite
+    /// distances, without any land in the map, are null too, and `grounded` is then false.
+    pub least_m: Option<f64>,
+    pub least_t_s: f64,
+    /// True where own hull touched land.
+    pub grounded: bool,
+    /// The convex pieces of land as near as the nearest, metres.
+    pub polygons_m: Vec<Vec<[f64; 2]>>,
 }
 
 /// Own ship's conduct over the whole simulation.

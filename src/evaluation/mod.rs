@@ -40,9 +40,11 @@ use safety::{Claim, collision, grounding};
 use std::collections::HashMap;
 
 use crate::frame::Side;
+use crate::geometry::Polygon;
 use crate::parallel;
 use crate::tolerance;
 use crate::trajectory::Segment;
+use crate::vessel::Hull;
 
 /// One violated requirement.
 #[derive(Debug, Clone, PartialEq)]
@@ -257,6 +259,14 @@ fn meetings<P: Piece>(
         passages.push(passage);
     }
     (passages, worst)
+}
+
+/// Least signed distance between a hull and land along a motion, metres, and when; negative on land,
+/// infinite without land. O(log edges) per segment, and probes for the near edges.
+pub(crate) fn least_land_distance(land: &[Polygon], motion: &[Segment], own: &Hull) -> (f64, f64) {
+    let (body, reach) = (Body::hull(own), own.half_diagonal());
+    let least = LandBodies::new(land).least_distance(motion, body, reach);
+    (least.value, least.time)
 }
 
 /// Least distance to land along a chain of pieces. Violations are added only if `judged` is true.

@@ -60,10 +60,11 @@ pub fn simulations_line(simulations: &[SimulationDocument], failed: usize) -> St
 
 /// Formats whether ships met, and whether own ship arrived.
 pub(super) fn headline(simulation: &SimulationDocument) -> String {
-    let met: Vec<&str> = (simulation.targets.iter())
+    let met = (simulation.targets.iter())
         .filter(|target| target.contact_t_s.is_some())
-        .map(|target| target.name.as_str())
-        .collect();
+        .map(|target| target.name.as_str());
+    let land = simulation.land.iter().filter(|land| land.grounded);
+    let met: Vec<&str> = met.chain(land.map(|_| "land")).collect();
     let outcome = match (simulation.contact, simulation.safe) {
         (true, _) => format!("CONTACT with {}", met.join(", ")),
         (false, true) => "no contact, every plan safe".to_owned(),
@@ -137,7 +138,19 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
     };
     let plans = simulation.replans.len();
     let kept = simulation.replans.iter().filter(|r| r.keeps_plan).count();
-    vec![
+    let land = simulation.land.as_ref().map(|land| {
+        let text = match (land.least_m, land.grounded) {
+            (Some(metres), _) => format!(
+                "{} m off at least, at {:.0} s",
+                tenths(metres),
+                land.least_t_s
+            ),
+            (None, true) => "touched".to_owned(),
+            (None, false) => "none in the map".to_owned(),
+        };
+        ("Land", text)
+    });
+    let mut lines = vec![
         (
             "Sailed",
             format!(
@@ -178,7 +191,9 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
                 timing.quantile_ms(1.0)
             ),
         ),
-    ]
+    ];
+    lines.splice(1..1, land);
+    lines
 }
 
 /// A row per target: both judges on what was sailed.

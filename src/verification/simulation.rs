@@ -6,10 +6,12 @@ use serde::de::IgnoredAny;
 use super::claim::{ClaimError, fault};
 use super::mismatch;
 use super::motion::segment;
-use crate::document::{SIMULATION_FORMAT, SimulationDocument, SimulationsDocument, StateDocument};
-use crate::evaluation::{Body, MovingSlabs, Violation};
-use crate::frame::Pose;
-use crate::geometry::ConvexPolygon;
+use crate::document::{
+    SIMULATION_FORMAT, SailedLandDocument, SimulationDocument, SimulationsDocument, StateDocument,
+};
+use crate::evaluation::{Body, MovingSlabs, Violation, least_land_distance};
+use crate::frame::{Pose, Vector};
+use crate::geometry::{ConvexPolygon, Polygon};
 use crate::target::Uncertainty;
 use crate::trajectory::Segment;
 use crate::vessel::Hull;
@@ -188,6 +190,26 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
         contact |= target.contact_t_s.is_some() || met;
         least_clearance = least_clearance.min(least);
     }
+    if let Some(land) = &document.land {
+        let (least, allowed) = land_distance((&sailed, &gaps), &own, land);
+        // a NaN is a contact, and what cannot be told apart is one
+        let grounded = !(least > allowed);
+        let is_wrong = match land.grounded {
+            true => least > 2.0 * allowed,
+            false => grounded,
+        };
+        if is_wrong {
+            violations.push(mismatch("land.grounded", land.grounded, grounded));
+        }
+        let claimed = land.least_m.unwrap_or(f64::INFINITY);
+        let same =
+            grounded && land.grounded || claimed == least || (claimed - least).abs() <= allowed;
+        if !same {
+            let (claimed, least) = (format!("{claimed} m"), format!("{least} m"));
+            violations.push(mismatch("land.least_m", claimed, least));
+        }
+        contact |= land.grounded || grounded;
+    }
     if contact != document.contact {
         violations.push(mismatch("contact", document.contact, contact));
     }
@@ -342,6 +364,27 @@ fn least_distance(
         }
     }
     least
+}
+
+/// The least distance of own hull from the land of a document, metres, and by how much it may
+/// differ. A piece that is no polygon is everywhere.
+fn land_distance(
+    (sailed, gaps): (&[Segment], &[f64]),
+    own: &Hull,
+    land: &SailedLandDocument,
+) -> (f64, f64) {
+    let ring = |ring: &Vec<[f64; 2]>| -> Vec<Vector> {
+        ring.iter().map(|[x, y]| Vector::new(*x, *y)).collect()
+    };
+    let pieces = land
+        .polygons_m
+        .iter()
+        .map(|piece| Polygon::new(&[ring(piece)]));
+    let allowed = DISTANCE_M + gaps.iter().copied().fold(0.0, f64::max);
+    match pieces.collect::<Result<Vec<Polygon>, _>>() {
+        Ok(pieces) => (least_land_distance(&pieces, sailed, own).0, allowed),
+        Err(_) => (f64::NAN, allowed),
+    }
 }
 
 /// Where a target is that has kept its course and speed since a state.

@@ -5,16 +5,19 @@ use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use searoom::document::SimulationDocument;
 use searoom::frame::{Geographic, Georeference, Pose, Vector, direction};
 use searoom::map::Map;
 use searoom::pipeline;
 use searoom::planner::Outcome;
-use searoom::scenario::{Land, Scenario};
+use searoom::scenario::{Compliance, Land, Scenario};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
 use super::encounter_generator::{Placement, random_traffic};
+use super::simulation::{How, Seen, Ship, Truth, sail};
 use super::statistics::spread;
 use super::{Report, Seeds};
 
@@ -169,6 +172,63 @@ pub fn run(seeds: Seeds) -> Report {
     }
     let island = seeds.filter_map(|seed| across_the_island(&map, seed));
     judge("across the island", island.collect(), &mut report);
+    report
+}
+
+/// The scenes in the fjord and along the quays, sailed among targets that do all that their sets
+/// allow.
+pub fn sail_all(seeds: Seeds) -> Report {
+    let map = harbour();
+    let mut report = Report::default();
+    let how = How {
+        truth: Truth::Extremes,
+        factor: 1.0,
+        seen: Seen::Exact,
+        ship: Ship::Kinematic,
+        replan: true,
+        starboard_turn: 0.0,
+    };
+    for waters in [&FJORD, &QUAYS] {
+        let scenes = seeds.clone().into_par_iter().map(|seed| {
+            let mut scenario = scene(&map, waters, seed);
+            scenario.compliance = [Compliance::Shape, Compliance::Rules][seed as usize % 2];
+            how.equip(&mut scenario, seed);
+            (seed, sail(scenario))
+        });
+        let all: Vec<(u64, SimulationDocument)> = scenes.collect();
+        // a start without a way out is known before anything is sailed
+        let clear = all.iter().filter(|(_, s)| s.replans[0].safe);
+        let clear: Vec<&(u64, SimulationDocument)> = clear.collect();
+        let off = |s: &SimulationDocument| {
+            let land = s.land.as_ref().and_then(|land| land.least_m);
+            land.unwrap_or(f64::NEG_INFINITY)
+        };
+        let near = |s: &SimulationDocument| off(s) < waters.land_margin - 1e-6;
+        let lost = |s: &SimulationDocument| s.conduct.lost_remainders > 0;
+        let (count, begun) = (all.len(), clear.len());
+        println!(
+            "{}: {count} sailed, {begun} with a safe first plan",
+            waters.name
+        );
+        let least = clear.iter().map(|(_, s)| off(s));
+        let least = least.fold(f64::INFINITY, f64::min);
+        println!("  least distance from land {least:.2} m");
+        for (what, is) in [
+            (
+                "contacts",
+                &(|s: &SimulationDocument| s.contact) as &dyn Fn(&_) -> bool,
+            ),
+            ("nearer to land than the margin", &near),
+            ("remainders lost", &lost),
+        ] {
+            let found = clear.iter().filter(|(_, s)| is(s)).map(|(seed, _)| *seed);
+            let found: Vec<u64> = found.collect();
+            report.at_most(waters.name, what, 0.0, &found, begun);
+        }
+        report.require(10 * begun >= 9 * count, || {
+            format!("{}: {begun} of {count} begin with a safe plan", waters.name)
+        });
+    }
     report
 }
 

@@ -206,7 +206,7 @@ fn plans_do_not_depend_on_the_tables_of_the_simulation() {
 fn the_shipped_closed_loops_are_sailed_without_contact() {
     let found = json("simulate scenarios/closed-loop --json");
     let all = list(&found["simulations"]);
-    assert_eq!(all.len(), 6);
+    assert_eq!(all.len(), 7);
     for sailed in all {
         let title = &sailed["scenario"];
         assert_eq!(sailed["safe"], true, "{title}");
@@ -340,6 +340,34 @@ fn every_simulation_of_a_list_is_verified() {
     let empty = folder.write("empty.json", "{\"simulations\": []}");
     let refused = searoom(&["verify", &empty]).code(2);
     says(&stderr(&refused), "empty.json: simulations: an empty list");
+}
+
+#[test]
+fn the_land_of_a_simulation_is_checked_again() {
+    let folder = Folder::new();
+    let file = "scenarios/closed-loop/harbour-ferries.toml";
+    let sailed = json(&format!("simulate {file} --json"));
+    let check = |pointer: &str, value: serde_json::Value| {
+        let mut changed = sailed.clone();
+        *changed.pointer_mut(pointer).expect(pointer) = value;
+        let name = folder.write("sailed.json", changed.to_string());
+        searoom(&["verify", &name])
+    };
+    check("/duration_s", sailed["duration_s"].clone()).success();
+    let near = sailed["sailed"][1]["start"].clone();
+    let [x, y] = ["east_m", "north_m"].map(|key| number(&near[key]));
+    let rock = serde_json::json!([[[x, y], [x + 9.0, y], [x, y + 9.0]]]);
+    for (pointer, value) in [
+        ("/land/least_m", 400.0.into()),
+        ("/land/least_m", serde_json::Value::Null),
+        ("/land/grounded", true.into()),
+        ("/land/polygons_m", serde_json::json!([])),
+        ("/land/polygons_m", serde_json::json!([[[0.0, 0.0]]])),
+        ("/land/polygons_m", rock),
+    ] {
+        let shown = stdout(&check(pointer, value).code(1));
+        assert!(shown.contains("land."), "{pointer}: {shown}");
+    }
 }
 
 #[test]

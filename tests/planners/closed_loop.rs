@@ -257,6 +257,31 @@ fn plans_on_events_keep_clear_of_targets_that_leave_their_sets() {
     }
 }
 
+/// Along quays among extreme targets, and a ship that drifts aground.
+#[test]
+fn the_loop_keeps_off_land_and_says_where_own_ship_touches_it() {
+    campaigns::harbour::sail_all(0..4).assert_met();
+    let map = campaigns::harbour::harbour();
+    let mut scenario = campaigns::harbour::scene(&map, &campaigns::harbour::QUAYS, 1);
+    scenario.targets.clear();
+    let current = &mut scenario.simulation.current;
+    // across its way, unknown to it
+    let course = scenario.own_ship.pose.ahead();
+    current.mean = Vector::new(-course.y, course.x) * 2.0;
+    let aground = [1.0, -1.0].map(|side| {
+        let mut scenario = scenario.clone();
+        scenario.simulation.current.mean *= side;
+        sail(scenario)
+    });
+    let land = aground.map(|sailed| {
+        let land = sailed.land.expect("a map");
+        assert_eq!(sailed.contact, land.grounded);
+        assert_eq!(land.grounded, land.least_m.is_some_and(|off| off <= 0.0));
+        land.grounded
+    });
+    assert!(land.contains(&true));
+}
+
 #[test]
 fn what_the_loop_cannot_sail_is_refused_with_its_place() {
     let refused = |change: &dyn Fn(&mut SimulationSettings)| -> Fault {

@@ -3,7 +3,7 @@
 use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
-use crate::frame::Vector;
+use crate::frame::{Vector, cross};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 use crate::study::compare::Stroke;
@@ -22,7 +22,10 @@ pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
 /// Draws a polyline, closed on request.
 pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
     let first = points.first().filter(|_| closed);
-    let all = points.iter().chain(first).map(|p| (p.x, p.y));
+    let all = bends(points)
+        .into_iter()
+        .chain(first.copied())
+        .map(|p| (p.x, p.y));
     let line = LinePlot::new()
         .with_data(all)
         .with_color(stroke.colour)
@@ -32,6 +35,25 @@ pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
     } else {
         line
     })
+}
+
+/// The points of a polyline without those on the straight way between their neighbours. What is left
+/// out was within this fraction of the way.
+fn bends(points: &[Vector]) -> Vec<Vector> {
+    const STRAIGHT: f64 = 1e-4;
+    let mut kept: Vec<Vector> = Vec::with_capacity(points.len());
+    for (index, point) in points.iter().enumerate() {
+        let next = kept.last().zip(points.get(index + 1));
+        let is_bend = next.is_none_or(|(last, next)| {
+            let (here, on) = (point - last, next - last);
+            // negated so that a NaN is kept
+            !(cross(here, on).abs() <= STRAIGHT * here.norm() * on.norm() && here.dot(&on) > 0.0)
+        });
+        if is_bend {
+            kept.push(*point);
+        }
+    }
+    kept
 }
 
 /// Draws a point.
@@ -191,6 +213,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_polyline_keeps_its_bends() {
+        let at = |x: f64, y: f64| Vector::new(x, y);
+        let straight: Vec<Vector> = (0..50)
+            .map(|k| at(f64::from(k), 2.0 * f64::from(k)))
+            .collect();
+        assert_eq!(bends(&straight), [straight[0], straight[49]]);
+        let there_and_back = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(1.0, 0.0)];
+        assert_eq!(
+            bends(&there_and_back),
+            [at(0.0, 0.0), at(2.0, 0.0), at(1.0, 0.0)]
+        );
+        let arc: Vec<Vector> = (0..90)
+            .map(|k| crate::frame::direction(0.01 * f64::from(k)))
+            .collect();
+        assert!(bends(&arc).len() > 80);
+        assert!(bends(&[]).is_empty());
     }
 
     #[test]

@@ -40,7 +40,7 @@ const SHORT_STEP: f64 = 1e-6;
 /// Within a step the order is: the current changes, the sensors report, the tracker takes in what
 /// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made
 /// from the data of its time, and own ship follows it from `delay` seconds later on. It begins
-/// where the last plan has own ship then. Contacts are tested in continuous time.
+/// where the last plan has own ship then. Contacts with hulls and land are tested in continuous time.
 ///
 /// Equal scenarios give equal motions, unless the delay is measured.
 ///
@@ -455,13 +455,6 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
             "planner.kind",
             format_args!("{:?}", facts.name),
             "\"space-time\": the closed loop goes on from its plans alone",
-        ));
-    }
-    if scenario.land.is_some() {
-        return Err(Fault::new(
-            "map",
-            "land",
-            "nothing: the closed loop does not watch land yet",
         ));
     }
     let explicit = scenario

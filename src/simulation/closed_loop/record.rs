@@ -4,11 +4,15 @@ use super::vessel::Vessel;
 use super::{Simulated, Simulation};
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
-    ConductDocument, CycleTimingDocument, SIMULATION_FORMAT, SailedDocument,
+    ConductDocument, CycleTimingDocument, SIMULATION_FORMAT, SailedDocument, SailedLandDocument,
     SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument, finite,
     segment_document, state_document,
 };
+use crate::evaluation::least_land_distance;
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
+use crate::trajectory::Segment;
 
 impl Simulation {
     /// The result so far.
@@ -40,7 +44,9 @@ impl Simulation {
                 .filter_map(|report| report.manoeuvre.as_ref());
             manoeuvres.map(of).max().unwrap_or(0)
         };
-        let contact = self.targets.iter().any(|t| t.clearance.is_contact());
+        let land = self.sailed_land();
+        let grounded = land.as_ref().is_some_and(|land| land.grounded);
+        let contact = grounded || self.targets.iter().any(|t| t.clearance.is_contact());
         let unsafe_plans = self
             .replans
             .iter()
@@ -72,6 +78,7 @@ impl Simulation {
                     Some(simulated(self, index, target, reports.get(index)?))
                 })
                 .collect(),
+            land,
             conduct: SailedDocument {
                 cost_m2: error(
                     &self.scenario.desired,
@@ -98,6 +105,31 @@ impl Simulation {
                 plan_s: self.plan_seconds.clone(),
             },
         }
+    }
+
+    /// Own hull's least distance from the land of the map over the sailed motion.
+    fn sailed_land(&self) -> Option<SailedLandDocument> {
+        let map = &self.scenario.land.as_ref()?.map;
+        let own = &self.scenario.own_ship.hull;
+        let (least, time) = least_land_distance(map.polygons(), &self.sailed, own);
+        let places = self
+            .sailed
+            .iter()
+            .flat_map(|s| [s.start.position, s.end().position]);
+        let places: Vec<Vector> = places.collect();
+        // an arc is within its own length of its ends
+        let length = self.sailed.iter().map(Segment::length).fold(0.0, f64::max);
+        let reach = own.half_diagonal() + length + least.max(0.0) + 1.0;
+        let window = Window::around(&places).filter(|_| reach.is_finite());
+        let near = window.map(|window| map.pieces_within(&window.grown(reach)));
+        let corners = |piece: &ConvexPolygon| piece.vertices().iter().map(|p| [p.x, p.y]).collect();
+        Some(SailedLandDocument {
+            least_m: finite(least),
+            least_t_s: time,
+            // negated on purpose: a NaN is on land
+            grounded: !(least > 0.0),
+            polygons_m: near.unwrap_or_default().into_iter().map(corners).collect(),
+        })
     }
 
     fn settings_document(&self) -> SimulationSettingsDocument {
