@@ -45,7 +45,7 @@ fn bends(points: &[Vector]) -> Vec<Vector> {
     for (index, point) in points.iter().enumerate() {
         let next = kept.last().zip(points.get(index + 1));
         let is_bend = next.is_none_or(|(last, next)| {
-            let (here, on) = (point - last, next - last);
+            let (here, on) = (point - last, next - point);
             // negated so that a NaN is kept
             !(cross(here, on).abs() <= STRAIGHT * here.norm() * on.norm() && here.dot(&on) > 0.0)
         });
