@@ -74,6 +74,8 @@ struct Act<'a> {
     ordered_speed: f64,
     /// Seconds from which on own ship need not hold its course because of another target.
     excused_from: f64,
+    /// Seconds from which on the target is past and clear.
+    until: f64,
     /// At least one.
     samples: &'a [EncounterSample],
     /// From the closest approach on.
@@ -378,7 +380,8 @@ impl Act<'_> {
         };
         let port_turn =
             |rule: &'static str, violation: &mut dyn FnMut(&'static str, f64, String)| {
-                if let Some(sample) = self.turned_to(s.steady, Side::Port) {
+                let turned = self.turned_to(s.steady, Side::Port);
+                if let Some(sample) = turned.filter(|sample| sample.time < self.until) {
                     violation(
                         rule,
                         sample.time,
@@ -444,7 +447,7 @@ impl Act<'_> {
             Role::Rule19Starboard | Role::Rule19Port => {
                 let to = self.role.duties().no_turn_to;
                 let toward = to.and_then(|side| self.turned_to(s.steady, side));
-                if let Some(sample) = toward {
+                if let Some(sample) = toward.filter(|sample| sample.time < self.until) {
                     let what = "turns toward a ship abeam or abaft the beam".to_owned();
                     violation("19(d)(ii)", sample.time, what);
                 }
@@ -502,6 +505,7 @@ pub(super) fn scores(
         own_length: encounter.own_length(),
         ordered_speed: encounter.ordered_speed(),
         excused_from,
+        until: interval.map_or(f64::INFINITY, |interval| interval.until),
         samples: &all[begin..=nearest],
         after: &all[nearest..],
         target_length: encounter.target_length(),

@@ -253,6 +253,8 @@ const SEAMANSHIP: &str = "
     head-on small | ahead | 20s -15° 300s | R4
     head-on to port | ahead | 20s 40° 300s | 14(a) 14(a) R4
     head-on returns too soon | ahead | 20s -40° 60s 80° 150s | 14(a) 14(a)
+    head-on returns when past and clear | ahead | 20s -40° 60s 40° 140s 60° 150s |
+    head-on returns before that | ahead | 20s -40° 60s 40° 125s 60° 150s | 14(a)
     gives way | starboard | 20s -40° 400s |
     half speed for 200 s | starboard | 20s 200s@3 200s |
     half speed for 20 s | starboard | 20s 20s@3 -10° 300s | R3
