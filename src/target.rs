@@ -55,10 +55,10 @@ pub struct ShipTrack {
     pub position_std: f64,
     /// Half-width of the speed, m/s.
     pub speed_spread: f64,
-    /// Half-width of the course, radians.
+    /// Half-width of the course about the estimate, radians, without `starboard_turn`.
     pub course_spread: f64,
-    /// How much farther to starboard the course may be, radians, not negative: a ship that gives way
-    /// turns there (docs/scenario.md).
+    /// How much farther to starboard the course may be, radians, to port where it is negative: a
+    /// ship that gives way turns to starboard (docs/scenario.md).
     pub starboard_turn: f64,
     /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
     /// within `course_spread + turn_rate t`, to starboard `starboard_turn` more.
@@ -103,15 +103,19 @@ impl ShipTrack {
         )
     }
 
-    /// The middle of the possible courses, and half their width, radians.
-    pub fn courses(&self) -> (f64, f64) {
-        let half = 0.5 * self.starboard_turn;
-        (self.pose.heading - half, self.course_spread + half)
+    /// The middle of the possible courses, radians.
+    pub fn middle_course(&self) -> f64 {
+        self.pose.heading - 0.5 * self.starboard_turn
+    }
+
+    /// Half the width of the possible courses, radians.
+    pub fn course_half_width(&self) -> f64 {
+        self.course_spread + 0.5 * self.starboard_turn.abs()
     }
 
     /// The position, with the heading in the middle of the possible ones.
     pub fn middle_pose(&self) -> Pose {
-        Pose::new(self.pose.position, self.courses().0)
+        Pose::new(self.pose.position, self.middle_course())
     }
 
     /// Half-width of the heading, and so of the course, at `time` about the middle, radians: at most
@@ -123,13 +127,13 @@ impl ShipTrack {
             self.turn_rate.abs() * time
         };
         // `min` of a NaN and a number is the number: every heading
-        (self.courses().1 + turned).min(std::f64::consts::PI)
+        (self.course_half_width() + turned).min(std::f64::consts::PI)
     }
 
     /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of
     /// three standard deviations, less what earlier plans exclude.
     pub fn outer_positions(&self) -> ConvexPolygon {
-        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.courses().0);
+        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.middle_course());
         match &self.kept_positions {
             Some(kept) => all.outer_intersection(kept).unwrap_or(all),
             None => all,
@@ -185,7 +189,7 @@ impl ShipTrack {
     /// Tangents at most 5° from their touching points replace the outer arc. It exceeds the largest
     /// speed by at most 0.4 %.
     pub fn outer_velocity_set(&self) -> ConvexPolygon {
-        self.outer_velocities_within(self.courses().1)
+        self.outer_velocities_within(self.course_half_width())
     }
 
     /// Outer velocity sets of the ship while it turns at up to `turn_rate` radians per second to
@@ -201,7 +205,7 @@ impl ShipTrack {
             |until, spread| TimedVelocitySet::new(until, self.outer_velocities_within(spread));
         let rate = turn_rate.abs();
         if rate == 0.0 {
-            return vec![timed(f64::INFINITY, self.courses().1)];
+            return vec![timed(f64::INFINITY, self.course_half_width())];
         }
         let all = std::f64::consts::PI;
         let duration = TURN_PER_INTERVAL / rate;
@@ -209,7 +213,7 @@ impl ShipTrack {
         let mut start = 0.0;
         while start < horizon && rate.is_finite() {
             let until = f64::min(start + duration, horizon);
-            let spread = self.courses().1 + rate * until;
+            let spread = self.course_half_width() + rate * until;
             if !(spread < all && until > start) {
                 break;
             }
@@ -220,10 +224,10 @@ impl ShipTrack {
         sets
     }
 
-    fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
+    fn outer_velocities_within(&self, half_width: f64) -> ConvexPolygon {
         let slow = (self.speed - self.speed_spread).max(0.0);
         let fast = self.speed + self.speed_spread;
-        let (middle, spread) = (self.courses().0, course_spread.min(std::f64::consts::PI));
+        let (middle, spread) = (self.middle_course(), half_width.min(std::f64::consts::PI));
         let mut points = Vec::new();
         for edge in [-spread, spread] {
             let ahead = direction(middle + edge);

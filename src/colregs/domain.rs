@@ -68,10 +68,12 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     let reach = own.hull.half_diagonal() + own.safety_margin;
     let around = match &target.kept_positions {
         // the same polygon as below where nothing is excluded
-        Some(_) => outer_disc(reach, target.courses().0).minkowski_sum(&target.outer_positions()),
+        Some(_) => {
+            outer_disc(reach, target.middle_course()).minkowski_sum(&target.outer_positions())
+        }
         None => outer_disc(
             reach + tolerance::POSITION_SIGMAS * target.position_std,
-            target.courses().0,
+            target.middle_course(),
         ),
     };
     let hull = target.outer_hull(horizon);

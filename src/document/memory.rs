@@ -227,8 +227,7 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
         both.filter(|both| *both != measured && both.vertices().len() <= MOST_VERTICES);
     // a wider spread says that less is known
     if ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
-        && ship.course_spread <= then.course_spread * (1.0 + ASSUMED)
-        && ship.starboard_turn <= then.starboard_turn * (1.0 + ASSUMED)
+        && ship.course_half_width() <= then.course_half_width() * (1.0 + ASSUMED)
     {
         ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
             true => velocities,

@@ -88,6 +88,9 @@ pub struct SimulationSettingsDocument {
     pub sensor: String,
     pub own_length_m: f64,
     pub own_beam_m: f64,
+    /// True where the scenario has a map.
+    #[serde(default)]
+    pub map: bool,
 }
 
 /// A target as it was.
@@ -119,7 +122,7 @@ pub struct SailedLandDocument {
     pub least_t_s: f64,
     /// True where own hull touched land.
     pub grounded: bool,
-    /// The convex pieces of land as near as the nearest, metres.
+    /// Every convex piece of land that could be the nearest, metres.
     pub polygons_m: Vec<Vec<[f64; 2]>>,
 }
 
@@ -196,6 +199,8 @@ pub struct EstimateDocument {
     pub position_std_m: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
+    #[serde(default)]
+    pub starboard_turn_deg: f64,
 }
 
 /// Wall clock, the only values that differ between two runs.

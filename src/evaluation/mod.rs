@@ -262,11 +262,16 @@ fn meetings<P: Piece>(
 }
 
 /// Least signed distance between a hull and land along a motion, metres, and when; negative on land,
-/// infinite without land. O(log edges) per segment, and probes for the near edges.
+/// infinite without land, negatively infinite where it is not proven. O(edges log edges), and
+/// O(polygons + log edges) per segment.
 pub(crate) fn least_land_distance(land: &[Polygon], motion: &[Segment], own: &Hull) -> (f64, f64) {
     let (body, reach) = (Body::hull(own), own.half_diagonal());
     let least = LandBodies::new(land).least_distance(motion, body, reach);
-    (least.value, least.time)
+    let value = match least.certified {
+        true => least.value,
+        false => f64::NEG_INFINITY,
+    };
+    (value, least.time)
 }
 
 /// Least distance to land along a chain of pieces. Violations are added only if `judged` is true.

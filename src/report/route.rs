@@ -235,7 +235,10 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
             continue;
         }
         let last = all[all.len() - 1].place;
-        if is_sliver(motion) && (motion.start.position - last).norm() < SLIVER_M {
+        if index + 1 < legs.len()
+            && is_sliver(motion)
+            && (motion.start.position - last).norm() < SLIVER_M
+        {
             continue;
         }
         if motion.is_arc() {
@@ -259,7 +262,7 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
 /// True for a turn that no chart shows.
 fn is_sliver(motion: &Segment) -> bool {
     let turned = (motion.turn_rate * motion.duration).abs();
-    motion.length() < SLIVER_M && turned < SLIVER_RAD
+    motion.is_arc() && motion.length() < SLIVER_M && turned < SLIVER_RAD
 }
 
 /// The corners whose lines touch a turn, and its radius.

@@ -4,6 +4,7 @@ use super::{Compliance, Land, Scenario};
 use crate::frame::{Vector, heading_of, wrap};
 use crate::input::Fault;
 use crate::planner::{Minimises, Objective};
+use crate::target::Target;
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
 
@@ -41,6 +42,15 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
             format_args!(
                 "at most {room}: a part of safety_margin_m, and of land_margin_m with a map"
             ),
+        ));
+    }
+    let turning = |target: &Target| target.ship().is_some_and(|ship| ship.starboard_turn != 0.0);
+    if scenario.max_risk > 0.0 && scenario.targets.iter().any(turning) {
+        faults.push(Fault::new(
+            "planner.max_risk",
+            scenario.max_risk,
+            "0: risk counts from the middle of the velocities, which is not the expected one of a \
+             target with starboard_turn_deg",
         ));
     }
     if !planner.keeps_off_land && scenario.land.is_some() {

@@ -145,9 +145,12 @@ fn check_path(fields: &[Field], path: &[Vector], land: &Land, plane: &Plane, hul
         });
         field.fault(
             format_args!(
-                "a leg that {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are missing at \
+                "leg {}, which {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are missing at \
                  east {:.1} m, north {:.1} m{place}",
-                crossing.missing, at.x, at.y
+                crossing.leg + 1,
+                crossing.missing,
+                at.x,
+                at.y
             ),
             format_args!(
                 "at least {clearance:.1} m from the leg to land: half of own beam, and land_margin_m"
@@ -170,8 +173,9 @@ fn check_path(fields: &[Field], path: &[Vector], land: &Land, plane: &Plane, hul
             {
                 field.fault(
                     format_args!(
-                        "own hull {apart:.1} m from land on the course of the leg that {} here",
-                        if end == 0 { "begins" } else { "ends" }
+                        "own hull {apart:.1} m from land on the course of leg {} at its {}",
+                        leg + 1,
+                        if end == 0 { "beginning" } else { "end" }
                     ),
                     format_args!("at least {} m of water around own hull", land.margin),
                 );

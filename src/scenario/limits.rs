@@ -68,6 +68,8 @@ pub(super) const VELOCITY: Range = Range::within(100.0);
 pub(super) const COURSE: Range = Range::within(360.0);
 /// Degrees, half a full circle to either side.
 pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
+/// Degrees to starboard, to port where negative.
+pub(super) const STARBOARD_TURN: Range = Range::within(180.0);
 /// Degrees per second.
 pub(super) const TURN_RATE: Range = Range::between(0.0, 90.0);
 /// Accepted risk: with 1 a plan would keep clear of nothing but the nominal target.

@@ -78,7 +78,7 @@ impl Plane {
         if self.wanted.get() && !self.given {
             root.require(
                 "origin",
-                format_args!("{ORIGIN}, because the file has a map or a lat_deg"),
+                format_args!("{ORIGIN}, because the file has a map, a route or a lat_deg"),
             );
         }
     }

@@ -8,7 +8,7 @@ use super::limits;
 use crate::frame::{Geographic, mps_from_knots};
 use crate::input::{Fault, Faults, InputError, abbreviated, every, read_text};
 
-/// The elements of a schedule that give speeds, the first that there is.
+/// The elements of a schedule that give speeds, the first before the second at each waypoint.
 const SCHEDULES: [&str; 2] = ["calculated", "manual"];
 
 /// A route.
@@ -54,7 +54,7 @@ fn route(root: &Xml) -> Option<Route> {
     let places = every(waypoints.iter().map(place));
     let by_default = list.take("defaultWaypoint");
     let by_default = by_default.and_then(|waypoint| waypoint.take("leg"));
-    let planned = planned_speeds(root)?;
+    let planned = planned_speeds(root, &waypoints)?;
     let speed = |waypoint: &Xml| {
         if let Some(speed) = waypoint.attribute("id").and_then(|id| planned.get(id)) {
             return Some(Some(*speed));
@@ -83,27 +83,36 @@ fn place(waypoint: &Xml) -> Option<Geographic> {
     })
 }
 
-/// The speeds of the first schedule, m/s, by the waypoint at which the leg ends.
-fn planned_speeds<'a>(root: &Xml<'a>) -> Option<BTreeMap<&'a str, f64>> {
+/// The speeds of the first schedule, m/s, by the waypoint at which the leg ends. The first waypoint
+/// has no leg before it, and at the last one the mission is over.
+fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<&'a str, f64>> {
     let schedules = root.take("schedules");
     let first = schedules.and_then(|schedules| schedules.take("schedule"));
-    let Some(first) = first else {
-        return Some(BTreeMap::new());
-    };
-    let found = SCHEDULES.iter().find_map(|kind| first.take(kind));
-    let elements = found.iter().flat_map(|found| found.all("scheduleElement"));
-    let speeds = elements.map(|element| {
-        if let Some(stay) = element.attribute("stay").filter(|stay| is_stay(stay)) {
-            let found = format_args!("a stay of {}", abbreviated(stay));
-            return element.reject(found, "none: a desired trajectory does not wait");
+    let id = |waypoint: Option<&Xml<'a>>| waypoint.and_then(|waypoint| waypoint.attribute("id"));
+    let ends = [id(waypoints.first()), id(waypoints.last())];
+    let mut speeds = BTreeMap::new();
+    for kind in first
+        .iter()
+        .flat_map(|first| SCHEDULES.map(|kind| first.take(kind)))
+    {
+        for element in kind.iter().flat_map(|kind| kind.all("scheduleElement")) {
+            let at = element.attribute("waypointId");
+            if let Some(stay) = element.attribute("stay").filter(|stay| is_stay(stay))
+                && at != ends[1]
+            {
+                let found = format_args!("a stay of {}", abbreviated(stay));
+                return element.reject(found, "none: a desired trajectory does not wait");
+            }
+            if let Some(at) = at
+                && element.attribute("speed").is_some()
+                && Some(at) != ends[0]
+            {
+                let speed = in_mps(&element, "speed")?;
+                speeds.entry(at).or_insert(speed);
+            }
         }
-        let speed = match element.attribute("speed") {
-            Some(_) => Some(in_mps(&element, "speed")?),
-            None => None,
-        };
-        Some(element.attribute("waypointId").zip(speed))
-    });
-    Some(every(speeds)?.into_iter().flatten().collect())
+    }
+    Some(speeds)
 }
 
 /// True for a stay of any length: a time of day, or the duration of RTZ 1.2.
@@ -134,9 +143,12 @@ mod tests {
     <waypoint id="4" radius="0.3"><position lat="59.04" lon="10.54"/><leg speedMax="10"/></waypoint>
   </waypoints>
   <schedules><schedule id="1"><calculated>
-    <scheduleElement waypointId="7" etd="2026-05-01T08:00:00Z"/>
-    <scheduleElement waypointId="4" speed="6" stay="00:00:00"/>
-  </calculated></schedule></schedules>
+    <scheduleElement waypointId="7" etd="2026-05-01T08:00:00Z" speed="0"/>
+    <scheduleElement waypointId="4" speed="6" stay="00:10:00"/>
+  </calculated><manual>
+    <scheduleElement waypointId="4" speed="7"/>
+    <scheduleElement waypointId="9" speed="9" stay="00:00:00"/>
+  </manual></schedule></schedules>
 </route>
 "#;
 
@@ -145,7 +157,7 @@ mod tests {
         let route = Route::parse(ROUTE).expect("a route");
         assert_eq!(route.places.len(), 4);
         assert_eq!(route.places[2].lon_deg, 10.54);
-        let knots = [10.0, 8.0, 6.0].map(|speed| Some(mps_from_knots(speed)));
+        let knots = [10.0, 9.0, 6.0].map(|speed| Some(mps_from_knots(speed)));
         assert_eq!(route.speeds, knots);
     }
 
@@ -171,9 +183,19 @@ mod tests {
                 7,
                 "waypoint[3]/leg: found \"fast\"",
             ),
-            ("00:00:00", "00:10:00", 13, "a stay of \"00:10:00\""),
-            ("00:00:00", "PT10M", 13, "a stay of \"PT10M\""),
-            ("</waypoints>", "", 15, "expected 'waypoints' tag"),
+            (
+                "etd=\"2026-05-01T08:00:00Z\"",
+                "stay=\"00:10:00\"",
+                12,
+                "a stay of \"00:10:00\"",
+            ),
+            (
+                "etd=\"2026-05-01T08:00:00Z\"",
+                "stay=\"PT10M\"",
+                12,
+                "a stay of \"PT10M\"",
+            ),
+            ("</waypoints>", "", 18, "expected 'waypoints' tag"),
             ("waypoints>", "points>", 2, "route: found no waypoints"),
             ("route", "track", 2, "the element \"track\""),
         ] {

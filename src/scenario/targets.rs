@@ -171,7 +171,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let position_std = table.number("position_std_m", limits::DISTANCE);
     let speed_spread = table.speed("speed_spread", limits::SPEED);
     let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
-    let starboard_turn = table.number("starboard_turn_deg", limits::COURSE_SPREAD);
+    let starboard_turn = table.number("starboard_turn_deg", limits::STARBOARD_TURN);
     let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
     let domain = table.read_or("domain", DomainKind::Colregs, domain);
     Some(ShipTrack {

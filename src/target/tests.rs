@@ -5,8 +5,8 @@ fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
     ShipTrack {
         speed_spread: rng.random_range(0.0..3.0),
         course_spread: rng.random_range(0.0..1.0),
-        // half of them
-        starboard_turn: rng.random_range(-1.0_f64..1.0).max(0.0),
+        // a third of them turn to either side
+        starboard_turn: [0.0, 1.0, -1.0][rng.random_range(0..3)] * rng.random_range(0.0..1.0),
         ..ShipTrack::exact(
             Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
             rng.random_range(0.0..10.0),
@@ -31,7 +31,8 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
         for _ in 0..100 {
             let t = rng.random_range(0.0..500.0);
             let turned = ship.course_spread + rate * t;
-            let off = rng.random_range(-turned - ship.starboard_turn..=turned);
+            let [starboard, port] = [1.0, -1.0].map(|s| (s * ship.starboard_turn).max(0.0));
+            let off = rng.random_range(-turned - starboard..=turned + port);
             let course = ship.pose.heading + off;
             let speed = (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
             let now = sets.iter().find(|s| t <= s.until).expect("a last one");
@@ -39,7 +40,7 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
             let now = now.velocities.as_polygon().expect("a polygon");
             assert!(now.signed_distance(v) <= 1e-9, "{ship:?} {t}");
             if t < horizon {
-                let half = ship.courses().1 + rate * t;
+                let half = ship.course_half_width() + rate * t;
                 let widest = ship.outer_velocities_within(half + TURN_PER_INTERVAL + 1e-9);
                 for v in now.vertices() {
                     assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
@@ -81,8 +82,9 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         };
         let mut all = Vec::new();
         for k in 0..=200 {
-            let width = 2.0 * spread + ship.starboard_turn;
-            let heading = turned(spread - width * f64::from(k) / 200.0);
+            let [starboard, port] = [1.0, -1.0].map(|s| (s * ship.starboard_turn).max(0.0));
+            let share = f64::from(k) / 200.0;
+            let heading = turned((spread + port) * (1.0 - share) - (spread + starboard) * share);
             all.extend_from_slice(heading.vertices());
         }
         assert!(all.iter().all(|p| hull.signed_distance(*p) < 1e-9));
@@ -90,7 +92,7 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         let excess = hull.vertices().iter().map(|p| swept.signed_distance(*p));
         let excess = excess.fold(0.0, f64::max) / ship.hull.half_diagonal();
         assert!(excess < 0.021, "{excess} {ship:?}");
-        let around = crate::geometry::outer_disc(40.0, ship.courses().0);
+        let around = crate::geometry::outer_disc(40.0, ship.middle_course());
         assert!(hull.minkowski_sum(&around).vertices().len() <= DISC_SIDES);
     }
     let mut known = turning_ship(&mut rng);

@@ -311,7 +311,7 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
             let spread = &at("course_spread_deg");
             let course_spread = within(spread, ship.course_spread_deg, 0.0, 180.0)?;
             let spread = &at("starboard_turn_deg");
-            let starboard_turn = within(spread, ship.starboard_turn_deg, 0.0, 180.0)?;
+            let starboard_turn = within(spread, ship.starboard_turn_deg, -180.0, 180.0)?;
             let turn_rate = number("turn_rate_deg_per_s", ship.turn_rate_deg_per_s)?;
             Motion::Ship(ShipTrack {
                 position_std,

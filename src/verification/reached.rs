@@ -173,7 +173,7 @@ impl<'a> Known<'a> {
         let way = largest(reached.iter().zip(&self.initial).map(|(a, b)| way(a, b)));
         let spread = match &self.motion {
             Moving::Ship(ship) => {
-                let turned = ship.courses().1 + ship.turn_rate * time;
+                let turned = ship.course_half_width() + ship.turn_rate * time;
                 let fast = ship.speed + ship.speed_spread;
                 (2.0 * fast * turned.min(1.0) + 2.0 * ship.speed_spread) * time
             }
@@ -210,7 +210,7 @@ pub(super) fn widest(ellipse: &Ellipse) -> f64 {
 /// is the best. After that, the greatest speed is.
 fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
     let (slow, fast) = speeds(ship);
-    let (middle, half) = ship.courses();
+    let (middle, half) = (ship.middle_course(), ship.course_half_width());
     let off = wrap(heading_of(n) - middle).abs() - half;
     let turned_to = |angle: f64| {
         if off > angle {
@@ -246,9 +246,9 @@ pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
         return ship.outer_velocity_set().vertices().to_vec();
     }
     let (slow, fast) = speeds(ship);
-    let (heading, half) = ship.courses();
+    let (middle, half) = (ship.middle_course(), ship.course_half_width());
     let spread = (half + ship.turn_rate * until).min(PI);
-    let edges = [-spread, spread].map(|edge| direction(heading + edge));
+    let edges = [-spread, spread].map(|edge| direction(middle + edge));
     let mut points: Vec<Vector> = edges
         .into_iter()
         .flat_map(|ahead| [ahead * slow, ahead * fast])
@@ -257,8 +257,8 @@ pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
         let pieces = (spread / TANGENT_SPACING).ceil().max(1.0);
         let half = spread / pieces;
         points.extend((0..pieces as usize).map(|piece| {
-            let middle = heading - spread + half * (2 * piece + 1) as f64;
-            direction(middle) * (fast / half.cos())
+            let touching = middle - spread + half * (2 * piece + 1) as f64;
+            direction(touching) * (fast / half.cos())
         }));
     }
     points

@@ -202,8 +202,8 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
             violations.push(mismatch("land.grounded", land.grounded, grounded));
         }
         let claimed = land.least_m.unwrap_or(f64::INFINITY);
-        let same =
-            grounded && land.grounded || claimed == least || (claimed - least).abs() <= allowed;
+        let touches = grounded && land.grounded && land.least_m.is_none_or(|m| m <= allowed);
+        let same = touches || claimed == least || (claimed - least).abs() <= allowed;
         if !same {
             let (claimed, least) = (format!("{claimed} m"), format!("{least} m"));
             violations.push(mismatch("land.least_m", claimed, least));
@@ -258,13 +258,21 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         "a hull without size",
         0.0,
     );
+    let has_land = document.land.is_some();
+    require(
+        has_land == settings.map,
+        "land and its map, one without the other",
+        0.0,
+    );
+    let within = |time: f64| (0.0..=end + TIME_S * (1.0 + end)).contains(&time);
+    let nearest = document.land.iter().all(|land| within(land.least_t_s));
+    require(nearest, "a time outside the simulation", end);
     let names: Vec<&str> = document.targets.iter().map(|t| t.name.as_str()).collect();
     for target in &document.targets {
         let times = target
             .contact_t_s
             .into_iter()
             .chain([target.least_clearance_t_s]);
-        let within = |time: f64| (0.0..=end + TIME_S * (1.0 + end)).contains(&time);
         require(
             times.into_iter().all(within),
             "a time outside the simulation",

@@ -78,7 +78,11 @@ impl How {
             self.truth,
             Truth::Constant | Truth::Random | Truth::Extremes | Truth::Pursuit
         );
-        within && self.factor <= 1.0 && self.seen == Seen::Exact && self.ship == Ship::Kinematic
+        let turns = matches!(self.truth, Truth::GivesWay | Truth::GivesWayLate);
+        (within || turns && self.starboard_turn >= 40.0)
+            && self.factor <= 1.0
+            && self.seen == Seen::Exact
+            && self.ship == Ship::Kinematic
     }
 
     fn behaviour(&self) -> Behaviour {

@@ -408,12 +408,20 @@ fn a_route_is_a_mission() {
     let to = from + alone[from..].find('\n').expect("a line");
     let with = |mission: &str| format!("{origin}\n{}{mission}{}", &alone[..from], &alone[to..]);
     let routed = with("route = \"first.rtz\"");
-    let routed = routed.replace("speed_mps = 5.0\n\n[[", "");
+    let routed = routed.replace("speed_mps = 5.0\n\n[planner]", "[planner]");
     let again = folder.write("again.toml", &routed);
     let plan = json(&format!("plan {again} --json"));
     let waypoints = list(&plan["mission"]["waypoints"]);
     let written = fs::read_to_string(file("first.rtz")).expect("written");
     assert_eq!(waypoints.len(), written.matches("<waypoint id").count());
+    let speeds = written.split("speed=\"").skip(2);
+    let speeds = speeds.map(|rest| rest.split('"').next().expect("an end"));
+    let knots: Vec<f64> = speeds.map(|s| s.parse().expect("a number")).collect();
+    let legs = list(&plan["mission"]["leg_speeds_mps"]);
+    assert!(knots.len() == legs.len() && knots.iter().any(|k| *k != knots[0]));
+    for (knots, mps) in knots.iter().zip(legs) {
+        assert!((knots * 1852.0 / 3600.0 - number(mps)).abs() < 1e-9);
+    }
     let [first, again] = [&first, &plan].map(|plan| number(&plan["cost"]["length_m"]));
     assert!((first - again).abs() < 0.02 * first, "{first} {again}");
     for (mission, found) in [

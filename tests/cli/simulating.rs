@@ -361,12 +361,15 @@ fn the_land_of_a_simulation_is_checked_again() {
         ("/land/least_m", 400.0.into()),
         ("/land/least_m", serde_json::Value::Null),
         ("/land/grounded", true.into()),
+        ("/land/least_t_s", 12345.0.into()),
+        ("/land", serde_json::Value::Null),
+        ("/settings/map", false.into()),
         ("/land/polygons_m", serde_json::json!([])),
         ("/land/polygons_m", serde_json::json!([[[0.0, 0.0]]])),
         ("/land/polygons_m", rock),
     ] {
         let shown = stdout(&check(pointer, value).code(1));
-        assert!(shown.contains("land."), "{pointer}: {shown}");
+        assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
     }
 }
 

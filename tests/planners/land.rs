@@ -214,7 +214,7 @@ fn a_start_and_a_path_on_land_are_named_together() {
         (0, "at least 10 m of water around own hull"),
         (
             1,
-            "mission.waypoints[1]: found a leg that crosses land from ",
+            "mission.waypoints[1]: found leg 1, which crosses land from ",
         ),
         (1, "m are missing at east "),
         (1, "(lat 63.45"),

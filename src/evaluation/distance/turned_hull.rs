@@ -30,7 +30,7 @@ impl TurnedHull {
         let corners = [(l, b), (-l, b), (-l, -b), (l, -b)];
         Self {
             center: ship.pose.position,
-            corners: corners.map(|(x, y)| ship.courses().0 + y.atan2(x)),
+            corners: corners.map(|(x, y)| ship.middle_course() + y.atan2(x)),
             reach: 0.5 * l.hypot(b),
             spread: ship.heading_spread(time),
         }

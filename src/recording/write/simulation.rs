@@ -66,6 +66,9 @@ pub fn write_simulation(simulated: &Simulated, path: &Path) -> Result<(), Record
 fn without_motions(document: &SimulationDocument) -> SimulationDocument {
     let mut short = document.clone();
     short.sailed.clear();
+    if let Some(land) = &mut short.land {
+        land.polygons_m.clear();
+    }
     for target in &mut short.targets {
         target.track.clear();
     }

@@ -66,9 +66,9 @@ pub struct Panel {
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     notes: Vec<TextAnnotation>,
-    /// What labels keep clear of: texts and ships, and lines.
+    /// What labels keep clear of: texts and ships, and curves.
     taken: Vec<Window>,
-    lines: Vec<Vec<Vector>>,
+    curves: Vec<Vec<Vector>>,
 }
 
 impl Panel {
@@ -93,7 +93,7 @@ impl Panel {
             legend: Vec::new(),
             notes: Vec::new(),
             taken: Vec::new(),
-            lines: Vec::new(),
+            curves: Vec::new(),
         }
     }
 
@@ -140,7 +140,7 @@ impl Panel {
     /// Draws a polyline, closed on request.
     pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
         self.plots.push(curve(points, closed, stroke));
-        self.lines.push(points.to_vec());
+        self.curves.push(points.to_vec());
     }
 
     /// Adds a text at a position.
@@ -186,7 +186,7 @@ impl Panel {
         let cost = |place: &Window| {
             let [low, high] = [place.low, place.high].map(|corner| self.window.contains(corner));
             let covered = self.taken.iter().filter(|other| other.meets(place)).count();
-            let crossed = (self.lines.iter())
+            let crossed = (self.curves.iter())
                 .filter(|line| crosses(line, place))
                 .count();
             let cut = usize::from(!low) + usize::from(!high);
@@ -209,7 +209,7 @@ impl Panel {
         }
     }
 
-    pub(super) fn lines(&self) -> usize {
+    pub(super) fn legend_lines(&self) -> usize {
         self.legend.len()
     }
 

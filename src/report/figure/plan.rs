@@ -11,7 +11,6 @@ use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Stroke};
 use crate::colregs::Role;
 use crate::document::{self, PlanDocument};
-use crate::evaluation::Safety;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::Obstacle;
@@ -68,13 +67,9 @@ const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
 /// Draws the chart of a run, with its path-time diagram or its velocities and forces if present.
-/// The title is that of the scenario; it marks a plan that is not safe.
+/// The title is that of the scenario; the verdict is above the chart.
 pub fn plan_figure(run: &Run) -> Figure {
-    let title = match run.safety() {
-        None | Some(Safety::Safe) => run.scenario.title.clone(),
-        Some(_) => document::headline(&PlanDocument::of(run)),
-    };
-    Figure::new(2, plan_panels(run)).titled(&title)
+    Figure::new(2, plan_panels(run)).titled(&run.scenario.title)
 }
 
 /// Panels of [`plan_figure`].

@@ -91,7 +91,7 @@ impl Figure {
         let rows: Vec<f64> = self
             .panels
             .chunks(self.columns)
-            .map(|row| Panel::below(row.iter().map(Panel::lines).max().unwrap_or(0)))
+            .map(|row| Panel::below(row.iter().map(Panel::legend_lines).max().unwrap_or(0)))
             .collect();
         let count = self.panels.len();
         let [left, beside, top] = MARGIN;

@@ -24,8 +24,8 @@ const INSTANT: f64 = 1e-9;
 pub(super) struct TrueTarget {
     pub now: SteadyShip,
     pub hull: Hull,
-    /// Course and speed in the file, the middle of what it may do, and its spreads.
-    middle: ShipTrack,
+    /// Course and speed in the file, and what else it may do.
+    file: ShipTrack,
     behaviour: Behaviour,
     rng: ChaCha8Rng,
     next_change: f64,
@@ -44,7 +44,7 @@ impl TrueTarget {
         Self {
             now: SteadyShip::on_track(ship, 0.0),
             hull: ship.hull,
-            middle: ship.clone(),
+            file: ship.clone(),
             behaviour,
             rng,
             next_change: 0.0,
@@ -55,15 +55,16 @@ impl TrueTarget {
 
     /// Chooses course and speed from `time` until `time + step`. O(1), or O(log points) on a track.
     pub fn steer(&mut self, time: f64, step: f64, own: &SteadyShip) {
-        let (heading, speed) = (self.middle.pose.heading, self.middle.speed);
+        let (heading, speed) = (self.file.pose.heading, self.file.speed);
         let is_due = time >= self.next_change - INSTANT;
         match &self.behaviour {
             Behaviour::Constant | Behaviour::Mutual => {}
             Behaviour::Random { every, factor } if is_due => {
                 self.next_change = time + every;
                 let mut within = |spread: f64| factor * spread * self.rng.random_range(-1.0..=1.0);
-                self.now.pose.heading = heading + within(self.middle.course_spread);
-                self.now.speed = (speed + within(self.middle.speed_spread)).max(0.0);
+                self.now.pose.heading =
+                    self.file.middle_course() + within(self.file.course_half_width());
+                self.now.speed = (speed + within(self.file.speed_spread)).max(0.0);
             }
             Behaviour::Extremes { every, factor } if is_due => {
                 self.next_change = time + every;
@@ -71,8 +72,9 @@ impl TrueTarget {
                     let sign = if self.rng.random_bool(0.5) { 1.0 } else { -1.0 };
                     sign * factor * spread
                 };
-                self.now.pose.heading = heading + extreme(self.middle.course_spread);
-                self.now.speed = (speed + extreme(self.middle.speed_spread)).max(0.0);
+                self.now.pose.heading =
+                    self.file.middle_course() + extreme(self.file.course_half_width());
+                self.now.speed = (speed + extreme(self.file.speed_spread)).max(0.0);
             }
             Behaviour::Pursuit { every } if is_due => {
                 self.next_change = time + every;
@@ -80,7 +82,7 @@ impl TrueTarget {
             }
             Behaviour::Random { .. } | Behaviour::Extremes { .. } | Behaviour::Pursuit { .. } => {}
             Behaviour::Track(points) => {
-                let way = position_on(points, self.middle.pose.position, time + step)
+                let way = position_on(points, self.file.pose.position, time + step)
                     - self.now.pose.position;
                 self.now.speed = way.norm() / step;
                 if self.now.speed > NO_WAY {
@@ -123,8 +125,9 @@ impl TrueTarget {
         for course in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
             for speed in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
                 let part = |k: i32| f64::from(k) / f64::from(PURSUIT_CHOICES);
-                let heading = self.middle.pose.heading + part(course) * self.middle.course_spread;
-                let speed = self.middle.speed + part(speed) * self.middle.speed_spread;
+                let off = part(course) * self.file.course_half_width();
+                let heading = self.file.middle_course() + off;
+                let speed = self.file.speed + part(speed) * self.file.speed_spread;
                 let ship = SteadyShip {
                     pose: Pose::new(self.now.pose.position, heading),
                     speed: speed.max(0.0),

@@ -44,6 +44,7 @@ impl Simulation {
                 position_std_m: ship.position_std,
                 speed_spread_mps: ship.speed_spread,
                 course_spread_deg: deg_from_radians(ship.course_spread),
+                starboard_turn_deg: deg_from_radians(ship.starboard_turn),
             });
             target.motion = Motion::Ship(ship);
         }

@@ -77,6 +77,8 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
             representation: target.representation,
         }],
         memory: Memory::default(),
+        // its mission is a line that may run across land
+        land: None,
         // the sensor, the vessel and the current are own ship's
         simulation: SimulationSettings {
             step: scenario.simulation.step,

@@ -18,7 +18,7 @@ impl Simulation {
     /// The result so far.
     ///
     /// Both judges use the true motions. The cost is that of the plans, over the sailed motion.
-    /// O(targets × seconds sailed).
+    /// O(targets × seconds sailed), and with a map O(its edges × segments).
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
         let samples: Vec<EncounterSamples> = (self.targets.iter())
@@ -149,6 +149,7 @@ impl Simulation {
             sensor: settings.sensor.kind.word().to_owned(),
             own_length_m: own.hull.length,
             own_beam_m: own.hull.beam,
+            map: self.scenario.land.is_some(),
         }
     }
 }

@@ -167,9 +167,23 @@ impl AssumedVelocities {
 
     /// How far beyond the middle of the set course and speed are.
     fn off(&self, estimate: &Estimate) -> (f64, f64) {
-        let to_port = wrap(estimate.heading - self.heading);
-        let turned = to_port.max(-to_port - self.starboard_turn);
+        let half = 0.5 * self.starboard_turn;
+        let turned = wrap(estimate.heading - self.heading + half).abs() - half.abs();
         (turned, (estimate.speed - self.speed).abs())
+    }
+
+    /// The course that is expected now, with the spread and the turn of the same set about it: that
+    /// of the estimate, where the target has turned as it may.
+    fn expected(&self, estimate: &Estimate) -> [f64; 3] {
+        let (side, most) = (self.starboard_turn.signum(), self.starboard_turn.abs());
+        let turned = (side * wrap(self.heading - estimate.heading)).clamp(0.0, most);
+        if turned > self.heading_spread {
+            let spread = self.heading_spread + turned.min(most - turned);
+            let left = self.starboard_turn - 2.0 * side * turned;
+            [self.heading - side * turned, spread, left]
+        } else {
+            [self.heading, self.heading_spread, self.starboard_turn]
+        }
     }
 
     /// Widens the spreads to hold an estimate.
@@ -330,15 +344,16 @@ impl Track {
         let age = (time - self.estimate.time).max(0.0);
         let elapsed = age.max(delay);
         let turned = self.file.turn_rate * elapsed;
-        let pose = Pose::new(self.estimate.position, self.velocities.heading);
+        let [heading, spread, starboard_turn] = self.velocities.expected(&self.estimate);
+        let pose = Pose::new(self.estimate.position, heading);
         let mut ship = ShipTrack {
             pose,
             speed: self.velocities.speed,
             position_std: self.estimate.position_std,
             speed_spread: self.velocities.speed_spread,
             // it may have turned since
-            course_spread: (self.velocities.heading_spread + turned).min(std::f64::consts::PI),
-            starboard_turn: self.velocities.starboard_turn,
+            course_spread: (spread + turned).min(std::f64::consts::PI),
+            starboard_turn,
             kept_velocities: None,
             ..self.file.clone()
         };
@@ -385,8 +400,23 @@ mod tests {
                 10.0,
                 &SteadyShip::new(Pose::new(Vector::zeros(), heading), 5.0),
             );
-            let set = track.set_at(10.0, 1.0).outer_velocity_set();
-            assert!(track.is_broken() || set == first);
+            let set = track.set_at(10.0, 1.0);
+            if !track.is_broken() {
+                // of the turned target the course is the estimate, and the set is the same
+                let off = if turned > 5.0 {
+                    heading
+                } else {
+                    file.pose.heading
+                };
+                assert!(
+                    (set.pose.heading - off.max(file.pose.heading - file.starboard_turn)).abs()
+                        < 1e-9
+                );
+                let velocities = set.outer_velocity_set();
+                let outside = |v: &Vector| first.signed_distance(*v) > 1e-9;
+                assert!(!velocities.vertices().iter().any(outside));
+                assert_eq!(velocities.vertices().len(), first.vertices().len());
+            }
             track.is_broken()
         };
         for turned in [3.0, 12.0, 30.0, 44.9, 0.0, -4.9] {
