@@ -32,6 +32,8 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Writes a commented scenario file to begin with
+    Init(InitArgs),
     /// Reads and checks scenario files, plans nothing; reports every fault at once
     Check(CheckArgs),
     /// Risk, closest approach, velocity obstacle and least alteration, without planning
@@ -53,6 +55,13 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct InitArgs {
+    /// The new file
+    #[arg(value_name = "FILE.toml")]
+    pub file: PathBuf,
 }
 
 #[derive(Debug, Args)]

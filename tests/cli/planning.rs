@@ -393,6 +393,25 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
         .stderr(contains("there are no legs"));
 }
 
+/// A new file that plans at once, and nothing over another one.
+#[test]
+fn a_scenario_to_begin_with_is_written_once() {
+    let folder = Folder::new();
+    let file = folder.at("mine.toml");
+    searoom(&["init", &file])
+        .success()
+        .stdout(contains("next: searoom plan"));
+    searoom(&["plan", &file])
+        .success()
+        .stdout(contains("solved (verified, safe)"));
+    let written = fs::read_to_string(&file).expect("written");
+    searoom(&["init", &file])
+        .code(2)
+        .stderr(contains("found a file; allowed: a new name"));
+    assert_eq!(fs::read_to_string(&file).expect("kept"), written);
+    searoom(&["init", &folder.at("no/such/folder.toml")]).code(2);
+}
+
 /// A route that was written is the mission of the next scenario: its plan is as long, and its speeds
 /// are those of the legs.
 #[test]
