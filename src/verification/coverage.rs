@@ -18,7 +18,7 @@
 //! horizon therefore proves containment at all times, for a slab of any duration and speed.
 
 use super::claim::Claim;
-use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
+use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach, widest};
 use crate::evaluation::{SpaceTimeSet, TurnedHull, Violation, shape_rounding};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
@@ -222,7 +222,18 @@ fn of_ellipses(
     }
     if level < 1.0 {
         let known = at_level(target, level, horizon);
-        need(LEVEL, velocities_beyond(set, &known, 1.0, horizon));
+        let ellipses = set
+            .sets
+            .velocities
+            .iter()
+            .filter_map(|t| t.velocities.as_ellipse());
+        let across = largest(ellipses.map(widest));
+        // the centre of a smallest ellipse is known to so much alone
+        let allowed = tolerance::COLLINEAR_RAD * across * horizon;
+        need(
+            LEVEL,
+            velocities_beyond(set, &known, 1.0, horizon) - allowed,
+        );
     }
     lacks
 }
