@@ -19,6 +19,9 @@ const CORNER_RAD: f64 = 1e-6;
 /// Seconds. A shorter segment is no leg: a ship covers some millimetres.
 const SHORTEST_S: f64 = 1e-3;
 
+/// m/s. A slower ship lies still.
+const STILL_MPS: f64 = 1e-3;
+
 /// A turn, a straight run or a wait at one speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedLeg {
@@ -42,9 +45,9 @@ impl PlannedLeg {
         clockwise_deg(self.motion.turn_rate * self.motion.duration)
     }
 
-    /// True where own ship lies still.
+    /// True where own ship lies still, or moves too slowly for any log to show it.
     pub fn waits(&self) -> bool {
-        self.motion.speed == 0.0
+        self.motion.speed < STILL_MPS
     }
 }
 

@@ -22,8 +22,9 @@ const RTZ_RADIUS_NMI: f64 = 5.0;
 /// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
-/// Metres and radians: a shorter and smaller turn beside a waypoint is none of its own.
+/// Metres, seconds and radians: a shorter and smaller turn beside a waypoint is none of its own.
 const SLIVER_M: f64 = 1.0;
+const SLIVER_S: f64 = 0.5;
 const SLIVER_RAD: f64 = 0.01;
 
 /// Format of a route, by the ending of its file.
@@ -262,7 +263,8 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
 /// True for a turn that no chart shows.
 fn is_sliver(motion: &Segment) -> bool {
     let turned = (motion.turn_rate * motion.duration).abs();
-    motion.is_arc() && motion.length() < SLIVER_M && turned < SLIVER_RAD
+    let is_brief = motion.is_arc() && motion.duration < SLIVER_S;
+    is_brief && motion.length() < SLIVER_M && turned < SLIVER_RAD
 }
 
 /// The corners whose lines touch a turn, and its radius.
@@ -304,8 +306,8 @@ fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, Ro
         // writing into a text does not fail
         let _ = writeln!(
             text,
-            "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.8}\" \
-             lon=\"{lon_deg:.8}\"/>{leg}</waypoint>"
+            "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.11}\" \
+             lon=\"{lon_deg:.11}\"/>{leg}</waypoint>"
         );
         let speed = knots_from_mps(waypoint.speed);
         let stay = match waypoint.stay {

@@ -1,6 +1,6 @@
 //! The mission of a route file for navigation systems: RTZ 1.0 to 1.2 (IEC 61174, annex S).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::import::xml::{self, Xml};
@@ -50,6 +50,12 @@ fn route(root: &Xml) -> Option<Route> {
     if !(2..=limits::WAYPOINTS).contains(&count) {
         let allowed = format_args!("2 to {}", limits::WAYPOINTS);
         return list.reject(format_args!("{count} waypoints"), allowed);
+    }
+    let mut ids = BTreeSet::new();
+    for waypoint in &waypoints {
+        if waypoint.attribute("id").is_some_and(|id| !ids.insert(id)) {
+            return waypoint.reject("the id of a waypoint before", "an id of its own");
+        }
     }
     let places = every(waypoints.iter().map(place));
     let by_default = list.take("defaultWaypoint");
@@ -115,9 +121,12 @@ fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<
     Some(speeds)
 }
 
-/// True for a stay of any length: a time of day, or the duration of RTZ 1.2.
+/// True for a stay of any length: a time of day, the duration of RTZ 1.2, or what cannot be read.
 fn is_stay(stay: &str) -> bool {
-    stay.chars().any(|digit| ('1'..='9').contains(&digit))
+    !stay
+        .trim()
+        .chars()
+        .all(|letter| "0:.+-PDTHMS".contains(letter))
 }
 
 /// A speed in knots, in m/s.
@@ -191,12 +200,14 @@ mod tests {
             ),
             (
                 "etd=\"2026-05-01T08:00:00Z\"",
-                "stay=\"PT10M\"",
+                "stay=\"long\"",
                 12,
-                "a stay of \"PT10M\"",
+                "a stay of \"long\"",
             ),
             ("</waypoints>", "", 18, "expected 'waypoints' tag"),
             ("waypoints>", "points>", 2, "route: found no waypoints"),
+            ("id=\"9\"", "id=\"3\"", 8, "the id of a waypoint before"),
+            ("lat=\"59.00\"", "lat=\" 99 \"", 6, "position: found"),
             ("route", "track", 2, "the element \"track\""),
         ] {
             let faults = Route::parse(&ROUTE.replace(old, new)).expect_err(new);

@@ -30,6 +30,10 @@ const HULL: &str = "the hull, the margin and the uncertainty";
 const VELOCITIES: &str = "the velocities of the target";
 const INITIAL: &str = "the initial set";
 const VELOCITY: &str = "the velocity set";
+/// Fraction of its width to which the centre of a smallest ellipse is known: those around the same
+/// polygon, less its last digits, differ by so much.
+const CENTRE: f64 = 1e-7;
+
 const LEVEL: &str = "the velocities at the accepted risk";
 const LEFT: &str = "the positions possible when own ship has left the set";
 
@@ -228,8 +232,7 @@ fn of_ellipses(
             .iter()
             .filter_map(|t| t.velocities.as_ellipse());
         let across = largest(ellipses.map(widest));
-        // the centre of a smallest ellipse is known to so much alone
-        let allowed = tolerance::COLLINEAR_RAD * across * horizon;
+        let allowed = CENTRE * across * horizon;
         need(
             LEVEL,
             velocities_beyond(set, &known, 1.0, horizon) - allowed,

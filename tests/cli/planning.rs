@@ -375,6 +375,13 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
         searoom(&["plan", &placed, "--route", text(&written)]).success();
         assert!(written.exists());
     }
+    // a wait on the path is a stay
+    let waits = "scenarios/dnv/traffic_situation_05.json";
+    let written = route("waits.rtz");
+    let asked = ["--planner", "path-time", "--compliance", "none"];
+    searoom(&[&["plan", waits, "--route", text(&written)], &asked[..]].concat()).success();
+    let rtz = fs::read_to_string(&written).expect("written");
+    assert!(rtz.contains("stay=\"00:06:37\""), "{rtz}");
     let other = route("route.txt");
     searoom(&["plan", &file, "--route", text(&other)])
         .code(2)

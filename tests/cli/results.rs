@@ -192,10 +192,28 @@ fn options_stand_under_their_own_heading() {
     }
 }
 
+/// Ellipsoids are compared for the targets that may have them; a turning one keeps its polytopes.
+#[test]
+fn a_turning_target_is_no_ellipsoid_beside_others() {
+    let file = "tests/faults/turning-beside-ellipsoid.toml";
+    searoom(&["compare", file, "--planner", "path-time"])
+        .code(1)
+        .stdout(contains("path-time, ellipsoids"));
+}
+
+/// The centre of the ellipse is found again from the numbers of the document.
+#[test]
+fn a_wide_ellipse_at_an_accepted_risk_verifies() {
+    let folder = Folder::new();
+    let plan = searoom(&["plan", "tests/faults/wide-ellipse-at-risk.toml", "--json"]).code(1);
+    let plan = folder.write("plan.json", stdout(&plan));
+    searoom(&["verify", &plan]).success();
+}
+
 #[test]
 fn shells_know_every_command() {
     let commands = [
-        "check", "assess", "plan", "suite", "compare", "inspect", "verify",
+        "init", "check", "assess", "plan", "suite", "compare", "inspect", "verify",
     ];
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let text = stdout(

@@ -373,6 +373,16 @@ fn the_land_of_a_simulation_is_checked_again() {
     }
 }
 
+/// The closest approach is in the last step, in which the current is in no gap.
+#[test]
+fn a_simulation_in_a_current_verifies_at_its_end() {
+    let folder = Folder::new();
+    let file = "scenarios/closed-loop/overtaking-rudder.toml";
+    let sailed = searoom(&["simulate", file, "--duration-s", "150", "--json"]);
+    let sailed = folder.write("sailed.json", stdout(&sailed.success()));
+    searoom(&["verify", &sailed]).success();
+}
+
 #[test]
 fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
     let folder = Folder::new();

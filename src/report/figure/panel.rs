@@ -35,6 +35,9 @@ const LEGEND_FRAME: f64 = 26.0;
 /// Letters of a title that fit above a panel.
 const LETTERS: usize = 58;
 
+/// Letters of a line of the legend that fit below a panel.
+const LEGEND_LETTERS: usize = 56;
+
 /// Font size of a note in pixels.
 const NOTE_SIZE: u32 = 11;
 
@@ -109,7 +112,7 @@ impl Panel {
 
     pub(super) fn line_key(&mut self, label: &str, stroke: Stroke) {
         self.legend.push(LegendEntry {
-            label: label.to_owned(),
+            label: shortened(label, LEGEND_LETTERS),
             color: stroke.colour.to_owned(),
             shape: LegendShape::Line,
             dasharray: stroke.dashed.then(|| "8 4".to_owned()),

@@ -5,6 +5,7 @@ use std::fmt::Display;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::input::{Fault, Faults, Range, abbreviated};
+use crate::text::printable;
 
 /// Most nodes of a file, text and white space included: 16 MiB of a recorded scenario, 200 MB of
 /// memory.
@@ -69,6 +70,15 @@ pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
     })
 }
 
+/// Letters of an id in a message.
+const ID_LETTERS: usize = 40;
+
+/// An id on one line.
+fn short(id: &str) -> String {
+    let kept: String = id.chars().take(ID_LETTERS).collect();
+    printable(&kept).replace('\n', " ")
+}
+
 /// An element, its place, and the faults found so far.
 #[derive(Debug, Clone)]
 pub(in crate::scenario) struct Xml<'a> {
@@ -126,7 +136,7 @@ impl<'a> Xml<'a> {
             .map(move |node| {
                 let name = node.tag_name().name();
                 let path = match node.attribute("id") {
-                    Some(id) => format!("{path}/{name}[{id}]"),
+                    Some(id) => format!("{path}/{name}[{}]", short(id)),
                     None => format!("{path}/{name}"),
                 };
                 Xml { node, path, faults }
@@ -187,7 +197,7 @@ impl<'a> Xml<'a> {
     }
 
     fn parsed(&self, text: &str, range: Range) -> Option<f64> {
-        let number = range.parse(text);
+        let number = range.parse(text.trim());
         if number.is_none() {
             self.fault(abbreviated(text), range);
         }

@@ -50,7 +50,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
 }
 
 /// True unless a target is given as ellipses or by several velocity sets.
-fn has_choice(target: &Target) -> bool {
+pub(super) fn has_choice(target: &Target) -> bool {
     match &target.motion {
         Motion::Ship(ship) => ship.turn_rate == 0.0,
         Motion::Sets(sets) => sets.initial.as_polygon().is_some() && sets.velocities.len() == 1,

@@ -1,5 +1,6 @@
 //! Methods of a comparison and their names.
 
+use super::applies::has_choice;
 use crate::planner::{Minimises, Objective, PLANNERS, Planner, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::Representation;
@@ -59,9 +60,8 @@ impl Method {
             }
             asked.search = search;
             if let Some(representation) = representation {
-                for target in &mut asked.targets {
-                    target.representation = representation;
-                }
+                let choosing = asked.targets.iter_mut().filter(|target| has_choice(target));
+                choosing.for_each(|target| target.representation = representation);
             }
             if planner.facts().minimises != Minimises::Objective {
                 asked.objective = Objective::SpaceTimeError;
