@@ -140,6 +140,7 @@ const SHIP_MISTAKES: &str = r#"
     "ship" | " " | targets[0].name
     beam_m | speed_spread_mps = -0.1\nbeam_m | targets[0].speed_spread_mps
     beam_m | course_spread_deg = 181\nbeam_m | targets[0].course_spread_deg
+    beam_m | starboard_turn_deg = -181\nbeam_m | targets[0].starboard_turn_deg
     beam_m | position_std_m = nan\nbeam_m | targets[0].position_std_m
     beam_m | domain = "round"\nbeam_m | targets[0].domain
     beam_m | velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m | targets[0].initial_set

@@ -400,6 +400,18 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
         .stderr(contains("there are no legs"));
 }
 
+/// Level sets shrink about the middle of the velocities, which is not the expected one here.
+#[test]
+fn a_starboard_turn_and_an_accepted_risk_exclude_each_other() {
+    let folder = Folder::new();
+    let turning = HEAD_ON.replace("beam_m = 12.0", "beam_m = 12.0\nstarboard_turn_deg = 30.0");
+    let file = folder.write("turning.toml", turning);
+    searoom(&["plan", &file]).success();
+    searoom(&["plan", &file, "--max-risk", "0.2"])
+        .code(2)
+        .stderr(contains("planner.max_risk: found 0.2; allowed: 0"));
+}
+
 /// A new file that plans at once, and nothing over another one.
 #[test]
 fn a_scenario_to_begin_with_is_written_once() {

@@ -1,7 +1,13 @@
 //! The closed loop: what it sails is what was planned, seen and judged.
 
+use std::sync::Arc;
+
 use searoom::frame::{Pose, Vector};
-use searoom::scenario::{Behaviour, Fault, NotReported, Scenario, SimulationSettings, VesselModel};
+use searoom::geometry::Polygon;
+use searoom::map::Map;
+use searoom::scenario::{
+    Behaviour, Fault, Land, NotReported, Scenario, SimulationSettings, VesselModel,
+};
 use searoom::simulation::Simulation;
 use searoom::vessel::Hull;
 
@@ -280,6 +286,34 @@ fn the_loop_keeps_off_land_and_says_where_own_ship_touches_it() {
         land.grounded
     });
     assert!(land.contains(&true));
+}
+
+/// A mutual target knows no land: it turns away as it does without a map.
+#[test]
+fn a_target_that_plans_sails_as_without_a_map() {
+    let truth = Truth::Mutual;
+    let open = meeting(EncounterKind::HeadOn, 1, &How { truth, ..CONSTANT });
+    let mut among = open.clone();
+    // behind own ship, across the line that the target means to sail
+    let ship = open.targets[0].ship().expect("a ship").pose;
+    let own = open.own_ship.pose.position;
+    let middle = own + ship.ahead() * 850.0;
+    let corners = [
+        [-300.0, -300.0],
+        [300.0, -300.0],
+        [300.0, 300.0],
+        [-300.0, 300.0],
+    ];
+    let island = corners.map(|[x, y]| middle + Vector::new(x, y)).to_vec();
+    let island = Polygon::new(&[island]).expect("a polygon");
+    let map = Map::new(vec![island]).expect("a map");
+    among.land = Some(Land {
+        map: Arc::new(map),
+        margin: 0.0,
+    });
+    let [open, among] = [open, among].map(|scenario| sail(scenario).targets[0].track.clone());
+    assert!(open.len() > 1);
+    assert_eq!(open, among);
 }
 
 #[test]

@@ -325,6 +325,13 @@ mod tests {
     }
 
     #[test]
+    fn a_long_name_ends_within_the_legend() {
+        let mut panel = panel();
+        panel.line_key(&"ship_".repeat(40), Stroke::solid("#000000", 1.0));
+        assert_eq!(panel.legend[0].label.chars().count(), LEGEND_LETTERS);
+    }
+
+    #[test]
     fn a_label_stands_beside_the_line_through_its_place() {
         let ends = [Vector::new(0.0, 400.0), Vector::new(1000.0, 420.0)];
         for line in [ends, ends.map(|p| Vector::new(p.y, p.x))] {
