@@ -1,4 +1,4 @@
-//! `searoom import`: turns files of other formats into scenario files.
+//! `searoom import` and `searoom init`: scenario files from other formats, and one to begin with.
 
 use std::fs;
 
@@ -6,11 +6,26 @@ use anyhow::Context;
 use searoom::report::write_atomically;
 use searoom::scenario::import::Assumed;
 
-use super::args::ImportArgs;
+use super::args::{ImportArgs, InitArgs};
 use super::input::files::refuse_clashes;
 use super::input::scenes::{self, Scene};
 use super::output::Output;
 use super::output::status::ExitStatus;
+
+/// Two ships in sight, every line explained.
+const TEMPLATE: &str = include_str!("../../scenarios/template.toml");
+
+/// Writes the template to a new file, and nothing over another one.
+pub fn init(args: &InitArgs, output: &Output) -> ExitStatus {
+    let file = args.file.display();
+    if args.file.symlink_metadata().is_ok() {
+        return output.refuse(&format_args!("{file}: found a file; allowed: a new name"));
+    }
+    match write_atomically(&args.file, TEMPLATE.as_bytes()) {
+        Ok(()) => output.result(&format!("wrote {file}; next: searoom plan {file}")),
+        Err(error) => output.refuse(&error),
+    }
+}
 
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {

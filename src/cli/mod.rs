@@ -5,7 +5,6 @@ mod assess;
 mod check;
 mod compare;
 mod import;
-mod init;
 mod input;
 #[cfg(feature = "recording")]
 mod inspect;
@@ -34,7 +33,7 @@ pub fn main() -> ExitCode {
     };
     let output = Output::new();
     let run = || match &arguments.command {
-        Command::Init(args) => Ok(init::init(args, &output)),
+        Command::Init(args) => Ok(import::init(args, &output)),
         Command::Check(args) => Ok(check::check(args, &output)),
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),

@@ -225,9 +225,13 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
     let both = measured.outer_intersection(&moved);
     ship.kept_positions =
         both.filter(|both| *both != measured && both.vertices().len() <= MOST_VERTICES);
-    // a wider spread says that less is known
+    // a wider spread, or a turn to another side, says that less is known
+    let beside = match ship.starboard_turn == then.starboard_turn {
+        true => 0.0,
+        false => wrap(ship.middle_course() - then.middle_course()).abs(),
+    };
     if ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
-        && ship.course_half_width() <= then.course_half_width() * (1.0 + ASSUMED)
+        && ship.course_half_width() + beside <= then.course_half_width() * (1.0 + ASSUMED)
     {
         ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
             true => velocities,

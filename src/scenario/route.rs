@@ -104,7 +104,7 @@ fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<
         for element in kind.iter().flat_map(|kind| kind.all("scheduleElement")) {
             let at = element.attribute("waypointId");
             if let Some(stay) = element.attribute("stay").filter(|stay| is_stay(stay))
-                && at != ends[1]
+                && (at.is_none() || at != ends[1])
             {
                 let found = format_args!("a stay of {}", abbreviated(stay));
                 return element.reject(found, "none: a desired trajectory does not wait");

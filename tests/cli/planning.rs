@@ -636,6 +636,34 @@ fn later_on(plan: &Value, seconds: u32, beside: f64) -> String {
     later
 }
 
+/// The velocities of before are kept for the same set, given about the course that the target has
+/// now, and not for one of equal width to another side.
+#[test]
+fn velocities_are_kept_only_for_a_target_that_may_do_no_more() {
+    let folder = Folder::new();
+    let target = "course_deg = 270.0                   # westwards, straight at own ship";
+    let with = |text: &str, course: f64, spread: f64, turn: f64| {
+        let turned = format!("starboard_turn_deg = {turn:?}\ncourse_deg = {course:?}");
+        let spread = format!("course_spread_deg = {spread:?}");
+        text.replace(target, &turned)
+            .replace("course_spread_deg = 5.0", &spread)
+    };
+    for (before, after, kept) in [
+        ([270.0, 5.0, 10.0], [278.0, 7.0, -6.0], true),
+        ([270.0, 5.0, 0.0], [270.0, 0.0, 10.0], false),
+    ] {
+        let scene = |text: &str, [course, spread, turn]: [f64; 3]| with(text, course, spread, turn);
+        let file = folder.write("first.toml", scene(HEAD_ON, before));
+        let first = json(&format!("plan {file} --json"));
+        let previous = folder.write("first.json", first.to_string());
+        let file = folder.write("later.toml", scene(&later_on(&first, 20, 0.0), after));
+        let later =
+            document(&searoom(&["plan", &file, "--previous", &previous, "--json"]).success());
+        let velocities = &later["targets"][0]["ship"]["kept_velocities"];
+        assert_eq!(velocities.is_object(), kept, "{after:?}: {velocities}");
+    }
+}
+
 #[test]
 fn a_plan_goes_on_from_the_previous_one() {
     let folder = Folder::new();
