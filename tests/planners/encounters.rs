@@ -35,6 +35,25 @@ fn a_ship_that_does_not_give_way_is_hit() {
     assert!(hit >= 30, "only {hit} of 50 undisturbed ships are hit");
 }
 
+/// Without the coarse search these plans cost 256,094 and 35,827 m².
+#[test]
+fn a_coarse_search_finds_ways_past_several_targets_that_no_manoeuvre_has() {
+    for (targets, seed, compliance, most) in [
+        (4, 12, Compliance::Shape, 160_000.0),
+        (10, 48, Compliance::None, 16_000.0),
+    ] {
+        let drawn = random_traffic(targets, seed, Placement::Random).expect("drawn");
+        let run = pipeline::run(Scenario {
+            compliance,
+            deadline: 60.0,
+            ..drawn.scenario
+        });
+        assert!(run.evaluation.is_some_and(|e| e.verified()));
+        let cost = run.planned.outcome.plan().expect("a plan").cost;
+        assert!(cost < most, "{targets} targets, seed {seed}: {cost} m²");
+    }
+}
+
 /// Tests plans that avoid the hard sets alone and pass at their edge. The margin is kept for any
 /// course of the target, with its hull turned to that course.
 #[test]

@@ -38,7 +38,7 @@ impl CostToGoGrid {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
         let half = 0.5 * top * problem.horizon;
-        let cell = 2.0 * half / (CELLS as f64 - 1.0);
+        let cell = Self::cell_size(problem);
         let step = f64::from(REACH) * cell / top;
         let layers = (problem.horizon / step).floor() as usize + 1;
         // negated on purpose: a NaN has no grid
@@ -101,6 +101,11 @@ impl CostToGoGrid {
         Some(grid)
     }
 
+    /// Cell size of the grid for a problem, metres.
+    pub(crate) fn cell_size(problem: &Problem) -> f64 {
+        problem.own.max_speed() * problem.horizon / (CELLS as f64 - 1.0)
+    }
+
     fn middle(&self, k: usize) -> Vector {
         let (column, row) = ((k % CELLS) as f64, (k / CELLS) as f64);
         self.corner + Vector::new(column, row) * self.cell
@@ -146,6 +151,40 @@ impl CostToGoGrid {
                 blocked[row * CELLS + first..=row * CELLS + last].fill(true);
             }
         }
+    }
+
+    /// Cells and instants of the least cost to go from a position at time 0: positions with their
+    /// times, metres and seconds, until the end is reached. Empty where it is out of reach.
+    pub(crate) fn path_from(&self, place: Vector) -> Vec<(f64, Vector)> {
+        let cell = (place - self.corner) / self.cell;
+        let (mut column, mut row) = (cell.x.round() as i32, cell.y.round() as i32);
+        let mut path = Vec::new();
+        for layer in 0..self.layers {
+            let reach = if layer == 0 { 1 } else { REACH };
+            let mut least = (f32::INFINITY, column, row);
+            for dy in -reach..=reach {
+                for dx in -reach..=reach {
+                    let (x, y) = (column + dx, row + dy);
+                    let within = |v: i32| (0..CELLS as i32).contains(&v);
+                    if dx * dx + dy * dy <= REACH * REACH && within(x) && within(y) {
+                        let to_go = self.to_go[self.index(layer, x as usize, y as usize)];
+                        if to_go < least.0 {
+                            least = (to_go, x, y);
+                        }
+                    }
+                }
+            }
+            if least.0 == f32::INFINITY {
+                return Vec::new();
+            }
+            (column, row) = (least.1, least.2);
+            let position = self.corner + Vector::new(f64::from(column), f64::from(row)) * self.cell;
+            path.push((self.step * layer as f64, position));
+            if least.0 == 0.0 {
+                return path;
+            }
+        }
+        Vec::new()
     }
 
     /// Cost to go from a position and time, m²; infinite where the end is out of reach.

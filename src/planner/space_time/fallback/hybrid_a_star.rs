@@ -30,7 +30,7 @@ const COURSES: f64 = 12.0;
 
 /// Resolution of the search.
 #[derive(Debug, Clone, Copy)]
-struct Resolution {
+pub(crate) struct Resolution {
     /// Length of a primitive in cells.
     way: f64,
     /// States that are distinguished per cell and time step.
@@ -39,19 +39,19 @@ struct Resolution {
     most: usize,
 }
 
-/// Coarse first, then finer.
-const RESOLUTIONS: [Resolution; 2] = [
-    Resolution {
-        way: 1.5,
-        apart: 2.0,
-        most: 3_000,
-    },
-    Resolution {
-        way: 0.75,
-        apart: 3.0,
-        most: 10_000,
-    },
-];
+/// Resolution of the first search.
+pub(crate) const COARSE: Resolution = Resolution {
+    way: 1.5,
+    apart: 2.0,
+    most: 3_000,
+};
+
+/// Resolution where the first search finds nothing.
+const FINE: Resolution = Resolution {
+    way: 0.75,
+    apart: 3.0,
+    most: 10_000,
+};
 
 /// Heuristic weight (weighted A*): slightly dearer plans for a fraction of the expansions.
 const WEIGHT: f64 = 1.1;
@@ -72,6 +72,8 @@ struct State {
     primitive: Option<Primitive>,
     pose: Pose,
     time: f64,
+    /// From the start, m².
+    cost: f64,
     is_end: bool,
 }
 
@@ -95,38 +97,53 @@ impl State {
 }
 
 /// Plan that is clear of every set and of land, by a coarse search over position, course and time.
-/// `None` where none was found within the budget. The plan is not refined: use it only where
-/// nothing else is found. Ten to several hundred milliseconds.
+/// `None` where none was found within the budget. The plan is not refined. Ten to several hundred milliseconds.
 pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Plan> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let grid = CostToGoGrid::of(problem, &proxies, clock)?;
-    RESOLUTIONS.into_iter().find_map(|resolution| {
-        let mut lattice = Lattice {
-            problem,
-            proxies: &proxies,
-            grid: &grid,
-            resolution,
-            seen: HashSet::new(),
-            clock,
-        };
-        let pose = problem.own.pose;
-        let mut search = Search::new(State {
-            before: (pose, 0.0),
-            primitive: None,
-            pose,
-            time: 0.0,
-            is_end: false,
-        });
-        search.weigh(WEIGHT);
-        let Stop::Goal(end) = search.next_goal(&mut lattice, resolution.most) else {
-            return None;
-        };
-        let states = search.way_to(end).into_iter();
-        let states = states.map(|index| search.nodes()[index].state);
-        let motion = states.flat_map(|state| state.motion(problem.own.turning_radius));
-        Plan::measured(problem, motion.collect(), None)
-    })
+    let motion = [COARSE, FINE].into_iter().find_map(|resolution| {
+        let limit = f64::INFINITY;
+        searched(problem, &proxies, &grid, (resolution, limit), clock)
+    });
+    Plan::measured(problem, motion?, None)
+}
+
+/// Motion to the end, clear of every set and of land, that costs less than about `limit`, m². The
+/// limit bounds the search: what costs more with its cost to go by the grid is not followed.
+pub(crate) fn searched(
+    problem: &Problem,
+    proxies: &[Proxy],
+    grid: &CostToGoGrid,
+    (resolution, limit): (Resolution, f64),
+    clock: Clock,
+) -> Option<Vec<Segment>> {
+    let mut lattice = Lattice {
+        problem,
+        proxies,
+        grid,
+        resolution,
+        limit,
+        seen: HashSet::new(),
+        clock,
+    };
+    let pose = problem.own.pose;
+    let mut search = Search::new(State {
+        before: (pose, 0.0),
+        primitive: None,
+        pose,
+        time: 0.0,
+        cost: 0.0,
+        is_end: false,
+    });
+    search.weigh(WEIGHT);
+    let Stop::Goal(end) = search.next_goal(&mut lattice, resolution.most) else {
+        return None;
+    };
+    let states = search.way_to(end).into_iter();
+    let states = states.map(|index| search.nodes()[index].state);
+    let motion = states.flat_map(|state| state.motion(problem.own.turning_radius));
+    Some(motion.collect())
 }
 
 /// Graph of motion primitives.
@@ -135,6 +152,8 @@ struct Lattice<'a> {
     proxies: &'a [Proxy<'a>],
     grid: &'a CostToGoGrid,
     resolution: Resolution,
+    /// Greatest cost with the cost to go, m².
+    limit: f64,
     seen: HashSet<[i64; 4]>,
     clock: Clock,
 }
@@ -163,6 +182,7 @@ impl Lattice<'_> {
             true => problem.error_to_end(&motion),
             false => problem.error_of(&motion),
         };
+        state.cost = from.cost + cost;
         (state.time <= problem.horizon).then_some((state, cost))
     }
 }
@@ -196,10 +216,13 @@ impl Space for Lattice<'_> {
     }
 
     fn bound(&mut self, state: &State) -> f64 {
-        if state.is_end {
-            0.0
-        } else {
-            self.grid.from(state.pose.position, state.time)
+        let to_go = match state.is_end {
+            true => 0.0,
+            false => self.grid.from(state.pose.position, state.time),
+        };
+        match state.cost + to_go > self.limit {
+            true => f64::INFINITY,
+            false => to_go,
         }
     }
 

@@ -15,6 +15,7 @@ pub(crate) mod trial;
 
 use crate::frame::Side;
 use crate::planner::AGAINST_THE_RULES;
+use crate::planner::clock::Clock;
 use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
 use crate::planner::space_time::refinement::model::Model;
 use crate::planner::space_time::refinement::quadratic::{
@@ -325,6 +326,18 @@ impl Refinement {
     pub(crate) fn finish(&mut self, context: &Context) {
         self.finished = true;
         self.restore(context);
+    }
+
+    /// Takes at most `most` steps and ends; fewer, without ending, after the deadline.
+    pub(crate) fn run(mut self, context: &Context, most: usize, clock: Clock) -> Self {
+        for _ in 0..most {
+            if self.finished || clock.is_up() {
+                return self;
+            }
+            self.step(context);
+        }
+        self.finish(context);
+        self
     }
 
     /// Takes one SQP step.

@@ -19,6 +19,9 @@ pub(crate) struct SearchBudget {
     pub rounds: usize,
     /// Largest number of manoeuvres that get segment insertions.
     pub leaders: usize,
+    /// Relative cost difference from the best one up to which a manoeuvre gets them: insertions
+    /// gain more among several targets.
+    pub leader_margin: f64,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
     /// Largest number of nodes of the conflict search; 0 for none.
@@ -33,6 +36,7 @@ impl SearchBudget {
         steps: MAX_STEPS,
         rounds: 8,
         leaders: 2,
+        leader_margin: 0.05,
         insert_twice: true,
         conflict_nodes: 0,
     };
@@ -44,7 +48,8 @@ impl SearchBudget {
     pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
         races: false,
-        leaders: 3,
+        leaders: 8,
+        leader_margin: 0.3,
         conflict_nodes: 64,
         ..Self::ONE_TARGET
     };
@@ -52,7 +57,6 @@ impl SearchBudget {
     /// Budget of a thorough search among several targets.
     pub(crate) const THOROUGH: Self = Self {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
-        leaders: 4,
         conflict_nodes: 256,
         ..Self::SEVERAL_TARGETS
     };

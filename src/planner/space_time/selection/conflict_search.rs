@@ -26,7 +26,7 @@ const MAX_ANSWERS: usize = 3;
 const STEPS: usize = 10;
 
 /// Largest number of corners of a manoeuvre: with more, its segment variables do not fit.
-const MAX_CORNERS: usize = 6;
+pub(crate) const MAX_CORNERS: usize = 6;
 
 /// Largest numbers of corners with turns at the slow speed too, and with lines at the normal speed.
 const MOST_WITH_SLOW_TURNS: usize = 3;
@@ -50,9 +50,9 @@ const SHARPEST: f64 = 2.2;
 
 /// Corner of a manoeuvre: where its lines meet, and about when.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
-    time: f64,
-    position: Vector,
+pub(crate) struct Corner {
+    pub time: f64,
+    pub position: Vector,
 }
 
 /// Manoeuvre that is clear of the targets considered.
@@ -68,23 +68,28 @@ struct Node {
     considered: Vec<usize>,
 }
 
-/// Manoeuvres that are clear of every target and cost less than `limit` (m²), the cheapest first;
-/// takes at most `most` nodes.
+impl Node {
+    fn root(nominal_motion: &[Segment]) -> Self {
+        Self {
+            guess: None,
+            motion: nominal_motion.to_vec(),
+            cost: 0.0,
+            corners: Vec::new(),
+            to_goal: false,
+            considered: Vec::new(),
+        }
+    }
+}
+
+/// Manoeuvres that are clear of every target, the cheapest first; takes at most `most` nodes.
 pub(crate) fn resolve(
     context: &Context,
     nominal_motion: &[Segment],
-    (most, limit): (usize, f64),
+    most: usize,
     clock: Clock,
 ) -> Vec<InitialGuess> {
     let mut found = Vec::new();
-    let mut open = vec![Node {
-        guess: None,
-        motion: nominal_motion.to_vec(),
-        cost: 0.0,
-        corners: Vec::new(),
-        to_goal: false,
-        considered: Vec::new(),
-    }];
+    let mut open = vec![Node::root(nominal_motion)];
     for _ in 0..most {
         let cheapest = (0..open.len()).min_by(|a, b| open[*a].cost.total_cmp(&open[*b].cost));
         let (false, Some(cheapest)) = (clock.is_up() || found.len() == MAX_ANSWERS, cheapest)
@@ -103,8 +108,7 @@ pub(crate) fn resolve(
         }
         let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
         if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
-            let children = children(context, &node, obstacle, &conflict, clock);
-            open.extend(children.into_iter().filter(|child| child.cost < limit));
+            open.extend(children(context, &node, obstacle, &conflict, clock));
         }
     }
     found
@@ -201,6 +205,29 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
     segment.pose_at(time.max(segment.start_time))
 }
 
+/// Refinement of the manoeuvre that leaves the nominal motion at the first corner and goes through
+/// the others, to the last waypoint or back onto the route; `None` where none fits.
+pub(crate) fn through(
+    context: &Context,
+    nominal_motion: &[Segment],
+    corners: &[Corner],
+    to_goal: bool,
+) -> Option<Refinement> {
+    let node = Node {
+        to_goal,
+        ..Node::root(nominal_motion)
+    };
+    fitting(context, &node, corners)
+}
+
+/// Refinement of the node's manoeuvre with these corners; `None` where none fits.
+fn fitting(context: &Context, node: &Node, corners: &[Corner]) -> Option<Refinement> {
+    let angles = RETURN_ANGLES.into_iter();
+    angles
+        .filter_map(|angle| guess(context, node, corners, angle))
+        .find_map(|guess| Refinement::fitting(context, guess))
+}
+
 /// Refines a manoeuvre with these corners.
 fn child(
     context: &Context,
@@ -209,17 +236,7 @@ fn child(
     considered: &[usize],
     clock: Clock,
 ) -> Option<Node> {
-    let angles = RETURN_ANGLES.into_iter();
-    let mut refinement = angles
-        .filter_map(|angle| guess(context, node, corners, angle))
-        .find_map(|guess| Refinement::fitting(context, guess))?;
-    for _ in 0..STEPS {
-        if refinement.is_finished() || clock.is_up() {
-            break;
-        }
-        refinement.step(context);
-    }
-    refinement.finish(context);
+    let refinement = fitting(context, node, corners)?.run(context, STEPS, clock);
     let guess = refinement.best()?;
     let rollout = guess
         .structure

@@ -2,6 +2,7 @@
 //! candidate wins.
 
 pub(crate) mod budget;
+mod coarse_search;
 pub(crate) mod conflict_search;
 pub(crate) mod initial_guess;
 mod tidy;
@@ -18,6 +19,7 @@ use crate::planner::space_time::refinement::insertion::{pruned, with_insertions}
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::selection::budget::SearchBudget;
+use crate::planner::space_time::selection::coarse_search::CoarseSearch;
 use crate::planner::space_time::selection::initial_guess::{
     Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
 };
@@ -61,9 +63,7 @@ const PASS_AHEAD_RATIO: f64 = 1.2;
 /// Largest number of conflicts with manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// Relative cost difference up to which a manoeuvre still gets insertions, and below which two
-/// manoeuvres count as the same.
-const LEADER_MARGIN: f64 = 0.05;
+/// Relative cost difference below which two manoeuvres count as the same.
 const SAME_COST: f64 = 1e-3;
 
 /// Length above which lines are divided for the first and for the second insertion, metres.
@@ -205,11 +205,7 @@ impl<'a> Selection<'a> {
             }
         }
         if self.search_budget.conflict_nodes > 0 {
-            let least = best_of(&running).map_or(f64::INFINITY, Refinement::best_cost);
-            let within = (self.search_budget.conflict_nodes, least);
-            let found = conflict_search::resolve(&self.context, nominal_motion, within, clock);
-            let refined = |guess| Refinement::fitting(&self.context, guess);
-            running.extend(found.into_iter().filter_map(refined));
+            self.search_among_several(&mut running, nominal_motion, clock);
         }
         if let Some((tidy, guesses)) = tidy {
             self.add_tidy(&tidy, &running, &guesses, clock);
@@ -220,10 +216,40 @@ impl<'a> Selection<'a> {
         clock.is_up()
     }
 
+    /// Adds manoeuvres among several targets: of the coarse search, and of the conflict search.
+    fn search_among_several(
+        &mut self,
+        running: &mut Vec<Refinement>,
+        nominal_motion: &[Segment],
+        clock: Clock,
+    ) {
+        let least =
+            |running: &[Refinement]| best_of(running).map_or(f64::INFINITY, Refinement::best_cost);
+        let context = self.context;
+        let coarse = CoarseSearch::new(context, nominal_motion, least(running), clock);
+        running.extend(coarse.iter().flat_map(|c| c.along_grid(clock)));
+        let most = self.search_budget.conflict_nodes;
+        let found = conflict_search::resolve(&context, nominal_motion, most, clock);
+        running.extend(
+            found
+                .into_iter()
+                .filter_map(|guess| Refinement::fitting(&context, guess)),
+        );
+        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least(running), clock)) {
+            self.add_candidate(motion);
+            running.extend(along);
+        }
+    }
+
     /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
     /// them. In the end prunes short segments where that costs almost nothing.
     fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
-        let leaders = leaders(running, self.search_budget.leaders, LEADER_MARGIN);
+        let SearchBudget {
+            leaders: most,
+            leader_margin: margin,
+            ..
+        } = *self.search_budget;
+        let leaders = leaders(running, most, margin);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
@@ -312,15 +338,7 @@ fn refined(
     most: usize,
     clock: Clock,
 ) -> Option<Refinement> {
-    let mut refinement = Refinement::fitting(context, guess)?;
-    for _ in 0..most {
-        if refinement.is_finished() || clock.is_up() {
-            return Some(refinement);
-        }
-        refinement.step(context);
-    }
-    refinement.finish(context);
-    Some(refinement)
+    Some(Refinement::fitting(context, guess)?.run(context, most, clock))
 }
 
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
