@@ -50,14 +50,21 @@ impl Range {
         Self { unit, ..self }
     }
 
-    /// A range of speeds in knots from one in m/s: round limits, just inside those in m/s.
-    pub(crate) fn in_knots(self) -> Self {
-        let knot = mps_from_knots(1.0);
+    /// The range in units of another size: round limits, just inside its own.
+    pub(crate) fn in_units_of(self, size: f64) -> Self {
+        if size == 1.0 {
+            return self;
+        }
         Self {
-            low: (self.low / knot * 1e3).ceil() / 1e3,
-            high: (self.high / knot).floor(),
+            low: (self.low / size * 1e3).ceil() / 1e3,
+            high: (self.high / size).floor(),
             ..self
         }
+    }
+
+    /// A range of speeds in knots from one in m/s.
+    pub(crate) fn in_knots(self) -> Self {
+        self.in_units_of(mps_from_knots(1.0))
     }
 
     pub(crate) fn contains(&self, value: f64) -> bool {

@@ -3,13 +3,13 @@
 use std::fmt::Display;
 
 use super::{Field, Range};
-use crate::frame::mps_from_knots;
+use crate::frame::NAUTICAL_MILE_M;
 
 /// A known key this similar to an unknown one (Jaro-Winkler) was meant.
 const SIMILAR: f64 = 0.8;
 
 /// Words of other systems in keys, and ours.
-const OTHER_WORDS: [(&str, &str); 8] = [
+const OTHER_WORDS: [(&str, &str); 10] = [
     ("heading", "course"),
     ("hdg", "course"),
     ("cog", "course"),
@@ -18,6 +18,19 @@ const OTHER_WORDS: [(&str, &str); 8] = [
     ("breadth", "beam"),
     ("width", "beam"),
     ("knots", "kn"),
+    ("nm", "nmi"),
+    ("cables", "cbl"),
+];
+
+/// Suffix of a key and the size of its unit.
+type Unit = (&'static str, f64);
+
+/// Units of speeds in m/s and of distances in metres.
+const SPEED_UNITS: [Unit; 2] = [("mps", 1.0), ("kn", NAUTICAL_MILE_M / 3600.0)];
+const DISTANCE_UNITS: [Unit; 3] = [
+    ("m", 1.0),
+    ("nmi", NAUTICAL_MILE_M),
+    ("cbl", 0.1 * NAUTICAL_MILE_M),
 ];
 
 /// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
@@ -105,33 +118,61 @@ impl<'a> Table<'a> {
         self.take(key)?.choice(words)
     }
 
-    /// The field `<stem>_mps` or `<stem>_kn` and its unit in m/s; both at once are a fault.
-    fn speed_field(&mut self, stem: &str) -> Option<(Field<'a>, f64)> {
-        let (metric, nautical) = (format!("{stem}_mps"), format!("{stem}_kn"));
-        match (self.take(&metric), self.take(&nautical)) {
-            (Some(_), Some(field)) => {
-                field.fault(
-                    format_args!("{nautical} beside {metric}"),
-                    "one of the two, not both",
-                );
-                None
+    /// The field of a quantity in one of its units, and the size of that unit; two at once are a
+    /// fault.
+    fn field_in(&mut self, stem: &str, units: &[Unit]) -> Option<(Field<'a>, f64)> {
+        let mut found: Option<(String, Field<'a>, f64)> = None;
+        for (suffix, size) in units {
+            let key = format!("{stem}_{suffix}");
+            match (&found, self.take(&key)) {
+                (Some((first, ..)), Some(field)) => {
+                    let beside = format_args!("{key} beside {first}");
+                    field.fault(beside, "one of the two, not both");
+                    return None;
+                }
+                (None, Some(field)) => found = Some((key, field, *size)),
+                (_, None) => {}
             }
-            (Some(field), None) => Some((field, 1.0)),
-            (None, Some(field)) => Some((field, mps_from_knots(1.0))),
-            (None, None) => None,
+        }
+        found.map(|(_, field, size)| (field, size))
+    }
+
+    /// A distance in metres from `<stem>_m`, `<stem>_nmi` or `<stem>_cbl`; the range is in metres.
+    pub(crate) fn distance(&mut self, stem: &str, range: Range) -> Option<f64> {
+        let (field, unit) = self.field_in(stem, &DISTANCE_UNITS)?;
+        Some(field.number(range.in_units_of(unit))? * unit)
+    }
+
+    /// A distance that must be there in one of the units.
+    pub(crate) fn required_distance(&mut self, stem: &str, range: Range) -> Option<f64> {
+        self.require_in(stem, &DISTANCE_UNITS, range);
+        self.distance(stem, range)
+    }
+
+    /// True if the quantity is given in one of the units.
+    fn has_in(&mut self, stem: &str, units: &[Unit]) -> bool {
+        let keys = units.iter().map(|(suffix, _)| format!("{stem}_{suffix}"));
+        // every key counts as known
+        keys.filter(|key| self.has(key)).count() > 0
+    }
+
+    /// Notes the quantity as missing if it is given in none of the units.
+    fn require_in(&mut self, stem: &str, units: &[Unit], allowed: impl Display) {
+        if !self.has_in(stem, units) {
+            let keys = units.iter().map(|(suffix, _)| format!("{stem}_{suffix}"));
+            self.missing.push((keys.collect(), allowed.to_string()));
         }
     }
 
     /// True if the speed is given in either unit.
     pub(crate) fn has_speed(&mut self, stem: &str) -> bool {
-        let metric = self.has(&format!("{stem}_mps"));
-        self.has(&format!("{stem}_kn")) || metric
+        self.has_in(stem, &SPEED_UNITS)
     }
 
     /// A speed in m/s from `<stem>_mps` or `<stem>_kn`; the range is in m/s.
     pub(crate) fn speed(&mut self, stem: &str, range: Range) -> Option<f64> {
-        let (field, unit) = self.speed_field(stem)?;
-        Some(field.number(in_unit(range, unit))? * unit)
+        let (field, unit) = self.field_in(stem, &SPEED_UNITS)?;
+        Some(field.number(range.in_units_of(unit))? * unit)
     }
 
     /// A speed that must be there in one of the units.
@@ -142,12 +183,7 @@ impl<'a> Table<'a> {
 
     /// Notes the speed as missing if it is given in neither unit.
     pub(crate) fn require_speed(&mut self, stem: &str, allowed: impl Display) {
-        if !self.has_speed(stem) {
-            self.missing.push((
-                vec![format!("{stem}_mps"), format!("{stem}_kn")],
-                allowed.to_string(),
-            ));
-        }
+        self.require_in(stem, &SPEED_UNITS, allowed);
     }
 
     /// Speeds in m/s from the list `<stem>_mps` or `<stem>_kn`, and the field of the list.
@@ -156,9 +192,9 @@ impl<'a> Table<'a> {
         stem: &str,
         range: Range,
     ) -> Option<(Field<'a>, Option<Vec<f64>>)> {
-        let (field, unit) = self.speed_field(stem)?;
+        let (field, unit) = self.field_in(stem, &SPEED_UNITS)?;
         let speeds = field
-            .numbers(in_unit(range, unit))
+            .numbers(range.in_units_of(unit))
             .map(|numbers| numbers.into_iter().map(|n| n * unit).collect());
         Some((field, speeds))
     }
@@ -187,18 +223,14 @@ impl<'a> Table<'a> {
             self.field.fault_at(name, found, allowed);
         }
         for (keys, allowed) in missing {
-            let or = match keys.get(1) {
-                Some(other) => format!(" (or {other})"),
-                None => String::new(),
+            let or = match &keys[1..] {
+                [] => String::new(),
+                others => format!(" (or {})", others.join(", ")),
             };
             let allowed = format_args!("{allowed}; it is required{or}");
             self.field.fault_at(&keys[0], "nothing", allowed);
         }
     }
-}
-
-fn in_unit(range: Range, unit: f64) -> Range {
-    if unit == 1.0 { range } else { range.in_knots() }
 }
 
 fn nearest<'k>(name: &str, known: &'k [String]) -> Option<&'k String> {

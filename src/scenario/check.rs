@@ -53,7 +53,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .required_table("own_ship")
         .map(|table| own_ship(table, &plane));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
-    let margin = own_ship.as_ref().and_then(|own| own.land_margin);
+    let margin = own_ship.as_ref().map(|own| own.land_margin);
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .required_table("mission")
@@ -143,18 +143,18 @@ struct OwnShipFields {
     ship: Option<OwnShip>,
     speed: Option<f64>,
     /// Metres.
-    land_margin: Option<f64>,
+    land_margin: f64,
 }
 
 fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     let pose = pose(&mut table, plane);
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(&mut table);
-    let turning_radius = table.required_number("turning_radius_m", limits::LENGTH);
+    let turning_radius = table.required_distance("turning_radius", limits::LENGTH);
     let speeds = own_speeds(&mut table, speed);
-    let margin = table.number("safety_margin_m", limits::DISTANCE);
-    let tracking_margin = table.number("tracking_margin_m", limits::DISTANCE);
-    let land_margin = table.number_or("land_margin_m", limits::DISTANCE, 0.0);
+    let margin = table.distance("safety_margin", limits::DISTANCE);
+    let tracking_margin = table.distance("tracking_margin", limits::DISTANCE);
+    let land_margin = table.distance("land_margin", limits::DISTANCE);
     table.finish();
     let ship = || {
         let hull = hull?;
@@ -171,7 +171,7 @@ fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     OwnShipFields {
         ship: ship(),
         speed,
-        land_margin,
+        land_margin: land_margin.unwrap_or(0.0),
     }
 }
 

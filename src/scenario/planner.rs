@@ -63,7 +63,7 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
         in_sight: table.choice("visibility", &[("good", true), ("restricted", false)]),
         ample_time: table.number("ample_time_s", limits::BEFORE_CPA),
         risk_time: table.number("tcpa_limit_s", limits::BEFORE_CPA),
-        risk_distance: table.number("cpa_limit_m", limits::DISTANCE),
+        risk_distance: table.distance("cpa_limit", limits::DISTANCE),
     };
     table.finish();
     fields

@@ -198,8 +198,8 @@ fn domain(field: &Field) -> Option<DomainKind> {
         ]);
     }
     let mut table = field.table("a table")?;
-    let [fore, aft, port, starboard] = ["fore_m", "aft_m", "port_m", "starboard_m"]
-        .map(|key| table.required_number(key, limits::DISTANCE));
+    let [fore, aft, port, starboard] = ["fore", "aft", "port", "starboard"]
+        .map(|side| table.required_distance(side, limits::DISTANCE));
     table.finish();
     Some(DomainKind::Custom {
         fore: fore?,

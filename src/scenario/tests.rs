@@ -91,6 +91,50 @@ fn knots_replace_lists_too() {
 }
 
 #[test]
+fn miles_and_cables_replace_metres() {
+    let text = SCENARIO.replace(
+        "turning_radius_m = 100",
+        "turning_radius_cbl = 0.5\nsafety_margin_nmi = 0.1\nland_margin_cbl = 1",
+    );
+    let domain = "domain = { fore_nmi = 1, aft_cbl = 2, port_m = 300, starboard_cbl = 5 }";
+    let text = format!("{text}[planner]\ncpa_limit_nmi = 2\n{SHIP}{domain}");
+    let scenario = Scenario::parse(&text).expect("valid");
+    let own = &scenario.own_ship;
+    assert!((own.turning_radius - 92.6).abs() < 1e-9);
+    assert!((own.safety_margin - 185.2).abs() < 1e-9);
+    let ship = scenario.targets[0].ship().expect("a ship");
+    let DomainKind::Custom {
+        fore,
+        aft,
+        port,
+        starboard,
+    } = ship.domain
+    else {
+        panic!("no domain of its own: {:?}", ship.domain);
+    };
+    for (found, metres) in [
+        (fore, 1852.0),
+        (aft, 370.4),
+        (port, 300.0),
+        (starboard, 926.0),
+    ] {
+        assert!((found - metres).abs() < 1e-9, "{found} {metres}");
+    }
+    let twice = text.replace("fore_nmi", "fore_m = 1852, fore_nmi");
+    assert_eq!(paths(&twice), ["targets[0].domain.fore_nmi"]);
+    let none = text.replace("fore_nmi = 1, ", "");
+    assert_eq!(paths(&none), ["targets[0].domain.fore_m"]);
+    let far = text.replace("fore_nmi = 1", "fore_nmi = 1e9");
+    assert_eq!(paths(&far), ["targets[0].domain.fore_nmi"]);
+    let newton_metres = text.replace("cpa_limit_nmi", "cpa_limit_nm");
+    let faults = Scenario::parse(&newton_metres).expect_err("faulty");
+    assert_eq!(
+        faults[0].found,
+        "an unknown key, perhaps for 'cpa_limit_nmi'"
+    );
+}
+
+#[test]
 fn explicit_sets_are_taken_as_they_are() {
     let text = format!(
         "{SCENARIO}[[targets]]\nname = \"figure 1\"\n\

@@ -130,8 +130,9 @@ fn the_guide_has_every_field_of_a_scenario() {
     for fault in unknown {
         let keys = fault.allowed.strip_prefix("one of ").expect("a list");
         for key in keys.split(", ") {
-            // the guide states once that knots may replace metres per second
-            let key = &key.replace("_kn", "_mps");
+            // the guide states once that knots, miles and cables may replace metres
+            let key = key.replace("_kn", "_mps");
+            let key = &key.replace("_nmi", "_m").replace("_cbl", "_m");
             let is_word = |text: &str| {
                 let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
                 words.any(|word| word == key)
