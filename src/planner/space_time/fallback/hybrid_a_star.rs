@@ -109,8 +109,8 @@ pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Plan> {
     Plan::measured(problem, motion?, None)
 }
 
-/// Motion to the end, clear of every set and of land, that costs less than about `limit`, m². The
-/// limit bounds the search: what costs more with its cost to go by the grid is not followed.
+/// Motion to the end, clear of every set and of land, that costs at most `limit`, m². The limit
+/// bounds the search: what costs more with its cost to go by the grid is not followed.
 pub(crate) fn searched(
     problem: &Problem,
     proxies: &[Proxy],
@@ -152,7 +152,7 @@ struct Lattice<'a> {
     proxies: &'a [Proxy<'a>],
     grid: &'a CostToGoGrid,
     resolution: Resolution,
-    /// Greatest cost with the cost to go, m².
+    /// Greatest cost so far plus cost to go, m².
     limit: f64,
     seen: HashSet<[i64; 4]>,
     clock: Clock,
@@ -166,7 +166,7 @@ impl Lattice<'_> {
         [place.x, place.y, course, time].map(|v| (self.resolution.apart * v).round() as i64)
     }
 
-    /// State after a primitive, with its cost; `None` where it is too late.
+    /// State after a primitive, with its cost; `None` where it is too late or too expensive.
     fn after(&self, from: &State, primitive: Primitive, is_end: bool) -> Option<(State, f64)> {
         let problem = self.problem;
         let mut state = State {
@@ -183,7 +183,11 @@ impl Lattice<'_> {
             false => problem.error_of(&motion),
         };
         state.cost = from.cost + cost;
-        (state.time <= problem.horizon).then_some((state, cost))
+        let least = match is_end {
+            true => state.cost,
+            false => state.cost + self.grid.from(state.pose.position, state.time),
+        };
+        (state.time <= problem.horizon && least <= self.limit).then_some((state, cost))
     }
 }
 
@@ -216,13 +220,9 @@ impl Space for Lattice<'_> {
     }
 
     fn bound(&mut self, state: &State) -> f64 {
-        let to_go = match state.is_end {
+        match state.is_end {
             true => 0.0,
             false => self.grid.from(state.pose.position, state.time),
-        };
-        match state.cost + to_go > self.limit {
-            true => f64::INFINITY,
-            false => to_go,
         }
     }
 

@@ -328,7 +328,7 @@ impl Refinement {
         self.restore(context);
     }
 
-    /// Takes at most `most` steps and ends; fewer, without ending, after the deadline.
+    /// Takes at most `most` steps, then [`Self::finish`]; after the deadline neither.
     pub(crate) fn run(mut self, context: &Context, most: usize, clock: Clock) -> Self {
         for _ in 0..most {
             if self.finished || clock.is_up() {

@@ -24,7 +24,7 @@ pub(crate) struct SearchBudget {
     pub leader_margin: f64,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
-    /// Largest number of nodes of the conflict search; 0 for none.
+    /// Largest number of nodes of the conflict search; 0 for no search among several targets.
     pub conflict_nodes: usize,
 }
 
@@ -42,9 +42,9 @@ impl SearchBudget {
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
-    /// conflict are less often clear of all; the conflict search finds what they miss. A graph plan
-    /// that is not optimal is usually as good an initial guess. The first stage is short; the later
-    /// ones weight the heuristic less.
+    /// conflict are less often clear of all; the coarse and the conflict search find what they
+    /// miss. A graph plan that is not optimal is usually as good an initial guess. The first stage
+    /// is short; the later ones weight the heuristic less.
     pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
         races: false,

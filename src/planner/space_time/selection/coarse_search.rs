@@ -5,12 +5,15 @@
 //! corners and refined like any other manoeuvre.
 
 use crate::frame::Vector;
+use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::fallback::hybrid_a_star;
 use crate::planner::space_time::refinement::Refinement;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::conflict_search::{Corner, MAX_CORNERS, through};
+use crate::planner::space_time::selection::conflict_search::{
+    Corner, MAX_CORNERS, SHORTEST_M, through,
+};
 use crate::planner::space_time::selection::warm_start::initial_guess_from;
 use crate::trajectory::Segment;
 
@@ -50,7 +53,7 @@ impl<'a> CoarseSearch<'a> {
         clock: Clock,
     ) -> Option<Self> {
         let problem = context.problem;
-        if least < TOO_CHEAP * CostToGoGrid::cell_size(problem).powi(2) {
+        if is_too_cheap(problem, least) {
             return None;
         }
         Some(Self {
@@ -62,7 +65,9 @@ impl<'a> CoarseSearch<'a> {
 
     /// Refined manoeuvres along the cheapest path of the grid.
     pub(crate) fn along_grid(&self, clock: Clock) -> Vec<Refinement> {
-        let path = self.grid.path_from(self.context.problem.own.pose.position);
+        let problem = self.context.problem;
+        let start = problem.own.pose.position;
+        let path = self.grid.path_from(start, problem.desired.end());
         self.along(path, GRID_TOLERANCE, clock)
     }
 
@@ -73,7 +78,7 @@ impl<'a> CoarseSearch<'a> {
         least: f64,
         clock: Clock,
     ) -> Option<(Vec<Segment>, Vec<Refinement>)> {
-        if !least.is_finite() {
+        if !least.is_finite() || is_too_cheap(self.context.problem, least) {
             return None;
         }
         let Context {
@@ -95,29 +100,21 @@ impl<'a> CoarseSearch<'a> {
 
     /// Refined manoeuvres along a path, given by times and positions: one to the last waypoint, and
     /// one back onto the route after the last corner that is off it.
-    fn along(&self, mut path: Vec<(f64, Vector)>, cells: f64, clock: Clock) -> Vec<Refinement> {
-        let desired = self.context.problem.desired;
-        let [first, .., last] = &mut path[..] else {
-            return Vec::new();
-        };
-        (first.1, last.1) = (self.context.problem.own.pose.position, desired.end());
-        let mut tolerance = cells * self.grid.cell;
-        let mut kept = simplified(&path, tolerance);
-        while kept.len() > MAX_CORNERS + 1 {
-            tolerance *= COARSER;
-            kept = simplified(&path, tolerance);
-        }
-        let end = kept.len() - 1;
-        let corners: Vec<Corner> = kept[..end]
-            .iter()
-            .map(|&(time, position)| Corner { time, position })
-            .collect();
-        let off_route = |corner: &Corner| {
-            let nearest = desired.nearest(corner.position, corner.time, 0.0);
+    fn along(&self, path: Vec<(f64, Vector)>, cells: f64, clock: Clock) -> Vec<Refinement> {
+        let tolerance = cells * self.grid.cell;
+        let problem = self.context.problem;
+        let off = |corner: &Corner, time_weight: f64| {
+            let desired = problem.desired;
+            let nearest = desired.nearest(corner.position, corner.time, time_weight);
             nearest.error > tolerance * tolerance
         };
-        let last_off = corners.iter().rposition(off_route).unwrap_or(0);
-        let mut ways = vec![(&corners[..], true)];
+        let corners = corners_of(path, problem, tolerance, |c| off(c, problem.time_weight));
+        let last_off = corners.iter().rposition(|c| off(c, 0.0)).unwrap_or(0);
+        let mut ways = Vec::new();
+        // one corner alone is where the path begins
+        if corners.len() > 1 {
+            ways.push((&corners[..], true));
+        }
         if last_off > 0 {
             ways.push((&corners[..=last_off], false));
         }
@@ -129,6 +126,45 @@ impl<'a> CoarseSearch<'a> {
             })
             .collect()
     }
+}
+
+/// True for a cost that the grid is too coarse to undercut, m².
+fn is_too_cheap(problem: &Problem, cost: f64) -> bool {
+    cost < TOO_CHEAP * CostToGoGrid::cell_size(problem).powi(2)
+}
+
+/// At most [`MAX_CORNERS`] corners of a path to the last waypoint, without the end. The first is
+/// where the path leaves the desired trajectory; a wait ends in one corner.
+fn corners_of(
+    mut path: Vec<(f64, Vector)>,
+    problem: &Problem,
+    mut tolerance: f64,
+    is_off: impl Fn(&Corner) -> bool,
+) -> Vec<Corner> {
+    let [first, .., last] = &mut path[..] else {
+        return Vec::new();
+    };
+    (first.1, last.1) = (problem.own.pose.position, problem.desired.end());
+    let corner = |&(time, position): &(f64, Vector)| Corner { time, position };
+    let Some(leaves) = path.iter().position(|point| is_off(&corner(point))) else {
+        return Vec::new();
+    };
+    let path = &path[leaves.saturating_sub(1)..];
+    let mut kept = simplified(path, tolerance);
+    while kept.len() > MAX_CORNERS + 1 {
+        tolerance *= COARSER;
+        kept = simplified(path, tolerance);
+    }
+    kept.pop();
+    let mut corners: Vec<Corner> = kept.iter().map(corner).collect();
+    corners.dedup_by(|later, earlier| {
+        let waits = (later.position - earlier.position).norm() < SHORTEST_M;
+        if waits {
+            earlier.time = later.time;
+        }
+        waits
+    });
+    corners
 }
 
 /// Points of a path, given by times and positions, between which it is straight and steady within a
@@ -161,6 +197,43 @@ fn simplified(path: &[(f64, Vector)], tolerance: f64) -> Vec<(f64, Vector)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::fixtures::own_ship;
+
+    #[test]
+    fn a_path_has_few_corners_from_where_it_leaves_the_route() {
+        let points = [Vector::zeros(), Vector::new(3000.0, 0.0)];
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        let own = own_ship(&[5.0]);
+        let problem = Problem::new(&own, &desired, &[], 900.0);
+        let corners = |path: Vec<(f64, Vector)>| {
+            corners_of(path, &problem, 10.0, |c| c.position.y.abs() > 10.0)
+        };
+        let at = |time: f64, east: f64, north: f64| (time, Vector::new(east, north));
+        let on_route = (0..10).map(|k| at(20.0 * f64::from(k), 100.0 * f64::from(k), 0.0));
+        assert!(corners(on_route.clone().collect()).is_empty());
+        assert!(corners(vec![at(0.0, 0.0, 0.0)]).is_empty());
+        // leaves at 180 s, waits from 220 s to 300 s, and goes to the end
+        let detour = [
+            at(220.0, 1100.0, 200.0),
+            at(300.0, 1100.0, 200.0),
+            at(700.0, 2990.0, 0.0),
+        ];
+        let found = corners(on_route.clone().chain(detour).collect());
+        let expected = [at(180.0, 900.0, 0.0), at(300.0, 1100.0, 200.0)];
+        assert_eq!(
+            found
+                .iter()
+                .map(|c| (c.time, c.position))
+                .collect::<Vec<_>>(),
+            expected
+        );
+        let zigzag = (10..40).map(|k| {
+            let side = if k % 2 == 0 { 150.0 } else { -150.0 };
+            at(20.0 * f64::from(k), 70.0 * f64::from(k), side)
+        });
+        assert!(corners(on_route.chain(zigzag).collect()).len() <= MAX_CORNERS);
+    }
 
     #[test]
     fn a_path_keeps_its_corners_and_its_changes_of_speed() {

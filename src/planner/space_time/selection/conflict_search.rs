@@ -40,7 +40,7 @@ const ON_ROUTE: f64 = 0.05;
 const TURN_OUT: f64 = 0.6;
 
 /// Metres. A manoeuvre does not return where its last corner is.
-const SHORTEST_M: f64 = 1.0;
+pub(crate) const SHORTEST_M: f64 = 1.0;
 
 /// Turns below this are no corners, radians.
 const STRAIGHT: f64 = 0.03;
@@ -81,11 +81,12 @@ impl Node {
     }
 }
 
-/// Manoeuvres that are clear of every target, the cheapest first; takes at most `most` nodes.
+/// Manoeuvres that are clear of every target and cost less than `limit` (m²), the cheapest first;
+/// takes at most `most` nodes.
 pub(crate) fn resolve(
     context: &Context,
     nominal_motion: &[Segment],
-    most: usize,
+    (most, limit): (usize, f64),
     clock: Clock,
 ) -> Vec<InitialGuess> {
     let mut found = Vec::new();
@@ -108,7 +109,8 @@ pub(crate) fn resolve(
         }
         let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
         if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
-            open.extend(children(context, &node, obstacle, &conflict, clock));
+            let children = children(context, &node, obstacle, &conflict, clock);
+            open.extend(children.into_iter().filter(|child| child.cost < limit));
         }
     }
     found
@@ -205,8 +207,8 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
     segment.pose_at(time.max(segment.start_time))
 }
 
-/// Refinement of the manoeuvre that leaves the nominal motion at the first corner and goes through
-/// the others, to the last waypoint or back onto the route; `None` where none fits.
+/// Refinement of the manoeuvre that leaves the nominal motion at the first of at least two corners
+/// and goes through the others, to the last waypoint or back onto the route; `None` where none fits.
 pub(crate) fn through(
     context: &Context,
     nominal_motion: &[Segment],

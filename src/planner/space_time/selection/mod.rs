@@ -223,22 +223,31 @@ impl<'a> Selection<'a> {
         nominal_motion: &[Segment],
         clock: Clock,
     ) {
-        let least =
-            |running: &[Refinement]| best_of(running).map_or(f64::INFINITY, Refinement::best_cost);
         let context = self.context;
-        let coarse = CoarseSearch::new(context, nominal_motion, least(running), clock);
+        let coarse = CoarseSearch::new(context, nominal_motion, self.least(running), clock);
         running.extend(coarse.iter().flat_map(|c| c.along_grid(clock)));
-        let most = self.search_budget.conflict_nodes;
-        let found = conflict_search::resolve(&context, nominal_motion, most, clock);
-        running.extend(
-            found
-                .into_iter()
-                .filter_map(|guess| Refinement::fitting(&context, guess)),
-        );
-        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least(running), clock)) {
+        // insertions may make up for the margin
+        let limit = self.least(running) * (1.0 + self.search_budget.leader_margin);
+        let within = (self.search_budget.conflict_nodes, limit);
+        let found = conflict_search::resolve(&context, nominal_motion, within, clock);
+        let refined = |guess| Refinement::fitting(&context, guess);
+        running.extend(found.into_iter().filter_map(refined));
+        // the dearest search comes last: the best candidate bounds it
+        let least = self.least(running);
+        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least, clock)) {
             self.add_candidate(motion);
             running.extend(along);
         }
+    }
+
+    /// Cost of the cheapest clear motion so far, m²; infinite without any.
+    fn least(&self, running: &[Refinement]) -> f64 {
+        let refined = best_of(running).map_or(f64::INFINITY, Refinement::best_cost);
+        let best = self
+            .best
+            .as_ref()
+            .map(|b| self.context.problem.error_to_end(&b.motion));
+        best.unwrap_or(f64::INFINITY).min(refined)
     }
 
     /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
