@@ -303,12 +303,13 @@ fn attempt(
     }
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    if !timed_out
-        && sequential::are_several(conflicts)
-        && let Some(motion) = sequential::resolve_sequentially(context, nominal_motion, clock)
-    {
-        selection.add_candidate(motion);
+    if !timed_out && sequential::are_several(conflicts) {
+        let motion = sequential::resolve_sequentially(context, nominal_motion, clock);
+        // without a motion, too, the time may have been up
         timed_out = clock.is_up();
+        if let Some(motion) = motion {
+            selection.add_candidate(motion);
+        }
     }
     Attempt {
         plan: selection.plan(),
