@@ -22,13 +22,10 @@ pub const JOINT_M: f64 = 1e-6;
 /// Radians. Headings at the joint of two segments may differ by this; see [`joint_rad`].
 pub const JOINT_RAD: f64 = 1e-9;
 
-/// Radians. Upper limit of [`joint_rad`].
-const LARGEST_JOINT_RAD: f64 = 1e-7;
-
 /// Allowed difference of headings at the joint of two segments, radians: the turn of two arcs of
 /// [`LENGTH_M`], which planners leave out. It exceeds [`JOINT_RAD`] for turning radii below 2 m.
 pub fn joint_rad(turning_radius: f64) -> f64 {
-    (2.0 * LENGTH_M / turning_radius).clamp(JOINT_RAD, LARGEST_JOINT_RAD)
+    (2.0 * LENGTH_M / turning_radius).max(JOINT_RAD)
 }
 
 /// Radians. A recommended turn ends this far beyond the boundary of a velocity obstacle: a

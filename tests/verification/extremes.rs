@@ -33,6 +33,7 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
         "ellipse-1e-300",
         "left-set",
         "millimetre-radius",
+        "millimetre-arcs",
         "hold-with-a-rounding",
         "arrived-inside",
         "horizon-at-a-turn",
