@@ -25,7 +25,8 @@ pub const JOINT_RAD: f64 = 1e-9;
 /// Allowed difference of headings at the joint of two segments, radians: the turn of two arcs of
 /// [`LENGTH_M`], which planners leave out. It exceeds [`JOINT_RAD`] for turning radii below 2 m.
 pub fn joint_rad(turning_radius: f64) -> f64 {
-    (2.0 * LENGTH_M / turning_radius).max(JOINT_RAD)
+    // unlike the maximum, this is a NaN for a NaN
+    (2.0 * LENGTH_M / turning_radius).clamp(JOINT_RAD, f64::INFINITY)
 }
 
 /// Radians. A recommended turn ends this far beyond the boundary of a velocity obstacle: a
@@ -53,8 +54,8 @@ pub const SHAPE: f64 = 1e-9;
 pub const THIN_ELLIPSE: f64 = 1e-7;
 
 /// Absolute, in a condition of value 3: the smallest enclosing ellipse may deviate from optimality
-/// by this. Its area is then within 1e-8 of the minimum.
-pub const LOEWNER: f64 = 1e-9;
+/// by this. So the ellipse around a turned polygon is the turned ellipse to twelve digits.
+pub const LOEWNER: f64 = 1e-13;
 
 /// Seconds. Times that differ by less are equal.
 pub const TIME_S: f64 = 1e-9;

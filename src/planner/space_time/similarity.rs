@@ -42,6 +42,10 @@ const WAYPOINT_GRID_M: f64 = 1.0 / 2_097_152.0;
 const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
 const TIME_GRID_S: f64 = 1.0 / 1_073_741_824.0;
 
+/// Grid of the velocities of an ellipsoid whose initial ellipse makes up for it, m/s. The smallest
+/// ellipse around a polygon has fewer digits than the polygon.
+const ELLIPSE_GRID_MPS: f64 = 64.0 * VELOCITY_GRID_MPS;
+
 /// Grid of the durations of an initial motion, seconds.
 const DURATION_GRID_S: f64 = 1.0 / 1_048_576.0;
 
@@ -208,6 +212,27 @@ impl Similarity {
         }
     }
 
+    fn ellipse(&self, set: &Ellipse, centre: Vector, unit: f64) -> Ellipse {
+        Ellipse::from_axes(centre, set.semi_axes().map(|a| self.turned(a) / unit))
+    }
+
+    /// [`Self::places`] for an ellipse, and the grid of its velocities.
+    fn elliptic_places(&self, set: &Ellipse, horizon: f64) -> (Ellipse, f64) {
+        let exact = self.ellipse(set, self.place(set.center()), self.length);
+        let room = exact.semi_axes()[1].norm();
+        // negated on purpose: a NaN is no room
+        if !(room >= LEAST_ROOM_M) {
+            return (exact, VELOCITY_GRID_MPS);
+        }
+        let loss = SET_GRID_M + ELLIPSE_GRID_MPS * horizon / self.time;
+        let grown = exact.scaled_about_center(1.0 + 2.0 * loss / room);
+        let outer = ellipse_on_grid(&grown, SET_GRID_M);
+        if outer.contains(Vector::zeros()) {
+            return (exact, VELOCITY_GRID_MPS);
+        }
+        (outer, ELLIPSE_GRID_MPS)
+    }
+
     fn velocities(&self, set: &ConvexPolygon) -> ConvexPolygon {
         let exact = self.polygon(set, |v| self.velocity(v));
         let vertex = |v: &Vector| on_grid(*v, VELOCITY_GRID_MPS);
@@ -293,24 +318,24 @@ impl Similarity {
     }
 
     fn obstacle(&self, obstacle: &Obstacle, horizon: f64) -> Option<Obstacle> {
-        let ellipse = |e: &Ellipse, centre: Vector, unit: f64| {
-            Ellipse::from_axes(centre, e.semi_axes().map(|a| self.turned(a) / unit))
-        };
         let sets = obstacle.sets();
+        let (initial, grid): (ConvexSet, f64) = match &sets.initial {
+            ConvexSet::Polygon(set) => (self.places(set, horizon).into(), VELOCITY_GRID_MPS),
+            ConvexSet::Ellipse(set) => {
+                let (outer, grid) = self.elliptic_places(set, horizon);
+                (outer.into(), grid)
+            }
+        };
         let velocities = sets.velocities.iter().map(|timed| {
             let until = number_on_grid(timed.until / self.time, TIME_GRID_S);
             match &timed.velocities {
                 ConvexSet::Polygon(set) => TimedVelocitySet::new(until, self.velocities(set)),
                 ConvexSet::Ellipse(set) => {
-                    let centre = self.velocity(set.center());
-                    TimedVelocitySet::new(until, ellipse(set, centre, self.speed()))
+                    let exact = self.ellipse(set, self.velocity(set.center()), self.speed());
+                    TimedVelocitySet::new(until, ellipse_on_grid(&exact, grid))
                 }
             }
         });
-        let initial: ConvexSet = match &sets.initial {
-            ConvexSet::Polygon(set) => self.places(set, horizon).into(),
-            ConvexSet::Ellipse(set) => ellipse(set, self.place(set.center()), self.length).into(),
-        };
         let velocities = velocities.collect();
         Obstacle::new(obstacle.name(), Uncertainty::new(initial, velocities)).ok()
     }
@@ -473,6 +498,22 @@ fn rounding_loss(time: f64) -> f64 {
 
 fn on_grid(v: Vector, grid: f64) -> Vector {
     v.map(|x| number_on_grid(x, grid))
+}
+
+/// Ellipse whose triangular factor, which does not depend on the choice of the axes, is on a grid.
+/// Its support changes by less than twice the grid.
+fn ellipse_on_grid(set: &Ellipse, grid: f64) -> Ellipse {
+    let [a, b] = set.semi_axes();
+    let first = a.x.hypot(b.x);
+    let columns = if first > 0.0 {
+        let below = (a.x * a.y + b.x * b.y) / first;
+        let last = cross(a, b).abs() / first;
+        [Vector::new(first, below), Vector::new(0.0, last)]
+    } else {
+        [Vector::new(0.0, a.y.hypot(b.y)), Vector::zeros()]
+    };
+    let columns = columns.map(|c| on_grid(c, grid));
+    Ellipse::from_axes(on_grid(set.center(), grid), columns)
 }
 
 /// Nearest number on a grid; never -0.
