@@ -253,7 +253,7 @@ fn a_suite_says_what_was_given_up() {
 #[test]
 fn skipped_waypoints_are_told() {
     let folder = Folder::new();
-    let skips = "waypoint 2 by 183 m";
+    let skips = "waypoint 2 by 198 m";
     run("plan tests/faults/near-round-trip.toml").stdout(contains(format!("skips        {skips}")));
     let plan = run("plan tests/faults/near-round-trip.toml --json");
     let file = folder.write("plan.json", stdout(&plan));

@@ -38,7 +38,7 @@ const NORMAL_SET_M: f64 = 130.0;
 /// Grids at that size, powers of two, so that grid numbers are exact: positions of sets (0.06 mm),
 /// waypoints, on which plans must end, velocities (m/s), and times (s).
 const SET_GRID_M: f64 = 1.0 / 16_384.0;
-const WAYPOINT_GRID_M: f64 = 1.0 / 2_097_152.0;
+const WAYPOINT_GRID_M: f64 = 1.0 / 8_388_608.0;
 const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
 const TIME_GRID_S: f64 = 1.0 / 1_073_741_824.0;
 
