@@ -406,11 +406,7 @@ impl Shared {
     /// Replaces settings of the scenario; fails where the planner cannot use them.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
         if let Some(planner) = self.asked.planner {
-            scenario.planner = planner;
-            // ship domains replace the rules for a planner that keeps none
-            if !planner.facts().keeps_rules && scenario.compliance == Compliance::Rules {
-                scenario.compliance = Compliance::Shape;
-            }
+            scenario.set_planner(planner);
         }
         if let Some(search) = self.asked.search {
             scenario.search = search;

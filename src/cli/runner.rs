@@ -7,18 +7,15 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use searoom::document::{PlanDocument, remember};
+use searoom::document::{PLAN_MEBIBYTES, PlanDocument, remember};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::scenario::import::Assumed;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
-use searoom::verification::verify;
+use searoom::verification::verified_plan;
 
 use super::args::Shared;
 use super::input::scenes::{Made, Scene};
-
-/// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
-pub const PLAN_MEBIBYTES: u64 = 64;
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -105,14 +102,7 @@ impl Previous {
         let name = file.display();
         let text = read_text(file, PLAN_MEBIBYTES, "a plan document");
         let text = text.map_err(|error| error.to_string())?;
-        let verified = verify(&text).map_err(|error| format!("{name}: {error}"))?;
-        if let Some(violation) = verified.violations.first() {
-            return Err(format!(
-                "{name}: not a plan that verifies: {}",
-                violation.what
-            ));
-        }
-        let plan = serde_json::from_str(&text).map_err(|error| format!("{name}: {error}"))?;
+        let plan = verified_plan(&text).map_err(|error| format!("{name}: {error}"))?;
         Ok(Self {
             file: file.to_owned(),
             plan,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::anyhow;
-use searoom::document::{VerificationDocument, VerifiedPlanDocument};
+use searoom::document::{PLAN_MEBIBYTES, VerificationDocument, VerifiedPlanDocument};
 use searoom::input::read_text;
 use searoom::report::{printable, simulation_verification_text, verification_text};
 use searoom::verification::{
@@ -14,7 +14,7 @@ use super::args::VerifyArgs;
 use super::input::files::{self, Unread};
 use super::output::Output;
 use super::output::status::ExitStatus;
-use super::runner::{PLAN_MEBIBYTES, guarded_within};
+use super::runner::guarded_within;
 
 /// Checks every file; an unreadable one does not stop the others.
 pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {

@@ -46,7 +46,7 @@ pub(crate) use plan::path_time::paths;
 pub use plan::path_time::{
     PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument,
 };
-pub use plan::{PLAN_FORMAT, PlanDocument};
+pub use plan::{PLAN_FORMAT, PLAN_MEBIBYTES, PlanDocument};
 pub(crate) use plan::{finite, planner_names, position, segment_document};
 pub use simulation::*;
 pub use suite::{

@@ -31,6 +31,9 @@ use crate::trajectory::{Alteration, Segment, Steered, Trajectory, first_alterati
 /// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
+/// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
+pub const PLAN_MEBIBYTES: u64 = 64;
+
 /// Time step of a sampled trajectory in seconds, and the maximum number of samples besides its
 /// joints.
 const SAMPLE_STEP: f64 = 1.0;

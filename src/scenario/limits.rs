@@ -4,8 +4,8 @@
 use crate::frame::LARGEST_ORIGIN_LAT_DEG;
 use crate::input::Range;
 
-/// Mebibytes of a scenario file.
-pub(super) const FILE_MEBIBYTES: u64 = 16;
+/// Maximum size of a scenario file in mebibytes.
+pub const FILE_MEBIBYTES: u64 = 16;
 
 /// Waypoints of a ship of an imported file: each leg of a target adds a velocity set.
 pub(super) const ROUTE_POINTS: usize = 200;

@@ -17,6 +17,7 @@ mod tests;
 
 pub use crate::input::{Fault, InputError as ScenarioError};
 pub use land::Land;
+pub use limits::FILE_MEBIBYTES;
 pub use memory::Memory;
 pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
@@ -109,6 +110,14 @@ impl Scenario {
         let text = read_text(file, limits::FILE_MEBIBYTES, "a scenario file")?;
         let folder = file.parent().unwrap_or(Path::new(""));
         Self::parse_beside(&text, folder).map_err(|faults| ScenarioError::faults(file, faults))
+    }
+
+    /// Changes the planner. Ship domains replace the rules for a planner that keeps none.
+    pub fn set_planner(&mut self, planner: &'static dyn Planner) {
+        self.planner = planner;
+        if !planner.facts().keeps_rules && self.compliance == Compliance::Rules {
+            self.compliance = Compliance::Shape;
+        }
     }
 
     /// Thresholds of the judges.

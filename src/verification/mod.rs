@@ -34,6 +34,7 @@ pub use simulation::{SimulationVerification, is_simulation, verify_simulations};
 
 use claim::{Claim, ClaimedMotion};
 
+use crate::document::PlanDocument;
 use crate::evaluation::{
     Evaluation, Freedom, Request, Steering, Violation, evaluate, evaluate_steered,
 };
@@ -178,6 +179,15 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         evaluation,
         violations,
     })
+}
+
+/// The plan of a document that verifies; otherwise why it is not one.
+pub fn verified_plan(text: &str) -> Result<PlanDocument, String> {
+    let checked = verify(text).map_err(|error| error.to_string())?;
+    if let Some(violation) = checked.violations.first() {
+        return Err(format!("not a plan that verifies: {}", violation.what));
+    }
+    serde_json::from_str(text).map_err(|error| error.to_string())
 }
 
 fn request(claim: &Claim) -> Request<'_> {

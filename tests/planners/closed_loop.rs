@@ -311,9 +311,15 @@ fn a_target_that_plans_sails_as_without_a_map() {
         map: Arc::new(map),
         margin: 0.0,
     });
-    let [open, among] = [open, among].map(|scenario| sail(scenario).targets[0].track.clone());
-    assert!(open.len() > 1);
-    assert_eq!(open, among);
+    let [open, among] = [open, among].map(|scenario| sail(scenario).targets[0].clone());
+    assert!(open.track.len() > 1);
+    // own ship's plan is rounded in another way where there is land
+    for time in (0..=open.track.last().expect("a state").at.t_s as u32).step_by(5) {
+        let [open, among] =
+            [&open, &among].map(|target| target.at(f64::from(time)).expect("a ship"));
+        let apart = (open.pose.position - among.pose.position).norm();
+        assert!(apart < 0.01, "{apart} m apart at {time} s");
+    }
 }
 
 #[test]

@@ -216,6 +216,24 @@ impl Simulation {
         &self.scenario.simulation
     }
 
+    /// Seconds since the scenario's time.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Own ship now.
+    pub fn own(&self) -> SteadyShip {
+        let plan = &self.active;
+        self.own.steady(&plan.trajectory, self.time - plan.start)
+    }
+
+    /// The name and the true state of every target now.
+    pub fn targets(&self) -> impl Iterator<Item = (&str, SteadyShip)> {
+        self.targets
+            .iter()
+            .map(|target| (target.name.as_str(), target.truth.now))
+    }
+
     /// True at the end of the plan that own ship follows, and at the end of the simulation.
     pub fn finished(&self) -> bool {
         let end = self.active.end().min(self.duration);
@@ -386,7 +404,7 @@ impl Simulation {
     fn advance(&mut self, step: f64) {
         let time = self.time;
         let in_plan = time - self.active.start;
-        let now = self.own.steady(&self.active.trajectory, in_plan);
+        let now = self.own();
         for target in &mut self.targets {
             target.truth.steer(time, step, &now);
             if let Some(mutual) = &mut target.mutual {

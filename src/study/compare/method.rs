@@ -2,7 +2,7 @@
 
 use super::applies::has_choice;
 use crate::planner::{Minimises, Objective, PLANNERS, Planner, SearchKind};
-use crate::scenario::{Compliance, Scenario};
+use crate::scenario::Scenario;
 use crate::target::Representation;
 
 /// Planner with its settings, or a baseline.
@@ -54,10 +54,7 @@ impl Method {
             representation,
         } = self
         {
-            asked.planner = planner;
-            if !planner.facts().keeps_rules && asked.compliance == Compliance::Rules {
-                asked.compliance = Compliance::Shape;
-            }
+            asked.set_planner(planner);
             asked.search = search;
             if let Some(representation) = representation {
                 let choosing = asked.targets.iter_mut().filter(|target| has_choice(target));

@@ -1,0 +1,197 @@
+"""Types of the native part."""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+import pandas
+import xarray
+from numpy.typing import ArrayLike, NDArray
+
+from searoom._views import Samples, ShipState
+
+__all__ = [
+    "DocumentError",
+    "InputError",
+    "InternalError",
+    "NoPlanError",
+    "Plan",
+    "Scenario",
+    "SearoomError",
+    "Simulation",
+    "__version__",
+    "assess",
+    "compare",
+    "plan",
+    "verify",
+]
+
+__version__: str
+
+class SearoomError(ValueError):
+    """Something that Searoom cannot use. The text names the place, what was found and what is
+    allowed."""
+
+class InputError(SearoomError):
+    """A scenario or an argument that is wrong.
+
+    `faults` has a dict with `path`, `found`, `allowed` and `line` for each fault.
+    """
+
+    faults: list[dict[str, Any]]
+
+class DocumentError(SearoomError):
+    """A document that cannot be read, or does not fit."""
+
+class NoPlanError(SearoomError):
+    """There is no plan. The text is the reason."""
+
+class InternalError(SearoomError):
+    """A fault of Searoom itself. Please report it."""
+
+@final
+class Scenario:
+    """A checked scenario. It never changes; `replace` makes another."""
+
+    @staticmethod
+    def read(file: str | PathLike[str], **assumed: float) -> Scenario:
+        """Reads a scenario file, or a file of another program with one situation.
+
+        `assumed` are values that such files do not have: `speed_spread_mps`,
+        `course_spread_deg`, `margin_m`, `length_m`, `beam_m`.
+        """
+    @staticmethod
+    def read_all(file: str | PathLike[str], **assumed: float) -> list[Scenario]:
+        """Reads every situation of a file."""
+    @staticmethod
+    def parse(text: str, folder: str | PathLike[str] | None = None) -> Scenario:
+        """Reads the text of a scenario file. Its map is searched from `folder`, by default
+        from where the program runs."""
+    @staticmethod
+    def from_dict(values: Mapping[str, Any], folder: str | PathLike[str] | None = None) -> Scenario:
+        """A scenario of a dict with the keys of a scenario file. Arrays count as lists."""
+    def replace(
+        self,
+        *,
+        planner: str | None = None,
+        search: str | None = None,
+        compliance: str | None = None,
+        max_risk: float | None = None,
+        deadline_s: float | None = None,
+        seed: int | None = None,
+    ) -> Scenario:
+        """The scenario with other settings, as the options of the command line do it."""
+    @property
+    def text(self) -> str:
+        """The scenario as the text of a scenario file, without the settings of `replace`."""
+    @property
+    def title(self) -> str: ...
+    @property
+    def planner(self) -> str: ...
+    @property
+    def compliance(self) -> str: ...
+    @property
+    def horizon_s(self) -> float: ...
+    @property
+    def targets(self) -> list[str]:
+        """The names of the targets."""
+    @property
+    def notes(self) -> list[str]:
+        """What was assumed for an imported file."""
+
+@final
+class Plan:
+    """The answer of a planner, with its independent check. It never changes."""
+
+    @property
+    def scenario(self) -> Scenario: ...
+    @property
+    def document(self) -> dict[str, Any]:
+        """The plan document. It is made once; do not change it."""
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def verdict(self) -> str:
+        """The word for the outcome: `solved`, `relaxed`, `at risk 0.20`, `NOT SAFE`, …"""
+    @property
+    def reason(self) -> str | None: ...
+    @property
+    def verified(self) -> bool:
+        """True where the document is what it claims."""
+    @property
+    def safe(self) -> bool:
+        """True where no hard set, hull or land is entered from start to arrival."""
+    @property
+    def plan_s(self) -> float:
+        """Seconds that planning took."""
+    @property
+    def cost(self) -> dict[str, Any] | None: ...
+    @property
+    def relaxations(self) -> list[dict[str, Any]]: ...
+    @property
+    def encounters(self) -> list[dict[str, Any]]: ...
+    def sample(self, times_s: ArrayLike | None = None) -> Samples:
+        """Own ship at these times, by default every second and at every joint.
+
+        Raises `NoPlanError` without a plan.
+        """
+    def sections(self, time_s: float) -> dict[str, NDArray[np.float64]]:
+        """The sets that were planned against at a time: target → vertices, shape (n, 2), metres,
+        counter-clockwise. Ellipses are given by a polygon around them."""
+    def to_json(self) -> str:
+        """The plan document as the command line writes it."""
+    def save(self, file: str | PathLike[str]) -> None:
+        """Writes the plan document. The file is whole or unchanged."""
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The samples as a table, indexed by time. Needs pandas."""
+    def to_xarray(self) -> xarray.Dataset:
+        """The samples as a dataset with units. Needs xarray."""
+
+@final
+class Simulation:
+    """A scenario that is sailed step by step in the closed loop."""
+
+    def __new__(cls, scenario: Scenario, *, measured_delay: bool = False) -> Simulation: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def time_s(self) -> float: ...
+    @property
+    def own(self) -> ShipState: ...
+    @property
+    def targets(self) -> dict[str, ShipState]:
+        """The true states of the targets."""
+    def step(self) -> None:
+        """Moves all ships on to the next step or event. Without effect once finished."""
+    def run(self) -> None:
+        """Steps until it is finished. Ctrl-C interrupts between two steps."""
+    def record(self) -> dict[str, Any]:
+        """The simulation document so far."""
+
+def plan(scenario: Scenario, *, previous: Plan | str | PathLike[str] | None = None) -> Plan:
+    """Plans a scenario.
+
+    `previous` is the plan that own ship follows: a plan, the text of its document or a file. The
+    roles, sets and manoeuvres that it began go on.
+    """
+
+def verify(document: Plan | str | PathLike[str]) -> dict[str, Any]:
+    """Checks a plan or simulation document from its own content, without the planner."""
+
+def assess(
+    scenario: Scenario,
+    *,
+    points: ArrayLike | Sequence[Sequence[float]] | None = None,
+    velocities: ArrayLike | Sequence[Sequence[float]] | None = None,
+    sections_s: ArrayLike | None = None,
+    domains: bool = False,
+) -> dict[str, Any]:
+    """Risk, closest approach and the least alteration, without planning.
+
+    `points` are rows of east, north and time, `velocities` rows of east and north, `sections_s`
+    times of the sets. With `domains` the sets include the ship domains.
+    """
+
+def compare(scenario: Scenario, *, max_risks: ArrayLike | None = None) -> dict[str, Any]:
+    """Every planner that applies and two baselines on one scenario, at each accepted risk."""
