@@ -1,6 +1,6 @@
 """Types of the native part."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, final
 
@@ -69,7 +69,7 @@ class Scenario:
         """Reads the text of a scenario file. Its map is searched from `folder`, by default
         from where the program runs."""
     @staticmethod
-    def from_dict(values: Mapping[str, Any], folder: str | PathLike[str] | None = None) -> Scenario:
+    def from_dict(values: dict[str, Any], folder: str | PathLike[str] | None = None) -> Scenario:
         """A scenario of a dict with the keys of a scenario file. Arrays count as lists."""
     def replace(
         self,
@@ -169,14 +169,14 @@ class Simulation:
     def record(self) -> dict[str, Any]:
         """The simulation document so far."""
 
-def plan(scenario: Scenario, *, previous: Plan | str | PathLike[str] | None = None) -> Plan:
+def plan(scenario: Scenario, *, previous: Plan | dict[str, Any] | str | PathLike[str] | None = None) -> Plan:
     """Plans a scenario.
 
-    `previous` is the plan that own ship follows: a plan, the text of its document or a file. The
-    roles, sets and manoeuvres that it began go on.
+    `previous` is the plan that own ship follows: a plan, its document as dict or text, or a file.
+    The roles, sets and manoeuvres that it began go on.
     """
 
-def verify(document: Plan | str | PathLike[str]) -> dict[str, Any]:
+def verify(document: Plan | dict[str, Any] | str | PathLike[str]) -> dict[str, Any]:
     """Checks a plan or simulation document from its own content, without the planner."""
 
 def assess(

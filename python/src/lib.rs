@@ -25,8 +25,8 @@ use value::{AnyDocument, numbers, objects};
 
 /// Plans a scenario.
 ///
-/// `previous` is the plan that own ship follows: a plan, the text of its document or a file. The
-/// roles, sets and manoeuvres that it began go on.
+/// `previous` is the plan that own ship follows: a plan, its document as dict or text, or a file.
+/// The roles, sets and manoeuvres that it began go on.
 #[pyfunction]
 #[pyo3(name = "plan", signature = (scenario, *, previous = None))]
 fn py_plan(py: Python, scenario: &Scenario, previous: Option<AnyDocument>) -> PyResult<Plan> {

@@ -60,7 +60,15 @@ fn of(value: &Bound<PyAny>, path: &str, depth: usize) -> PyResult<Value> {
         return Ok(Value::Float(found.value()));
     }
     if let Ok(found) = value.cast::<PyString>() {
-        return Ok(Value::String(found.extract()?));
+        let text = found.extract();
+        return text.map(Value::String).map_err(|_| {
+            let found = value.repr().map(|repr| repr.to_string());
+            argument(
+                path,
+                found.unwrap_or_default(),
+                "a text of Unicode characters",
+            )
+        });
     }
     if let Ok(found) = value.cast::<PyDict>() {
         return table(found, path, depth);
@@ -96,7 +104,7 @@ pub fn json(document: &impl Serialize) -> PyResult<String> {
 
 /// Finite numbers from any sequence or array.
 pub fn numbers(value: &Bound<PyAny>, path: &str) -> PyResult<Vec<f64>> {
-    let allowed = "finite numbers";
+    let allowed = "a list or array of finite numbers";
     let found: Vec<f64> = value
         .extract()
         .map_err(|_| argument(path, short(value), allowed))?;
@@ -139,7 +147,7 @@ fn short(value: &Bound<PyAny>) -> String {
     }
 }
 
-/// A document: a plan, a text that begins with `{`, or a file.
+/// A document: a plan, a dict, a text that begins with `{`, or a file.
 pub enum AnyDocument<'py> {
     Plan(Bound<'py, Plan>),
     Text(String),
@@ -153,11 +161,15 @@ impl<'py> FromPyObject<'_, 'py> for AnyDocument<'py> {
         if let Ok(plan) = value.cast::<Plan>() {
             return Ok(Self::Plan(plan.to_owned()));
         }
+        if value.is_instance_of::<PyDict>() {
+            let text = value.py().import("json")?.call_method1("dumps", (value,))?;
+            return text.extract().map(Self::Text);
+        }
         if let Ok(text) = value.extract() {
             return Ok(Self::Text(text));
         }
         value.extract().map(Self::File).map_err(|_| {
-            let allowed = "a Plan, the text of a document, or a file";
+            let allowed = "a Plan, a document as dict or text, or a file";
             PyTypeError::new_err(format!("found {}; allowed: {allowed}", short(&value)))
         })
     }
@@ -178,7 +190,7 @@ impl AnyDocument<'_> {
                     text: json(plan.get().document())?,
                 });
             }
-            Self::Text(text) if text.trim_start().starts_with('{') => {
+            Self::Text(text) if text.trim_start().starts_with(['{', '[']) => {
                 return Ok(DocumentText { file: None, text });
             }
             Self::Text(name) => PathBuf::from(name),

@@ -103,6 +103,7 @@ def test_an_altered_document_is_rejected() -> None:
     document = json.loads(plan.to_json())
     document["cost"]["length_m"] += 1.0
     checked = searoom.verify(json.dumps(document))
+    assert searoom.verify(document)["violations"] == checked["violations"]
     assert not checked["verified"]
     assert "length_m" in checked["violations"][0]["what"]
 
@@ -287,6 +288,10 @@ WRONG: list[tuple[Any, str]] = [
     (lambda: searoom.Scenario.read(COLREGS[0], margin_m="wide"), "margin_m: found 'wide'"),
     (lambda: searoom.plan(HEAD_ON).sample([-1.0]), r"times_s\[0\]: found -1; allowed: 0 to"),
     (lambda: searoom.plan(HEAD_ON).sample("now"), "times_s: found 'now'"),
+    (lambda: searoom.plan(HEAD_ON).sample(3.0), "times_s: found 3.0; allowed: a list or array"),
+    (lambda: searoom.Scenario.from_dict({"title": "\ud800"}), "title: found .*Unicode"),
+    (lambda: searoom.verify("[1]"), "allowed: a plan document|searoom-plan"),
+    (lambda: searoom.verify({}), "format: found none"),
     (lambda: searoom.plan(HEAD_ON).sections(float("nan")), "time_s: found NaN; allowed: 0 to"),
     (lambda: searoom.plan(HEAD_ON).save(ROOT / "nowhere" / "plan.json"), "nowhere"),
     (lambda: searoom.assess(HEAD_ON, points=[[1.0, 2.0]]), r"points\[0\]: found 2 numbers"),
