@@ -83,7 +83,7 @@ def plot(
     """Draws a plan in the plane with matplotlib, and returns the axes.
 
     The desired path is dashed, the plan solid. The sets are those at `at_s`, by default the time
-    of the closest approach; own ship is marked at that time.
+    of the closest approach; own ship is marked at that time. Raises `NoPlanError` without a plan.
     """
     import matplotlib.pyplot as plt
 
