@@ -82,6 +82,9 @@ class Scenario:
         seed: int | None = None,
     ) -> Scenario:
         """The scenario with other settings, as the options of the command line do it."""
+    @staticmethod
+    def _restored(text: str, folder: str | PathLike[str], notes: list[str]) -> Scenario:
+        """The scenario of a pickle."""
     @property
     def text(self) -> str:
         """The scenario as the text of a scenario file, without the settings of `replace`."""
@@ -108,7 +111,7 @@ class Plan:
     def scenario(self) -> Scenario: ...
     @property
     def document(self) -> dict[str, Any]:
-        """The plan document. It is made once; do not change it."""
+        """The plan document. A new dict each time."""
     @property
     def outcome(self) -> str: ...
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -50,11 +51,11 @@ def simulate(
     return simulation.record()
 
 
-def restored(text: str, folder: str, settings: dict[str, Any]) -> Scenario:
+def restored(text: str, folder: Path, settings: dict[str, Any], notes: list[str]) -> Scenario:
     """The scenario of a pickle."""
     from searoom._searoom import Scenario
 
-    return Scenario.parse(text, folder).replace(**settings)
+    return Scenario._restored(text, folder, notes).replace(**settings)
 
 
 def dataframe(samples: Samples) -> pandas.DataFrame:

@@ -33,14 +33,20 @@ fn py_plan(py: Python, scenario: &Scenario, previous: Option<AnyDocument>) -> Py
     let mut asked = scenario.inner.clone();
     if let Some(previous) = previous {
         let before = match &previous {
-            AnyDocument::Plan(plan) => plan.get().document().clone(),
+            AnyDocument::Plan(plan) if plan.get().document().verified => {
+                plan.get().document().clone()
+            }
+            AnyDocument::Plan(_) => {
+                return Err(DocumentError::new_err("previous: not a plan that verifies"));
+            }
             AnyDocument::Text(_) | AnyDocument::File(_) => {
                 let document = previous.read()?;
                 let read = detached(py, || verified_plan(&document.text))?;
                 read.map_err(|error| document.error(error))?
             }
         };
-        remember(&before, &mut asked).map_err(|fault| DocumentError::new_err(fault.to_string()))?;
+        let kept = detached(py, || remember(&before, &mut asked))?;
+        kept.map_err(|fault| DocumentError::new_err(fault.to_string()))?;
     }
     Plan::new(py, scenario, asked)
 }
@@ -101,8 +107,20 @@ fn py_assess<'py>(
     };
     let times = query.sections.iter().copied();
     let times = times.chain(query.points.iter().map(|point| point.time));
-    if let Some(time) = times.into_iter().find(|time| *time < 0.0) {
-        return Err(argument("time", time, "times from 0 on, in seconds"));
+    if let Some(time) = times.into_iter().find(|time| !(0.0..=1e6).contains(time)) {
+        return Err(argument(
+            "time",
+            time,
+            "times from 0 to 1000000, in seconds",
+        ));
+    }
+    let mut places = query.points.iter().map(|point| point.position);
+    if let Some(place) = places.find(|place| place.amax() > 1e7) {
+        let allowed = "coordinates from -10000000 to 10000000, in metres";
+        return Err(argument("points", format!("{:?}", place.amax()), allowed));
+    }
+    if let Some(velocity) = query.velocities.iter().find(|v| v.amax() > 100.0) {
+        return Err(argument("velocities", velocity.amax(), "-100 to 100 m/s"));
     }
     let scenario = &scenario.inner;
     let assessment = detached(py, || {

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use searoom::document::PlanDocument;
 use searoom::frame::course_deg_from_heading;
@@ -28,8 +27,6 @@ pub struct Plan {
     scenario: Scenario,
     run: Run,
     document: PlanDocument,
-    /// The document as Python objects, once it was asked for.
-    objects: PyOnceLock<Py<PyAny>>,
 }
 
 impl Plan {
@@ -41,7 +38,6 @@ impl Plan {
                 scenario: scenario.clone(),
                 document: PlanDocument::of(&run),
                 run,
-                objects: PyOnceLock::new(),
             }
         })
     }
@@ -57,17 +53,6 @@ impl Plan {
             NoPlanError::new_err(reason.unwrap_or_else(|| "there is no plan".to_owned()))
         })
     }
-
-    fn objects<'py>(&self, py: Python<'py>) -> PyResult<&Bound<'py, PyAny>> {
-        let objects = self
-            .objects
-            .get_or_try_init(py, || objects(py, &self.document).map(Bound::unbind))?;
-        Ok(objects.bind(py))
-    }
-
-    fn key<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
-        self.objects(py)?.get_item(key)
-    }
 }
 
 #[pymethods]
@@ -77,10 +62,10 @@ impl Plan {
         self.scenario.clone()
     }
 
-    /// The plan document. It is made once; do not change it.
+    /// The plan document. A new dict each time.
     #[getter(document)]
     fn py_document<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.objects(py).cloned()
+        objects(py, &self.document)
     }
 
     #[getter]
@@ -119,17 +104,17 @@ impl Plan {
 
     #[getter]
     fn cost<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.key(py, "cost")
+        objects(py, &self.document.cost)
     }
 
     #[getter]
     fn relaxations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.key(py, "relaxations")
+        objects(py, &self.document.relaxations)
     }
 
     #[getter]
     fn encounters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.key(py, "encounters")
+        objects(py, &self.document.encounters)
     }
 
     /// Own ship at these times, by default every second and at every joint.

@@ -34,6 +34,8 @@ pub struct Scenario {
 
 impl Scenario {
     fn parsed(text: String, folder: PathBuf) -> Result<Self, Vec<Fault>> {
+        // where a map was found stays so when the program changes its folder
+        let folder = std::env::current_dir().map_or(folder.clone(), |here| here.join(&folder));
         Ok(Self {
             inner: searoom::scenario::Scenario::parse_beside(&text, &folder)?,
             text,
@@ -124,9 +126,12 @@ impl Scenario {
             scenario.max_risk = risk;
         }
         if let Some(seconds) = deadline_s {
-            // negated on purpose: a NaN is refused
-            if !(seconds > 0.0 && seconds.is_finite()) {
-                return Err(argument("deadline_s", seconds, "a number above 0"));
+            if !(1e-3..=1e6).contains(&seconds) {
+                return Err(argument(
+                    "deadline_s",
+                    seconds,
+                    "a number from 0.001 to 1000000",
+                ));
             }
             scenario.deadline = seconds;
         }
@@ -174,6 +179,13 @@ impl Scenario {
         self.notes.clone()
     }
 
+    /// The scenario of a pickle.
+    #[staticmethod]
+    fn _restored(text: String, folder: PathBuf, notes: Vec<String>) -> PyResult<Self> {
+        let parsed = Self::parsed(text, folder).map_err(|found| faults(None, &found))?;
+        Ok(Self { notes, ..parsed })
+    }
+
     /// The scenario as the text of a scenario file, without the settings of `replace`.
     #[getter]
     fn text(&self) -> &str {
@@ -190,10 +202,8 @@ impl Scenario {
         settings.set_item("max_risk", scenario.max_risk)?;
         settings.set_item("deadline_s", scenario.deadline)?;
         settings.set_item("seed", scenario.simulation.seed)?;
-        let here = std::env::current_dir().unwrap_or_default();
-        let folder = here.join(&self.folder);
         let restored = py.import("searoom._views")?.getattr("restored")?;
-        let arguments = (&self.text, folder, settings).into_pyobject(py)?;
+        let arguments = (&self.text, &self.folder, settings, &self.notes).into_pyobject(py)?;
         Ok((restored, arguments.into_any()))
     }
 

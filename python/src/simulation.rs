@@ -60,9 +60,11 @@ impl Simulation {
     }
 
     /// Steps until it is finished. Ctrl-C interrupts between two steps.
-    fn run(&mut self, py: Python) -> PyResult<()> {
-        while !self.inner.finished() {
-            detached(py, || self.inner.step())?;
+    fn run(slf: &Bound<Self>) -> PyResult<()> {
+        let py = slf.py();
+        // borrowed for each step alone, so that a signal's handler and other threads can look at it
+        while !slf.try_borrow()?.inner.finished() {
+            slf.try_borrow_mut()?.step(py)?;
             py.check_signals()?;
         }
         Ok(())

@@ -162,7 +162,8 @@ impl<'py> FromPyObject<'_, 'py> for AnyDocument<'py> {
             return Ok(Self::Plan(plan.to_owned()));
         }
         if value.is_instance_of::<PyDict>() {
-            let text = value.py().import("json")?.call_method1("dumps", (value,))?;
+            let text = value.py().import("json")?.call_method1("dumps", (value,));
+            let text = text.map_err(|error| DocumentError::new_err(error.to_string()))?;
             return text.extract().map(Self::Text);
         }
         if let Ok(text) = value.extract() {
