@@ -166,7 +166,7 @@ impl Lattice<'_> {
         [place.x, place.y, course, time].map(|v| (self.resolution.apart * v).round() as i64)
     }
 
-    /// State after a primitive, with its cost; `None` where it is too late or too expensive.
+    /// State after a primitive, with its cost; `None` where it is seen, too late or too expensive.
     fn after(&self, from: &State, primitive: Primitive, is_end: bool) -> Option<(State, f64)> {
         let problem = self.problem;
         let mut state = State {
@@ -178,16 +178,23 @@ impl Lattice<'_> {
         let motion = state.motion(problem.own.turning_radius);
         let last = motion.last()?;
         (state.pose, state.time) = (last.end(), last.end_time());
+        // the integral below is what a successor costs most
+        let to_go = match is_end {
+            true => 0.0,
+            false => self.grid.from(state.pose.position, state.time),
+        };
+        let in_time = state.time <= problem.horizon;
+        let seen = !is_end && self.seen.contains(&self.key(&state));
+        // negated on purpose: a NaN is too expensive
+        if !(in_time && !seen && from.cost + to_go <= self.limit) {
+            return None;
+        }
         let cost = match is_end {
             true => problem.error_to_end(&motion),
             false => problem.error_of(&motion),
         };
         state.cost = from.cost + cost;
-        let least = match is_end {
-            true => state.cost,
-            false => state.cost + self.grid.from(state.pose.position, state.time),
-        };
-        (state.time <= problem.horizon && least <= self.limit).then_some((state, cost))
+        (state.cost + to_go <= self.limit).then_some((state, cost))
     }
 }
 
