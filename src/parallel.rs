@@ -1,43 +1,69 @@
 //! Independent work on all cores.
 
+use std::cell::Cell;
 use std::num::NonZero;
 use std::panic::resume_unwind;
 use std::thread;
 
-/// Fewer items are worked on one after another: starting a thread costs some 50 µs.
+/// Fewer items of little work are worked on one after another: starting a thread costs some 50 µs.
 const FEWEST: usize = 8;
+
+thread_local! {
+    /// True on a thread that has a part of such work: all cores are busy then.
+    static AT_WORK: Cell<bool> = const { Cell::new(false) };
+}
 
 /// `work` on every item, with its index; the results are in the order of the items.
 pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
-    let threads = if items.len() < FEWEST {
-        1
-    } else {
-        thread::available_parallelism()
-            .map_or(1, NonZero::get)
-            .min(items.len())
-    };
-    if threads == 1 {
-        let indexed = items.iter().enumerate();
+    let indexed = items.iter().enumerate();
+    if items.len() < FEWEST {
         return indexed.map(|(index, item)| work(index, item)).collect();
     }
-    // strided, because neighbours in a list cost alike
-    let part = |first: usize| -> Vec<R> {
-        let indices = (first..items.len()).step_by(threads);
-        indices.map(|index| work(index, &items[index])).collect()
-    };
-    let part = &part;
-    let mut parts: Vec<_> = thread::scope(|scope| {
-        let running: Vec<_> = (0..threads)
-            .map(|first| scope.spawn(move || part(first)))
-            .collect();
-        let join = |thread: thread::ScopedJoinHandle<'_, Vec<R>>| {
-            thread.join().unwrap_or_else(|panic| resume_unwind(panic))
-        };
-        running.into_iter().map(join).map(Vec::into_iter).collect()
+    let mut found: Vec<_> = indexed.map(|(index, item)| (index, item, None)).collect();
+    each(&mut found, |(index, item, found)| {
+        *found = Some(work(*index, item))
     });
-    (0..items.len())
-        .filter_map(|index| parts[index % threads].next())
-        .collect()
+    found.into_iter().filter_map(|(.., found)| found).collect()
+}
+
+/// `work` on every item, each of which takes long enough for a thread of its own.
+pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync) {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = cores.min(items.len());
+    if threads < 2 || AT_WORK.get() {
+        items.iter_mut().for_each(work);
+        return;
+    }
+    // strided, because neighbours in a list cost alike
+    let mut parts: Vec<Vec<&mut T>> = (0..threads).map(|_| Vec::new()).collect();
+    for (index, item) in items.iter_mut().enumerate() {
+        parts[index % threads].push(item);
+    }
+    let do_part = |part: Vec<&mut T>| {
+        AT_WORK.set(true);
+        part.into_iter().for_each(&work);
+    };
+    thread::scope(|scope| {
+        let own = parts.pop().unwrap_or_default();
+        let running: Vec<_> = parts
+            .into_iter()
+            .map(|part| scope.spawn(|| do_part(part)))
+            .collect();
+        let _at_work = AtWork;
+        do_part(own);
+        for thread in running {
+            thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        }
+    });
+}
+
+/// Ends the part of the calling thread, after a panic too.
+struct AtWork;
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        AT_WORK.set(false);
+    }
 }
 
 #[cfg(test)]
@@ -50,5 +76,20 @@ mod tests {
             let expected: Vec<_> = items.iter().map(|i| (*i, 2 * i)).collect();
             assert_eq!(found, expected);
         }
+    }
+
+    #[test]
+    fn every_item_is_worked_on_once_within_other_work_too() {
+        let mut items = [[0; 5]; 3];
+        super::each(&mut items, |inner| super::each(inner, |item| *item += 1));
+        assert_eq!(items, [[1; 5]; 3]);
+        assert!(!super::AT_WORK.get());
+    }
+
+    #[test]
+    fn a_panic_is_passed_on() {
+        let work = || super::each(&mut [0, 1, 2], |item| assert!(*item < 2));
+        assert!(std::panic::catch_unwind(work).is_err());
+        assert!(!super::AT_WORK.get());
     }
 }

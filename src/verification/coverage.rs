@@ -205,7 +205,10 @@ fn of_ellipses(
             }
             Motion::Sets(known) => beyond(initial, &known.initial),
         };
-        need(if ship { HULL } else { INITIAL }, short);
+        need(
+            if ship { HULL } else { INITIAL },
+            short - rounding_of(initial),
+        );
     }
     // The ellipse around a scaled polygon has a centre of its own, so it cannot be scaled back.
     if level == 1.0 || claim.file.optimal_control.is_none() {

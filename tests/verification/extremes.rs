@@ -44,6 +44,7 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
         "long-ellipse",
         "omitted-corners",
         "no-depth",
+        "explicit-sliver",
     ] {
         verified_file(name);
     }

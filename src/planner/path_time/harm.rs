@@ -62,7 +62,7 @@ pub fn least_harm(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planne
     }
     let (hulls, own): (Vec<_>, Vec<_>) = nominal.iter().map(|t| (t.hull.clone(), t.own)).unzip();
     let hulls = pieces(&hulls, problem.horizon);
-    let hulls = NominalHulls::new(&hulls, &own);
+    let hulls = NominalHulls::new(&hulls, &own, clock);
     let is_clear = |judged: &Judged| {
         let trajectory = judged.profile.trajectory(&scenes[0], problem.own.pose);
         trajectory.is_some_and(|t| {

@@ -75,7 +75,7 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
     let (hulls, own): (Vec<_>, Vec<_>) = targets.clone().map(|t| (t.hull.clone(), t.own)).unzip();
     let sets: Vec<Obstacle> = targets.map(|t| t.set.clone()).collect();
     let hulls = parts_of(&hulls, problem.horizon);
-    let nominal_hulls = NominalHulls::new(&hulls, &own);
+    let nominal_hulls = NominalHulls::new(&hulls, &own, clock);
     let nominal = Problem {
         obstacles: &sets,
         ..problem.clone()

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::frame::Pose;
+use crate::planner::clock::Clock;
 use crate::planner::space_time::piece::Piece;
 use crate::planner::space_time::proxy::Proxy;
 use crate::trajectory::Segment;
@@ -20,9 +21,10 @@ pub(crate) const LEAST_STEP_M: f64 = 0.1;
 const SAMPLES: u32 = 200;
 
 /// Largest approach of two ships between two samples, as a fraction of own beam. It doubles after
-/// each [`MANY`] samples.
+/// each [`MANY`] samples, and after each [`MANY_WHEN_LATE`] once the time is up.
 const SAMPLE_BEAMS: f64 = 0.25;
 const MANY: u32 = 1000;
+const MANY_WHEN_LATE: u32 = 50;
 
 /// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
 /// time in the sets, speed, turn.
@@ -86,16 +88,18 @@ impl Harm {
 /// Hulls of the targets on their nominal tracks.
 pub(crate) struct NominalHulls<'a> {
     hulls: Vec<(Proxy<'a>, Hull)>,
+    clock: Clock,
 }
 
 impl<'a> NominalHulls<'a> {
     /// Builds the set from the convex pieces of the hulls, with own hull toward each.
-    pub(crate) fn new(pieces: &'a [Piece], own: &[Hull]) -> Self {
+    pub(crate) fn new(pieces: &'a [Piece], own: &[Hull], clock: Clock) -> Self {
         let hulls = pieces
             .iter()
             .map(|part| (Proxy::new(part), own[part.obstacle]));
         Self {
             hulls: hulls.collect(),
+            clock,
         }
     }
 
@@ -103,6 +107,10 @@ impl<'a> NominalHulls<'a> {
     /// sampling interval follows from the largest closing speed.
     pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
+        let many = match self.clock.is_up() {
+            true => MANY_WHEN_LATE,
+            false => MANY,
+        };
         let mut deepest: f64 = 0.0;
         for (proxy, hull) in &self.hulls {
             let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
@@ -114,7 +122,7 @@ impl<'a> NominalHulls<'a> {
                     continue;
                 }
                 samples += 1;
-                if samples.is_multiple_of(MANY) {
+                if samples.is_multiple_of(many) {
                     least *= 2.0;
                 }
                 let turning = segment.turn_rate.abs() * hull.half_diagonal();

@@ -129,7 +129,6 @@ pub(crate) struct Refinement {
     raised: usize,
     steps: usize,
     finished: bool,
-    stopped: bool,
 }
 
 impl Refinement {
@@ -187,7 +186,6 @@ impl Refinement {
             raised: 0,
             steps: 0,
             finished: false,
-            stopped: false,
         };
         refinement.keep_if_best(context);
         Some(refinement)
@@ -224,17 +222,6 @@ impl Refinement {
         self.model.cost + self.penalty * self.model.violation
     }
 
-    /// Sum of the multipliers of the last step: the first-order cost of a missing metre, m²/m.
-    pub(crate) fn price(&self) -> f64 {
-        self.price
-    }
-
-    /// Predicted cost of the current manoeuvre once it is clear, to first order, m². Missing metres
-    /// cost the multipliers of the last step, or `least` where that is more.
-    pub(crate) fn expected_cost(&self, least: f64) -> f64 {
-        self.handicap * (self.model.cost + self.price.max(least) * self.model.violation)
-    }
-
     /// Cost used for ranking among clear manoeuvres, m².
     pub(crate) fn rank(&self) -> f64 {
         self.handicap * self.best_cost()
@@ -243,20 +230,6 @@ impl Refinement {
     /// Factor on its costs when it is ranked among others.
     pub(crate) fn handicap(&self) -> f64 {
         self.handicap
-    }
-
-    /// True where the manoeuvre is or was nearly clear.
-    pub(crate) fn is_nearly_clear(&self) -> bool {
-        self.best.is_some() || self.model.violation < RESTORABLE_M
-    }
-
-    /// Stops: another refinement is ahead.
-    pub(crate) fn stop(&mut self) {
-        (self.finished, self.stopped) = (true, true);
-    }
-
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.stopped
     }
 
     /// Only manoeuvres checked with fine chords count as clear.
@@ -330,14 +303,19 @@ impl Refinement {
 
     /// Takes at most `most` steps, then [`Self::finish`]; after the deadline neither.
     pub(crate) fn run(mut self, context: &Context, most: usize, clock: Clock) -> Self {
+        self.go_on(context, most, clock);
+        self
+    }
+
+    /// [`Self::run`] of a refinement that stays where it is.
+    pub(crate) fn go_on(&mut self, context: &Context, most: usize, clock: Clock) {
         for _ in 0..most {
             if self.finished || clock.is_up() {
-                return self;
+                return;
             }
             self.step(context);
         }
         self.finish(context);
-        self
     }
 
     /// Takes one SQP step.

@@ -9,9 +9,6 @@ pub(crate) struct SearchBudget {
     /// `(max_expansions, heuristic_weight)` of each search stage. The limit counts all expansions
     /// so far and bounds memory and time. A stage starts where the earlier ones found no plan.
     pub stages: &'static [(usize, f64)],
-    /// True where refinements that fall behind are stopped. The best one of one target usually shows
-    /// early; among several it often is not clear before the last rounds.
-    pub races: bool,
     /// Largest number of rounds.
     pub steps: usize,
     /// Largest number of rounds once a manoeuvre is clear. The best one then lacks segment
@@ -19,8 +16,7 @@ pub(crate) struct SearchBudget {
     pub rounds: usize,
     /// Largest number of manoeuvres that get segment insertions.
     pub leaders: usize,
-    /// Relative cost difference from the best one up to which a manoeuvre gets them: insertions
-    /// gain more among several targets.
+    /// Relative cost difference from the best one up to which a manoeuvre gets them.
     pub leader_margin: f64,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
@@ -32,11 +28,10 @@ impl SearchBudget {
     /// Budget for one target: finds the graph's optimum.
     pub(crate) const ONE_TARGET: Self = Self {
         stages: &[(2_000, 1.0)],
-        races: true,
         steps: MAX_STEPS,
         rounds: 8,
-        leaders: 2,
-        leader_margin: 0.05,
+        leaders: 8,
+        leader_margin: 0.3,
         insert_twice: true,
         conflict_nodes: 0,
     };
@@ -47,9 +42,6 @@ impl SearchBudget {
     /// is short; the later ones weight the heuristic less.
     pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
-        races: false,
-        leaders: 8,
-        leader_margin: 0.3,
         conflict_nodes: 64,
         ..Self::ONE_TARGET
     };

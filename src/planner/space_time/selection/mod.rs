@@ -9,12 +9,13 @@ mod tidy;
 pub(crate) mod warm_start;
 
 use crate::frame::Side;
+use crate::parallel;
 use crate::planner::Plan;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::first_met;
-use crate::planner::space_time::refinement::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
+use crate::planner::space_time::refinement::approach::COARSE_CHORD_RAD;
 use crate::planner::space_time::refinement::insertion::{pruned, with_insertions};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::refinement::{InitialGuess, Refinement};
@@ -79,10 +80,6 @@ const MIN_INSERTION_GAIN: f64 = 0.01;
 /// Relative cost that pruning may add.
 const PRUNING_COST: f64 = 2e-3;
 
-/// `(round, survivors)`: from that round on, only this many refinements continue, those of the
-/// least expected cost. The best one usually shows early.
-const SURVIVORS: [(usize, usize); 5] = [(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)];
-
 /// Number of rounds after which arcs are divided into fine chords.
 const FINE_FROM: usize = 6;
 
@@ -139,8 +136,7 @@ impl<'a> Selection<'a> {
         conflicts: &[Conflict],
         clock: Clock,
     ) -> bool {
-        let mut context = self.context;
-        context.chord = COARSE_CHORD_RAD;
+        let context = self.context;
         let (problem, route) = (context.problem, context.route);
         let mut guesses = std::mem::take(&mut self.guesses);
         let leg = problem.desired.legs().len() - 1;
@@ -168,42 +164,39 @@ impl<'a> Selection<'a> {
             }
         }
         let tidy = problem.tidy.map(|tidy| (tidy, guesses.clone()));
+        let coarse = Context {
+            chord: COARSE_CHORD_RAD,
+            ..context
+        };
         let mut running: Vec<Refinement> = guesses
             .into_iter()
             .take_while(|_| !clock.is_up())
-            .filter_map(|s| Refinement::fitting(&context, s))
+            .filter_map(|s| Refinement::fitting(&coarse, s))
             .collect();
-        for round in 0..self.search_budget.steps {
-            let decided = round >= self.search_budget.rounds
-                && running.iter().any(|r| r.best_cost().is_finite());
+        let SearchBudget { steps, rounds, .. } = *self.search_budget;
+        let mut round = 0;
+        while round < steps {
+            let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
             // only manoeuvres checked with fine chords count as clear
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            if self.search_budget.races {
-                race(&mut running, round);
+            // up to `rounds` no refinement depends on another
+            let next = rounds.max(round + 1).min(steps);
+            parallel::each(&mut running, |refinement| {
+                (round..next).for_each(|round| advance(refinement, &context, round, clock));
+            });
+            if clock.is_up() {
+                self.collect(ranked(&running));
+                return true;
             }
-            if round == FINE_FROM {
-                context.chord = FINE_CHORD_RAD;
-                for refinement in running.iter_mut().filter(|r| !r.is_stopped()) {
-                    if !clock.is_up() {
-                        refinement.reevaluate(&context);
-                    }
-                }
-            }
-            for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
-                if clock.is_up() {
-                    self.collect(ranked(&running));
-                    return true;
-                }
-                refinement.step(&context);
-            }
+            round = next;
         }
-        for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
-            if !clock.is_up() {
+        parallel::each(&mut running, |refinement| {
+            if !refinement.is_finished() && !clock.is_up() {
                 refinement.finish(&context);
             }
-        }
+        });
         if self.search_budget.conflict_nodes > 0 {
             self.search_among_several(&mut running, nominal_motion, clock);
         }
@@ -263,8 +256,11 @@ impl<'a> Selection<'a> {
         let [first, then] = UNCUT_M;
         let mut best = None;
         let mut gained = 0.0;
-        for (guess, rank) in leaders {
-            let again = self.with_insertions(&guess, first, clock);
+        let mut leaders: Vec<_> = leaders.into_iter().map(|l| (l, None)).collect();
+        parallel::each(&mut leaders, |((guess, _), again)| {
+            *again = self.with_insertions(guess, first, clock);
+        });
+        for ((guess, rank), again) in leaders {
             let after = again
                 .as_ref()
                 .map_or(f64::INFINITY, Refinement::rank)
@@ -381,24 +377,19 @@ fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     found.into_iter()
 }
 
-/// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
-/// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
-/// inside a set has no price.
-fn race(running: &mut [Refinement], rounds: usize) {
-    let survivors = SURVIVORS.iter().rev().find(|(from, _)| *from <= rounds);
-    let survivors = survivors.map_or(running.len(), |p| p.1);
-    let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_stopped()).collect();
-    if going.is_empty() {
+/// One round of a refinement, with fine chords from [`FINE_FROM`] on.
+fn advance(refinement: &mut Refinement, context: &Context, round: usize, clock: Clock) {
+    let mut context = *context;
+    if round < FINE_FROM {
+        context.chord = COARSE_CHORD_RAD;
+    }
+    if clock.is_up() {
         return;
     }
-    let mut prices: Vec<f64> = going.iter().map(|r| r.price()).collect();
-    prices.sort_by(f64::total_cmp);
-    let usual = prices[(prices.len() - 1) / 2];
-    going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
-    let clear = going.iter().position(|r| r.is_nearly_clear());
-    for (place, refinement) in going.into_iter().enumerate().skip(survivors) {
-        if Some(place) != clear {
-            refinement.stop();
-        }
+    if round == FINE_FROM {
+        refinement.reevaluate(&context);
+    }
+    if !refinement.is_finished() {
+        refinement.step(&context);
     }
 }

@@ -5,7 +5,8 @@
 //! with the [`Prices`] of their alterations, so the manoeuvre as it was wins where the simpler one
 //! is too dear or not clear.
 
-use super::{Selection, leaders, race, refined};
+use super::{Selection, leaders, refined};
+use crate::parallel;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
@@ -45,9 +46,8 @@ const LEADER_MARGIN: f64 = 0.5;
 /// alterations, and a little.
 const ENOUGH: f64 = 1.35;
 
-/// Steps of a refinement after simplifying, and of those that race.
+/// Steps of a refinement after simplifying.
 const STEPS: usize = 12;
-const RACING_STEPS: usize = 10;
 
 /// Prices of the alterations of a motion.
 #[derive(Debug, Clone, Copy)]
@@ -184,26 +184,14 @@ impl Selection<'_> {
         }
         if !pool.has_tidy_below(f64::INFINITY) && !clock.is_up() {
             let context = pool.on_time;
-            let mut racing: Vec<Refinement> = Vec::new();
+            let mut found: Vec<Refinement> = Vec::new();
             for guess in guesses {
                 let simple = Speeds::of_one(&speeds).into_iter();
                 let simple = simple.filter_map(|at| simplified(guess, &speeds, at, tidy));
-                racing.extend(simple.filter_map(|guess| Refinement::fitting(&context, guess)));
+                found.extend(simple.filter_map(|guess| Refinement::fitting(&context, guess)));
             }
-            for round in 0..RACING_STEPS {
-                race(&mut racing, round);
-                for refinement in racing.iter_mut().filter(|r| !r.is_finished()) {
-                    if !clock.is_up() {
-                        refinement.step(&context);
-                    }
-                }
-            }
-            for refinement in racing.iter_mut().filter(|r| !r.is_finished()) {
-                if !clock.is_up() {
-                    refinement.finish(&context);
-                }
-            }
-            racing.iter().for_each(|r| pool.add_refined(r));
+            parallel::each(&mut found, |r| r.go_on(&context, STEPS, clock));
+            found.iter().for_each(|r| pool.add_refined(r));
         }
         pool.add(1.0, late_route.follow(0.0, 0.0));
         for (_, motion) in pool.cheapest_first() {
