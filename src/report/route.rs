@@ -35,8 +35,8 @@ pub enum RouteFormat {
     /// A line per leg (RFC 7946). Needs an origin.
     GeoJson,
     /// Waypoints with turning radii and speeds for navigation systems: RTZ 1.1 of IEC 61174. Needs
-    /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a stay. A scenario has no date, so there are no
-    /// times of arrival.
+    /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a
+    /// stay. A scenario has no date, so there are no times of arrival.
     Rtz,
 }
 

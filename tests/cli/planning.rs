@@ -76,8 +76,8 @@ fn rules_are_kept_by_the_space_time_planner_alone() {
         .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
 }
 
-/// Requests that the path-time planner or another planner refuses: the lines before the mission, its
-/// alternatives, and the message. `TIME` is the table of the path-time planner.
+/// Requests that the path-time planner or another planner refuses: the lines before the mission,
+/// its alternatives, and the message. `TIME` is the table of the path-time planner.
 const UNFIT: &str = r#"
 TIME\nobjective = "length-risk" | | planner.risk_weight_m: found nothing
 TIME\nrisk_weight_m = 5 | | only the objective "length-risk"
@@ -431,8 +431,8 @@ fn a_scenario_to_begin_with_is_written_once() {
     searoom(&["init", &folder.at("no/such/folder.toml")]).code(2);
 }
 
-/// A route that was written is the mission of the next scenario: its plan is as long, and its speeds
-/// are those of the legs.
+/// A route that was written is the mission of the next scenario: its plan is as long, and its
+/// speeds are those of the legs.
 #[test]
 fn a_route_is_a_mission() {
     let folder = Folder::new();
@@ -636,8 +636,8 @@ fn later_on(plan: &Value, seconds: u32, beside: f64) -> String {
     later
 }
 
-/// The velocities of before are kept for the same set, given about the course that the target has
-/// now, and not for one of equal width to another side.
+/// The earlier velocities are kept for the same set, given about the course that the target has
+/// now. They are not kept for a set of equal width to another side.
 #[test]
 fn velocities_are_kept_only_for_a_target_that_may_do_no_more() {
     let folder = Folder::new();

@@ -20,8 +20,8 @@ fn overlapping() -> String {
     with_target_at("30.0, north_m = 0.0")
 }
 
-/// A target abeam on the same course at the same speed, nearer than the margin, and nothing unknown
-/// of her.
+/// A target abeam on the same course at the same speed, nearer than the margin. Nothing about it is
+/// unknown.
 fn abeam() -> String {
     let text =
         with_target_at("0.0, north_m = 25.0").replace("course_deg = 270.0", "course_deg = 90.0");
@@ -281,8 +281,8 @@ fn a_report_has_no_folder_of_this_machine() {
     says(&read(), &format!("<p class=\"quiet\">{scenario}</p>"));
 }
 
-/// Three targets at rest beside a straight path, the nearest in the middle of the list; hulls of
-/// own ship and of each are 4 and 6 m to a side.
+/// Three targets at rest beside a straight path, the nearest in the middle of the list. Own hull
+/// and the targets' hulls are 4 and 6 m to a side.
 const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
 
 /// Every view tells each target's own clearance, and the least of all, to the decimals that it has.

@@ -39,9 +39,9 @@ fn square([x, y]: [f64; 2], half: f64) -> Value {
     json!(corners.map(|(east, north)| [x + half * east, y + half * north]))
 }
 
-/// A slab of half a nanosecond that carries the set aside; a level set to one side of the
-/// velocities, in two slabs; a jump through a wall during a turn of many circles; a round trip that
-/// nobody sails.
+/// Unsound documents. A slab of half a nanosecond carries the set aside, or a level set lies to one
+/// side of the velocities, in two slabs. A motion jumps through a wall during a turn of many
+/// circles, or nobody sails a round trip.
 #[test]
 fn unsound_documents_are_rejected() {
     for (name, expected) in [

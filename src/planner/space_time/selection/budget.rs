@@ -9,8 +9,8 @@ pub(crate) struct SearchBudget {
     /// `(max_expansions, heuristic_weight)` of each search stage. The limit counts all expansions
     /// so far and bounds memory and time. A stage starts where the earlier ones found no plan.
     pub stages: &'static [(usize, f64)],
-    /// True where refinements that fall behind are stopped. The best one of one target usually shows
-    /// early; among several it often is not clear before the last rounds.
+    /// True where refinements that fall behind are stopped. The best one of one target usually
+    /// shows early; among several it often is not clear before the last rounds.
     pub races: bool,
     /// Largest number of rounds.
     pub steps: usize,
