@@ -1,7 +1,8 @@
 //! Evaluates any trajectory without the sets, contact tests and searches of the planners.
 //!
 //! Distances are computed by parry. The evaluation shares with the planners only polygons,
-//! ellipses, segments, and the hull and velocity sets of a tracked ship (`target`).
+//! ellipses, the smallest enclosing ellipse, trajectories, ship models, and the hull, positions and
+//! velocity sets of a tracked ship (`target`).
 
 mod along;
 mod cost;

@@ -22,7 +22,7 @@ const RTZ_RADIUS_NMI: f64 = 5.0;
 /// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
-/// Metres, seconds and radians: a shorter and smaller turn beside a waypoint is none of its own.
+/// Metres, seconds and radians. A shorter and smaller turn beside a waypoint does not count as one.
 const SLIVER_M: f64 = 1.0;
 const SLIVER_S: f64 = 0.5;
 const SLIVER_RAD: f64 = 0.01;

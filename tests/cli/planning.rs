@@ -16,7 +16,7 @@ fn the_scenarios_of_the_project_are_good() {
         .success()
         .stdout(contains("scenarios/colregs/head-on.toml: ok"))
         .stdout(contains("scenarios/imazu/imazu.json: imazu-22: ok"));
-    // what foreign files do not say is told, and nothing else
+    // the only messages are notes on what imported files leave out
     let messages = String::from_utf8_lossy(&checked.get_output().stderr).into_owned();
     let foreign = ["dnv", "imazu", "commonocean"].map(|f| format!("note: scenarios/{f}/"));
     for line in messages.lines() {
@@ -284,7 +284,7 @@ fn no_plan_is_an_answer() {
         .stdout(contains(
             "2 scenarios: 1 solved, 1 infeasible; 1 verified, 1 safe",
         ));
-    // from within a set there is a way out, and it is not said to be more
+    // from within a set there is a way out, and the document claims no more
     let plan = searoom(&["plan", &inside, "--json"]).code(1);
     let text = stdout(&plan);
     let plan = document(&plan);
@@ -304,8 +304,7 @@ fn no_plan_is_an_answer() {
         .success()
         .stdout(contains("verified, not safe: COLLIDES"))
         .stdout(contains("nothing is claimed of it before"));
-    // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk
-    // meanwhile
+    // claimed from too early, never claimed, not reported, or of a set that has shrunk
     let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
     check(&earlier).code(1).stdout(contains("set of"));
     let never = text.replace(&until.to_string(), "1000000");

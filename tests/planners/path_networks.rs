@@ -71,7 +71,7 @@ fn one_pass_of_a_place_is_not_another() {
     ));
 }
 
-/// Who waits at the start on another course than that of the first leg turns when it moves off.
+/// Own ship waits at the start on another course than the first leg's, and turns when it moves off.
 #[test]
 fn a_wait_at_the_start_is_not_turned() {
     let text = include_str!("../faults/exit3-path-time-wait-turned.toml");
@@ -122,8 +122,8 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let document = document(&run);
     assert_eq!(document["cost"]["arrived"], false);
     assert_eq!(document["outcome"], "relaxed");
-    // who says that it arrives, or that more of the way is done, or goes on for less than the
-    // horizon, is found out
+    // documents that claim an arrival or more distance sailed, or end before the horizon, are
+    // rejected
     let altered = |alter: &dyn Fn(&mut Value)| {
         let mut altered = document.clone();
         alter(&mut altered);

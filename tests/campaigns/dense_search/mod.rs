@@ -98,7 +98,7 @@ struct State {
     pose: Pose,
     /// Integral of the error so far, m² s.
     cost: f64,
-    /// That, and the lower bound of what is still to come: what states of one cell are compared by.
+    /// The cost plus the lower bound of the cost to go. States of one cell are compared by it.
     total: f64,
     /// Index of the state before, and the step from there.
     before: Option<(usize, Segment)>,
