@@ -12,7 +12,7 @@ use searoom::target::ShipTrack;
 use searoom::trajectory::Segment;
 use searoom::vessel::Hull;
 
-/// A ship from ahead: at 4 m/s west from 1000 m east, a disc of 80 m about her 60 m hull.
+/// A ship from ahead: at 4 m/s west from 1000 m east, with a disc of 80 m about its 60 m hull.
 fn body() -> PolytopeObstacle {
     let ship = ShipTrack {
         speed_spread: 0.4,

@@ -101,7 +101,7 @@ fn many_targets(criterion: &mut Criterion) {
     }
 }
 
-/// Milliseconds of each scene's plan, the least of so many runs, sorted.
+/// Milliseconds of each scene's plan, the least of several runs, sorted.
 fn times(scenes: impl Iterator<Item = Scenario>) -> Vec<f64> {
     let mut times: Vec<f64> = scenes
         .map(|scenario| {

@@ -65,7 +65,8 @@ enum Campaign {
         /// Motion of the targets
         #[arg(long, value_enum, default_value = "constant")]
         targets: replanning::Behaviour,
-        /// Own ship is up to this far off its plan when the next is made: its tracking margin, metres
+        /// Own ship is up to this far off its plan when the next is made: its tracking margin,
+        /// metres
         #[arg(long, default_value_t = 0.0)]
         off: f64,
         /// The targets are measured anywhere within three standard deviations of their positions

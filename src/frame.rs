@@ -189,7 +189,7 @@ pub const fn radians_from_deg(degrees: f64) -> f64 {
 /// Degrees from radians, for angles without a direction or already clockwise.
 ///
 /// Radians that were read from degrees give these degrees back, or others that are read as the same
-/// radians: a document then describes the same sets to the last digit.
+/// radians. So a document describes the same sets to the last digit.
 pub fn deg_from_radians(radians: f64) -> f64 {
     let degrees = radians.to_degrees();
     let (above, below) = (degrees.next_up(), degrees.next_down());

@@ -30,7 +30,7 @@ pub struct PlannedLeg {
     /// Change of course at its start, degrees, positive to starboard. Not 0 at the corners of a
     /// path, where the path-time planner turns at once.
     pub corner_deg: f64,
-    /// What happens on it, in order of time.
+    /// Events on the leg, in order of time.
     pub events: Vec<String>,
 }
 

@@ -1,7 +1,8 @@
 //! Evaluates any trajectory without the sets, contact tests and searches of the planners.
 //!
 //! Distances are computed by parry. The evaluation shares with the planners only polygons,
-//! ellipses, segments, and the hull and velocity sets of a tracked ship (`target`).
+//! ellipses, the smallest enclosing ellipse, trajectories, ship models, and the hull, positions and
+//! velocity sets of a tracked ship (`target`).
 
 mod along;
 mod cost;
@@ -261,9 +262,9 @@ fn meetings<P: Piece>(
     (passages, worst)
 }
 
-/// Least signed distance between a hull and land along a motion, metres, and when; negative on land,
-/// infinite without land, negatively infinite where it is not proven. O(edges log edges), and
-/// O(polygons + log edges) per segment.
+/// Least signed distance between a hull and land along a motion, metres, and when. It is negative
+/// on land, infinite without land, and negatively infinite where it is not proven. O(edges log
+/// edges), and O(polygons + log edges) per segment.
 pub(crate) fn least_land_distance(land: &[Polygon], motion: &[Segment], own: &Hull) -> (f64, f64) {
     let (body, reach) = (Body::hull(own), own.half_diagonal());
     let least = LandBodies::new(land).least_distance(motion, body, reach);

@@ -49,8 +49,8 @@ pub struct Request<'a> {
     pub arrival_hold: f64,
     /// `q` of paper eq. (30), m²/s².
     pub time_weight: f64,
-    /// Accepted risk of paper eq. (25), in `[0, 1)`. The sets are already the level sets of this risk.
-    /// Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
+    /// Accepted risk of paper eq. (25), in `[0, 1)`. The sets are already the level sets of this
+    /// risk. Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
     pub max_risk: f64,
 }
 

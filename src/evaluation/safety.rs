@@ -218,8 +218,8 @@ mod tests {
         })
     }
 
-    /// The limits do not depend on the sets: 10 m for the nominal hull, 10 m plus three standard
-    /// deviations for any hull, and 41.524 m for the hard set.
+    /// The limits do not depend on the sets. They are 10 m for the nominal hull, 10 m plus three
+    /// standard deviations for any hull, and 41.524 m for the hard set.
     #[test]
     fn what_is_entered_is_told_to_the_millimetre() {
         for (north, spread_m, expected) in [

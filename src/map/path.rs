@@ -84,7 +84,7 @@ impl Map {
     }
 
     /// The place on the line from `a` to `b` with the least signed distance from land, to
-    /// [`SETTLED_M`]: by halving, as the distance changes by at most a metre per metre.
+    /// [`SETTLED_M`]. Found by halving, as the distance changes by at most a metre per metre.
     fn nearest_to_land(&self, a: Vector, b: Vector) -> (Vector, f64) {
         let mut best = (a, self.signed_distance(a));
         let mut see = |p: Vector| {

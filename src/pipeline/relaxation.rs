@@ -80,8 +80,8 @@ impl Attempt {
         self.planned.outcome.plan().map(|plan| &plan.trajectory)
     }
 
-    /// True where this answer relaxes less than another, or as much at a lower cost. Compares level,
-    /// number of entered sets, risk, largest reduction of a domain, and cost, in this order.
+    /// True where this answer relaxes less than another, or as much at a lower cost. Compares
+    /// level, number of entered sets, risk, largest reduction of a domain, and cost, in this order.
     fn is_better_than(&self, other: &Self) -> bool {
         let (Some(plan), Some(others)) =
             (self.planned.outcome.plan(), other.planned.outcome.plan())
@@ -224,8 +224,8 @@ impl Relaxer<'_> {
         }
     }
 
-    /// The answer where the time ran out before there was a plan: the remainder of the last plan
-    /// where that is clear of the hard sets, which takes no search.
+    /// The answer where the time ran out before there was a plan. It is the remainder of the last
+    /// plan, if that is clear of the hard sets: this takes no search.
     fn late(&self, with_domain: bool, attempt: Attempt) -> Attempt {
         match self.remainder(with_domain) {
             Some(found) => out_of_time(found),

@@ -20,10 +20,11 @@ pub(super) struct Remainder {
     pub broken: usize,
 }
 
-/// Returns the remainder where it is better than the new plan of an attempt: where there is none,
-/// where that breaks more rules, where a target that matters is outside the sets that were assumed,
-/// where own ship returns to its route after a manoeuvre, and where the new plan is hardly cheaper.
-/// The remainder has to be clear of the same sets, to arrive in time, and to start at own pose.
+/// Returns the remainder where it is better than the new plan of an attempt. It is better where
+/// there is no new plan, or the new plan breaks more rules or is hardly cheaper. It is also better
+/// where a target that matters is outside the sets that were assumed, and where own ship returns to
+/// its route after a manoeuvre. The remainder has to be clear of the same sets, to arrive in time,
+/// and to start at own pose.
 pub(super) fn better_remainder(
     scenario: &Scenario,
     problem: &Problem,

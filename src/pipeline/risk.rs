@@ -6,9 +6,9 @@ use crate::trajectory::Trajectory;
 
 /// The largest risk along a trajectory.
 ///
-/// The risk is 0 where the trajectory is nowhere deeper than [`tolerance::DEPTH_M`] in the set: a
-/// set without velocity spread has risk 1 on its boundary, and touching is allowed. Likewise it is
-/// at most `accepted`, in `[0, 1)`, where the trajectory is nowhere deeper in that level set.
+/// The risk is 0 where the trajectory is nowhere deeper than [`tolerance::DEPTH_M`] in the set. A
+/// set without velocity spread has risk 1 on its boundary, but touching is allowed. The risk is at
+/// most `accepted`, in `[0, 1)`, where the trajectory is nowhere deeper than that in its level set.
 pub fn peak_risk(set: &Obstacle, trajectory: &Trajectory, accepted: f64) -> PeakRisk {
     // a motion under forces is sampled, and the samples check the depth
     if trajectory.steered().is_some() {

@@ -40,8 +40,8 @@ pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
 pub struct PlannerSettings {
     /// Settings of the optimal-control planner.
     pub optimal_control: ControlSettings,
-    /// Whether plans of the space-time planner are tidy; `None` where only those under the rules of
-    /// the road are.
+    /// True where plans of the space-time planner are tidy. `None` where only those under the rules
+    /// of the road are.
     pub tidy: Option<bool>,
     /// How tidy they are.
     pub tidiness: Tidiness,
@@ -68,8 +68,8 @@ pub struct Tidiness {
 }
 
 impl Tidiness {
-    /// Least times for an own ship of the given length, metres: 30 s at a speed for 30 m and less,
-    /// 60 s for 100 m and more, and 3 s for a segment.
+    /// Least times for an own ship of the given length, metres. At a speed: 30 s for 30 m and less,
+    /// 60 s for 100 m and more. For a segment: 3 s.
     pub fn at_length(length: f64) -> Self {
         let share = ((length - 30.0) / 70.0).clamp(0.0, 1.0);
         Self {
@@ -191,8 +191,8 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// Least space-time error without land, rules, alternative paths and tidiness. The time weight is the
-    /// square of own speed; the budget is a minute.
+    /// Least space-time error without land, rules, alternative paths and tidiness. The time weight
+    /// is the square of own speed; the budget is a minute.
     pub fn new(
         own: &'a OwnShip,
         desired: &'a DesiredTrajectory,

@@ -8,8 +8,8 @@
 //! - `checksum`: how a cut or damaged file is detected
 //!
 //! The only timeline is `sim_time`: seconds from the start of the scenario, as a duration.
-//! Positions are metres east and north. Entities that do not move are static, and so are colours and names.
-//! Without a plan the desired motion is shown in its place and named so.
+//! Positions are metres east and north. Entities that do not move are static, and so are colours
+//! and names. Without a plan the desired motion is shown in its place and named so.
 //!
 //! `docs/inspect.md` lists the entities. The layout is a store of its own in the same file. The
 //! stores are named after their contents.

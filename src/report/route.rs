@@ -22,7 +22,7 @@ const RTZ_RADIUS_NMI: f64 = 5.0;
 /// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
-/// Metres, seconds and radians: a shorter and smaller turn beside a waypoint is none of its own.
+/// Metres, seconds and radians. A shorter and smaller turn beside a waypoint does not count as one.
 const SLIVER_M: f64 = 1.0;
 const SLIVER_S: f64 = 0.5;
 const SLIVER_RAD: f64 = 0.01;
@@ -35,8 +35,8 @@ pub enum RouteFormat {
     /// A line per leg (RFC 7946). Needs an origin.
     GeoJson,
     /// Waypoints with turning radii and speeds for navigation systems: RTZ 1.1 of IEC 61174. Needs
-    /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a stay. A scenario has no date, so there are no
-    /// times of arrival.
+    /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a
+    /// stay. A scenario has no date, so there are no times of arrival.
     Rtz,
 }
 

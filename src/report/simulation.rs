@@ -227,7 +227,7 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
     }
 }
 
-/// Degrees: a smaller difference between the turns of two plans is none.
+/// Degrees. A smaller difference between the turns of two plans does not count.
 const OTHER_TURN_DEG: f64 = 5.0;
 
 /// A row per plan that differs from the one before: in its outcome, its manoeuvre, or the targets

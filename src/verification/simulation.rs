@@ -54,7 +54,7 @@ impl SimulationVerification {
     }
 }
 
-/// What kind of document a text is. A list has no format of its own.
+/// The kind of document that a text is. A list has no format of its own.
 #[derive(Default, Deserialize)]
 struct Kind {
     format: Option<String>,

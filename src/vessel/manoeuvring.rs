@@ -26,7 +26,7 @@ pub struct Scales {
 /// ```
 /// use searoom::vessel::{ForceVector, Manoeuvring, StateVector, VesselKind};
 ///
-/// /// Seconds until a ship without way has half the speed that a force holds, by Euler steps of 0.1 s.
+/// /// Seconds until a ship at rest has half the speed that a force holds, by steps of 0.1 s.
 /// fn seconds_to_half(ship: &dyn Manoeuvring, speed: f64) -> f64 {
 ///     let force: ForceVector = ship.steady(speed);
 ///     let (mut state, mut time) = (StateVector::zeros(), 0.0);

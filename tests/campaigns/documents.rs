@@ -1,4 +1,4 @@
-//! Plan documents of every kind, and what the check says of a changed one.
+//! Plan documents of every kind, and the check's answer to a changed one.
 #![allow(dead_code, reason = "tests and campaigns use a part each")]
 
 use std::path::{Path, PathBuf};

@@ -155,7 +155,8 @@ impl EncounterKind {
         }
     }
 
-    /// True for an encounter of this kind by the sectors of docs/colregs.md, section 1.3, Rule 13 first.
+    /// True for an encounter of this kind by the sectors of docs/colregs.md, section 1.3, Rule 13
+    /// first.
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);
@@ -198,8 +199,8 @@ pub struct RandomEncounter {
 
 /// Own ship and one target. Its bearing is uniform in the kind's sector, its speed in the kind's
 /// range. It starts where it would reach own ship's track at the meeting time, moved sideways by
-/// the miss distance (docs/colregs.md 4.3). Equal arguments give equal scenes. `None` where every draw
-/// was of another kind.
+/// the miss distance (docs/colregs.md 4.3). Equal arguments give equal scenes. `None` where every
+/// draw was of another kind.
 pub fn random_encounter(
     kind: EncounterKind,
     seed: u64,

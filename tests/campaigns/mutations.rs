@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use super::Report;
 use super::documents::{documents, is_caught, numbers};
 
-/// True for values that are not altered here: nothing is proven of search statistics and weights,
-/// and another input or set may be sound too (tests/verification/claims.rs alters these).
+/// True for values that are not altered here. Nothing is proven of search statistics and weights.
+/// Another input or set may be sound too; tests/verification/claims.rs alters these.
 fn is_said_only(pointer: &str) -> bool {
     [
         "/search_stats",

@@ -1,13 +1,12 @@
-//! A search over (distance, time) that is small, slow and obviously right: what the path-time
-//! planner's arrival is held against.
+//! A search over (distance, time) that is small, slow and obviously right. The path-time planner's
+//! arrival is compared with it.
 //!
 //! The path is cut into `cells` pieces and time into steps in which one piece is sailed at full
-//! speed. In every step own ship sails one piece or waits. With the sets as they are every step is
-//! tested as a motion, so what comes out is a plan, and no arrival can be better than the least: an
-//! upper bound. With the sets two pieces smaller on every side only the grid's points are tested.
-//! Rounded down to the grid every motion is one of the grid's and never more than two pieces away
-//! from itself at the same time, so no motion arrives earlier than that: a lower bound, less a
-//! step.
+//! speed. In every step own ship sails one piece or waits. Upper bound: with the sets as they are,
+//! every step is tested as a motion. The result is a plan, so it arrives no earlier than the least
+//! time. Lower bound: with the sets two pieces smaller on every side, only the grid's points are
+//! tested. Every motion, rounded down to the grid, is one of the grid's. It is never more than two
+//! pieces away from itself at the same time. So no motion arrives more than a step earlier.
 //!
 //! Shared with the program: membership and contact of a set in the plane and time, not along a
 //! path.

@@ -11,7 +11,7 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// Quantiles with so many decimals, between strokes.
+/// Quantiles with the given decimals, between strokes.
 pub fn quantiles<const N: usize>(values: &[f64], at: [f64; N], decimals: usize) -> String {
     at.map(|p| format!("{:.decimals$}", quantile(values, p)))
         .join("/")

@@ -1,4 +1,4 @@
-//! Assessments: documents, tables, figures, and what they cannot read.
+//! Assessments: documents, tables, figures, and input that is refused.
 
 use std::fs;
 
@@ -54,8 +54,8 @@ fn an_assessment_document_has_what_the_contract_names() {
     assert!(width(&with_domain) > width(&assessment));
 }
 
-/// The velocity that the document recommends is in no velocity obstacle, and one a little less far
-/// is.
+/// The velocity that the document recommends is in no velocity obstacle. One slightly nearer to own
+/// velocity is.
 #[test]
 fn a_recommended_alteration_leaves_every_velocity_obstacle() {
     for name in ["give-way", "head-on", "overtaking", "stand-on"] {

@@ -142,7 +142,7 @@ fn imported_files_run_as_their_originals() {
     let again = bare(&["suite", "--json", &out]);
     assert_eq!(original.len(), 24);
     assert_eq!(original, again);
-    // a scenario file is one already, and what cannot be read is said
+    // a scenario file is left out, and an unreadable file is reported
     run(&format!("import {out} no.json --out {folder}"))
         .code(2)
         .stderr(contains("imazu-01.toml: a scenario file already, left out"))

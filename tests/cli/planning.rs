@@ -16,7 +16,7 @@ fn the_scenarios_of_the_project_are_good() {
         .success()
         .stdout(contains("scenarios/colregs/head-on.toml: ok"))
         .stdout(contains("scenarios/imazu/imazu.json: imazu-22: ok"));
-    // what foreign files do not say is told, and nothing else
+    // the only messages are notes on what imported files leave out
     let messages = String::from_utf8_lossy(&checked.get_output().stderr).into_owned();
     let foreign = ["dnv", "imazu", "commonocean"].map(|f| format!("note: scenarios/{f}/"));
     for line in messages.lines() {
@@ -76,8 +76,8 @@ fn rules_are_kept_by_the_space_time_planner_alone() {
         .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
 }
 
-/// Requests that the path-time planner or another planner refuses: the lines before the mission, its
-/// alternatives, and the message. `TIME` is the table of the path-time planner.
+/// Requests that the path-time planner or another planner refuses: the lines before the mission,
+/// its alternatives, and the message. `TIME` is the table of the path-time planner.
 const UNFIT: &str = r#"
 TIME\nobjective = "length-risk" | | planner.risk_weight_m: found nothing
 TIME\nrisk_weight_m = 5 | | only the objective "length-risk"
@@ -284,7 +284,7 @@ fn no_plan_is_an_answer() {
         .stdout(contains(
             "2 scenarios: 1 solved, 1 infeasible; 1 verified, 1 safe",
         ));
-    // from within a set there is a way out, and it is not said to be more
+    // from within a set there is a way out, and the document claims no more
     let plan = searoom(&["plan", &inside, "--json"]).code(1);
     let text = stdout(&plan);
     let plan = document(&plan);
@@ -304,8 +304,7 @@ fn no_plan_is_an_answer() {
         .success()
         .stdout(contains("verified, not safe: COLLIDES"))
         .stdout(contains("nothing is claimed of it before"));
-    // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk
-    // meanwhile
+    // claimed from too early, never claimed, not reported, or of a set that has shrunk
     let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
     check(&earlier).code(1).stdout(contains("set of"));
     let never = text.replace(&until.to_string(), "1000000");
@@ -431,8 +430,8 @@ fn a_scenario_to_begin_with_is_written_once() {
     searoom(&["init", &folder.at("no/such/folder.toml")]).code(2);
 }
 
-/// A route that was written is the mission of the next scenario: its plan is as long, and its speeds
-/// are those of the legs.
+/// A route that was written is the mission of the next scenario: its plan is as long, and its
+/// speeds are those of the legs.
 #[test]
 fn a_route_is_a_mission() {
     let folder = Folder::new();
@@ -636,8 +635,8 @@ fn later_on(plan: &Value, seconds: u32, beside: f64) -> String {
     later
 }
 
-/// The velocities of before are kept for the same set, given about the course that the target has
-/// now, and not for one of equal width to another side.
+/// The earlier velocities are kept for the same set, given about the course that the target has
+/// now. They are not kept for a set of equal width to another side.
 #[test]
 fn velocities_are_kept_only_for_a_target_that_may_do_no_more() {
     let folder = Folder::new();

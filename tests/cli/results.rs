@@ -132,7 +132,8 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     unwritten.stderr(contains("/no/such/folder/x.csv"));
 }
 
-/// Who enters a whole set within the accepted risk is relaxed, whether a planner chose it or not.
+/// A motion that enters a whole set within the accepted risk is relaxed, whether a planner chose it
+/// or not.
 #[test]
 fn a_baseline_that_takes_an_accepted_risk_is_relaxed() {
     let compared = json(
@@ -467,7 +468,7 @@ fn the_rules_are_judged_by_what_is_asked_for() {
     let usual = plan(&[]);
     assert_eq!(usual["thresholds"], "searoom");
     assert_eq!(plan(&["--thresholds", "searoom"]), usual);
-    // who wants five lengths between the ships sees a near miss in the same plan
+    // with thresholds of five lengths the same plan is a near miss
     let text_of =
         |lines: &str| format!("name = 'mine'\nsource = 'a test'\nlike = 'searoom'\n{lines}");
     let near = "near_miss_lengths = 5\nleast_lengths = 10\npreferred_lengths = 20";

@@ -234,7 +234,7 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     assert!(refused.contains(fault), "{refused}");
 }
 
-/// What a target leaves out of its reports, a sensor, and the fault.
+/// Fields that a target does not report, a sensor, and the fault.
 const NOT_REPORTED: &str = r#"
 "heading", "size" | kind = "radar" | : found a sensor of kind "radar"
 "heading", "size" | kind = "ais", default_length_m = 50 | : found a larger ship than the default of 50 × 20 m

@@ -20,8 +20,8 @@ fn overlapping() -> String {
     with_target_at("30.0, north_m = 0.0")
 }
 
-/// A target abeam on the same course at the same speed, nearer than the margin, and nothing unknown
-/// of her.
+/// A target abeam on the same course at the same speed, nearer than the margin. Nothing about it is
+/// unknown.
 fn abeam() -> String {
     let text =
         with_target_at("0.0, north_m = 25.0").replace("course_deg = 270.0", "course_deg = 90.0");
@@ -30,7 +30,7 @@ fn abeam() -> String {
     lines.join("\n")
 }
 
-/// One word for one plan in every view, and never "verified" without what else is so.
+/// Every view has the same word for a plan, and none says "verified" without the verdict.
 #[test]
 fn a_plan_that_is_not_safe_says_so_in_every_view() {
     for (name, scene, word) in [
@@ -88,7 +88,7 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
     }
 }
 
-/// A baseline is called what a plan is called that does the same.
+/// A baseline has the same word as a plan that does the same.
 #[test]
 fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     let folder = Folder::new();
@@ -98,7 +98,7 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
         let row = table.lines().find(|line| line.contains(method));
         assert!(row.expect("a row").contains("COLLIDES"), "{table}");
     }
-    // the shape about a target that lies still is entered, nothing else
+    // only the domain of a target at rest is entered
     let lying = with_target_at("700.0, north_m = 100.0").replace(
         "speed_mps = 5.0\nlength_m = 60.0",
         "speed_mps = 0.0\nlength_m = 60.0",
@@ -114,8 +114,8 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     assert_eq!(held["outcome"], "collides", "the key keeps its values");
 }
 
-/// A risk that is taken of the shape alone is safe, one of the hard set is not; both are told with
-/// their figure.
+/// A risk taken in the domain alone is safe, one in the hard set is not. Both are reported with
+/// their number.
 #[test]
 fn a_risk_that_is_taken_is_told_with_its_figure() {
     let folder = Folder::new();
@@ -207,7 +207,7 @@ fn control_characters_of_others_are_shown_as_codes() {
     }
 }
 
-/// Scenarios that the rules or a planner of the command line do not fit are no fault of theirs.
+/// A scenario is not faulty where the rules or planner of the command line do not fit it.
 #[test]
 fn a_suite_skips_what_does_not_apply() {
     let folder = Folder::new();
@@ -262,7 +262,7 @@ fn skipped_waypoints_are_told() {
         .stdout(contains(format!("Skips {skips}")));
 }
 
-/// A page that is given to others does not tell where its files were on this machine.
+/// A page that is given to others does not show where its files were on this machine.
 #[test]
 fn a_report_has_no_folder_of_this_machine() {
     let folder = Folder::new();
@@ -281,8 +281,8 @@ fn a_report_has_no_folder_of_this_machine() {
     says(&read(), &format!("<p class=\"quiet\">{scenario}</p>"));
 }
 
-/// Three targets at rest beside a straight path, the nearest in the middle of the list; hulls of
-/// own ship and of each are 4 and 6 m to a side.
+/// Three targets at rest beside a straight path, the nearest in the middle of the list. Own hull
+/// and the targets' hulls are 4 and 6 m to a side.
 const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
 
 /// Every view tells each target's own clearance, and the least of all, to the decimals that it has.

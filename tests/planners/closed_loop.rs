@@ -38,8 +38,8 @@ fn targets_within_their_sets_are_never_met_and_every_plan_has_a_successor() {
     }
 }
 
-/// Targets that give way: a plan for sets with that turn in them stays clear, and one for other sets
-/// does not always.
+/// Targets give way. A plan for sets that hold the turn stays clear; a plan for other sets does not
+/// always.
 #[test]
 fn a_target_that_gives_way_as_assumed_takes_no_certificate_away() {
     let lost = |starboard_turn: f64| -> usize {

@@ -71,7 +71,7 @@ fn one_pass_of_a_place_is_not_another() {
     ));
 }
 
-/// Who waits at the start on another course than that of the first leg turns when it moves off.
+/// Own ship waits at the start on another course than the first leg's, and turns when it moves off.
 #[test]
 fn a_wait_at_the_start_is_not_turned() {
     let text = include_str!("../faults/exit3-path-time-wait-turned.toml");
@@ -101,8 +101,8 @@ fn the_error_on_an_alternative_is_that_against_the_mission() {
     assert!(faults(&less).contains("cost.objective"));
 }
 
-/// A slower ship ahead on a path without a way past: own ship follows, clear of the whole shape up
-/// to the horizon, and says that it does not arrive.
+/// A slower ship is ahead on a path without a way past. Own ship follows, clear of the whole shape
+/// up to the horizon, and says that it does not arrive.
 #[test]
 fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let run = verified(include_str!("../../scenarios/colregs/overtaking.toml"));
@@ -122,8 +122,8 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let document = document(&run);
     assert_eq!(document["cost"]["arrived"], false);
     assert_eq!(document["outcome"], "relaxed");
-    // who says that it arrives, or that more of the way is done, or goes on for less than the
-    // horizon, is found out
+    // documents that claim an arrival or more distance sailed, or end before the horizon, are
+    // rejected
     let altered = |alter: &dyn Fn(&mut Value)| {
         let mut altered = document.clone();
         alter(&mut altered);
@@ -149,9 +149,8 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     assert!(shorter.contains("s from the horizon"), "{shorter}");
 }
 
-/// Ships that come the other way, where nothing along the path is clear: own ship stops and lets
-/// itself be passed; inside the set it makes no way, and when the ship is past it goes on to the
-/// end.
+/// A ship comes the other way, and nothing along the path is clear. Own ship stops and lets itself
+/// be passed. Inside the set it makes no way; when the ship is past it goes on to the end.
 #[test]
 fn where_a_ship_comes_down_the_path_own_ship_stops() {
     use Objective::{Length, SpaceTimeError, Time};
@@ -178,9 +177,9 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
     }
 }
 
-/// From within sets: holding the speed clears every hull, and waiting meets one; or a ship lies at
-/// anchor ahead, and own ship has to turn before it moves. The hulls decide, not the time in the
-/// sets.
+/// Own ship starts within sets. In one scene holding the speed clears every hull and waiting meets
+/// one. In the other a ship lies at anchor ahead, and own ship has to turn before it moves. The
+/// hulls decide, not the time in the sets.
 #[test]
 fn the_least_harm_meets_no_nominal_hull_where_that_can_be() {
     for text in [
@@ -202,8 +201,8 @@ fn the_least_harm_meets_no_nominal_hull_where_that_can_be() {
     }
 }
 
-/// A ship at anchor over the last waypoint: own ship stays off, and says so; at a horizon that ends
-/// before it gets there as well.
+/// A ship lies at anchor over the last waypoint. Own ship stays off and says so, also where the
+/// horizon ends before it gets there.
 #[test]
 fn before_a_ship_over_the_end_own_ship_stops() {
     let anchored = |horizon: f64| {
@@ -226,8 +225,9 @@ fn before_a_ship_over_the_end_own_ship_stops() {
     }
 }
 
-/// The shipped scenario does what it says: the other path, on which it sails slower for the ship
-/// that crosses; without the dredger its own, without the coaster at full speed.
+/// The shipped scenario does what it says: the ferry takes the other path, and sails slower for the
+/// ship that crosses. Without the dredger it takes its own path; without the coaster it sails at
+/// full speed.
 #[test]
 fn on_the_alternative_path_the_ferry_lets_the_coaster_pass() {
     let run = |left_out: &str| {

@@ -210,7 +210,7 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
     // at rest with an approaching target: turning does not help, speed does
     let stopped = still(&[at(Vector::new(0.0, 400.0), Vector::new(0.0, -2.0))], 0.0);
     assert_eq!((stopped.starboard, stopped.port), (None, None));
-    assert!((stopped.speed.expect("ahead of her") - 10.0 / 197.5).abs() < 1e-6);
+    assert!((stopped.speed.expect("ahead of it") - 10.0 / 197.5).abs() < 1e-6);
     // tangents to a box at rest dead ahead, through its near corners
     let ahead = still(&[at(Vector::new(410.0, 0.0), Vector::zeros())], 5.0);
     let tangent = (5.0_f64).atan2(400.0);

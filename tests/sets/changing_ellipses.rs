@@ -1,5 +1,5 @@
-//! A target whose velocity ellipse changes with time: its set contains every position that it may
-//! reach, and plans, checker and verification of a document agree on it.
+//! A target whose velocity ellipse changes with time. Its set contains every position that it may
+//! reach. Plans, checker and verification of a document agree on it.
 
 use proptest::collection::vec;
 use searoom::frame::direction;

@@ -366,7 +366,8 @@ fn what_remains_of_a_set_goes_on_from_its_section() {
     });
 }
 
-/// Between 3999.9999999999995 s and the horizon lies one rounding; less 853.1 s they are one number.
+/// Between 3999.9999999999995 s and the horizon lies one rounding; less 853.1 s they are one
+/// number.
 #[test]
 fn what_remains_of_a_set_has_moved_also_where_its_changes_round_to_one_time() {
     let scenario = "title = \"slow turn\"\nhorizon_s = 4000\n[own_ship]\n\

@@ -21,10 +21,10 @@ fn verified_file(name: &str) -> Value {
     verified(&fault(&format!("{name}.toml")))
 }
 
-/// Plans that are what they say: something given up when the time was out, a node at a rounding
-/// past a whole second, ellipses and sets at the ends of the numbers, an arc of a millimetre at the
-/// end of a long way; a ship that stands on from beside its leg by a rounding; one that has arrived
-/// within a set; a plan until the horizon near a ship that turns; places 10,000 km from the origin.
+/// Sound plans. Something is given up when the time is out; a node is a rounding past a whole
+/// second; an arc of a millimetre ends a long way. Ellipses and sets lie at the ends of the
+/// numbers, and places are 10,000 km from the origin. A ship stands on from beside its leg by a
+/// rounding; one has arrived within a set. A plan lasts until the horizon near a ship that turns.
 #[test]
 fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
     for name in [
@@ -107,7 +107,8 @@ fn a_start_on_a_point_or_a_segment_is_a_start_inside() {
     }
 }
 
-/// The ellipse around a needle and a disc is wider than both. A plan beside the needle takes no risk.
+/// The ellipse around a needle and a disc is wider than both. A plan beside the needle takes no
+/// risk.
 #[test]
 fn a_needle_that_is_passed_is_no_risk() {
     let plan = verified_file("needle-without-risk");

@@ -1,5 +1,5 @@
-//! Documents that agree with themselves in all figures and are unsound, and plans that are sound
-//! and nearly did not seem so.
+//! Documents that agree with themselves in all figures but are unsound, and sound plans that are
+//! hard to tell from them.
 
 use std::f64::consts::TAU;
 
@@ -39,9 +39,9 @@ fn square([x, y]: [f64; 2], half: f64) -> Value {
     json!(corners.map(|(east, north)| [x + half * east, y + half * north]))
 }
 
-/// A slab of half a nanosecond that carries the set aside; a level set to one side of the
-/// velocities, in two slabs; a jump through a wall during a turn of many circles; a round trip that
-/// nobody sails.
+/// Unsound documents. A slab of half a nanosecond carries the set aside, or a level set lies to one
+/// side of the velocities, in two slabs. A motion jumps through a wall during a turn of many
+/// circles, or nobody sails a round trip.
 #[test]
 fn unsound_documents_are_rejected() {
     for (name, expected) in [
@@ -55,7 +55,7 @@ fn unsound_documents_are_rejected() {
     }
 }
 
-/// At any risk: the set does not go where the target does, and was said to be the level set.
+/// At any risk: the document takes a set that does not move with the target for the level set.
 #[test]
 fn sets_under_forces_hold_the_velocities_at_a_risk() {
     let mut plan = document(scenario("forces/give-way.toml"));

@@ -30,8 +30,8 @@ const MAX_DEPTH: u32 = 32;
 /// Most intervals of one integral.
 const MAX_INTERVALS: usize = 20_000;
 
-/// Integral below which the tolerance is no smaller, m² s. On the desired trajectory the integrand is
-/// rounding, which no interval is short enough for.
+/// Integral below which the tolerance is no smaller, m² s. On the desired trajectory the integrand
+/// is rounding, which no interval is short enough for.
 const LEAST_SIZE: f64 = 1.0;
 
 /// Integrates a smooth function by one Gauss-Legendre rule.

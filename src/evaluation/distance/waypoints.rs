@@ -11,8 +11,8 @@ pub(crate) const ACCURACY_M: f64 = 0.01;
 /// divided less finely.
 const MOST_PARTS: usize = 10_000;
 
-/// Least distance of a motion from each waypoint between the first and the last, metres, at most
-/// [`ACCURACY_M`] too large, or the length of the longest of [`MOST_PARTS`] parts. NaN for a
+/// Least distance of a motion from each waypoint between the first and the last, metres. It is at
+/// most [`ACCURACY_M`] too large, or the length of the longest of [`MOST_PARTS`] parts. NaN for a
 /// motion that is not finite. O(pieces) per waypoint, more for a circle about one.
 pub(crate) fn waypoint_distances<P: Piece>(pieces: &[P], desired: &DesiredTrajectory) -> Vec<f64> {
     let inner = desired.legs().iter().skip(1).map(|leg| leg.start);

@@ -74,8 +74,8 @@ impl Term {
 }
 
 /// Largest change of an ellipse's support by rounding of its shape matrix, for the semi-axes
-/// `long >= short`: some epsilons of `long² / short`, or of `long²` by the square root where
-/// `short` is smaller still.
+/// `long >= short`. It is some epsilons of `long² / short`; where `short` is smaller still, the
+/// square root of some epsilons of `long²`.
 pub(crate) fn shape_rounding(long: f64, short: f64) -> f64 {
     if long > 0.0 {
         ROUNDING * long * long / (short + ROUNDING.sqrt() * long)

@@ -93,7 +93,7 @@ fn a_ship_that_stands_on_escapes_while_there_is_a_way_out() {
         let mut met = held
             .iter()
             .filter_map(|s| obstacles[0].first_contact(s, 0.0));
-        let met = met.next().expect("she is in the way");
+        let met = met.next().expect("the target is in the way");
         // to starboard by a readily apparent turn within own ship's limit, every half degree
         let turns = degrees((-240..=-60).rev());
         let before = (0..).map(|k| met - 0.25 * f64::from(k));

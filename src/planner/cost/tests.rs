@@ -42,7 +42,7 @@ fn matches_a_dense_sum_on_lines_arcs_corners_and_clamped_ends() {
     }
 }
 
-/// Arcs over corners and beyond both ends. Of many arcs, the test takes the one whose cost in the
+/// Arcs over corners and beyond both ends. The test takes the one of many arcs whose cost in the
 /// search is most wrong.
 #[test]
 fn reported_costs_equal_a_dense_sum() {

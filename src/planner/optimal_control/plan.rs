@@ -31,13 +31,13 @@ const SPACE_TIME_SHARE: f64 = 0.25;
 /// Relative difference of the objective below which two plans are the same.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
-/// Plans forces that keep own ship clear of the ellipses around all sets over the whole horizon at least cost
-/// near the desired trajectory.
+/// Plans forces that keep own ship clear of the ellipses around all sets over the whole horizon at
+/// least cost near the desired trajectory.
 ///
 /// The cost of a plan is the integral of the stage cost up to the problem's horizon. The plan is a
-/// local optimum, the cheapest over all initial guesses. These are the space-time
-/// planner's trajectory, the desired one bent to the sides, and the desired one bent around the
-/// worst sets on either side in every combination.
+/// local optimum, the cheapest over all initial guesses. The guesses are the space-time planner's
+/// trajectory, and the desired one bent to the sides or around the worst sets on either side in
+/// every combination.
 ///
 /// The cubics between the nodes are clear of every set. The ship model without smoothing meets the
 /// next node to [`tolerance::DEFECT`] of its units. Equal problems give equal plans with any

@@ -99,10 +99,10 @@ impl Planner for SpaceTimePlanner {
 
 /// Plans one problem.
 ///
-/// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m), keeps the turning
+/// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m). It keeps the turning
 /// radius, uses only the given speeds, and ends at the last waypoint before the horizon. It is the
-/// cheapest of the candidates, not proven to be globally optimal. The same problem gives the same
-/// plan unless the deadline is reached. Waypoints on a straight line change nothing.
+/// cheapest of the candidates, not proven to be globally optimal. Equal problems give equal plans
+/// unless the deadline is reached. Waypoints on a straight line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
     plan_normalised(problem, clock, |problem, proxies, _| {

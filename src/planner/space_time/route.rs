@@ -1,4 +1,4 @@
-//! Route: the desired path as own ship can sail it, from its own pose to the last waypoint, with a
+//! The desired path as own ship can sail it, from its own pose to the last waypoint, with a
 //! schedule and the policy that follows it.
 
 use std::f64::consts::FRAC_PI_2;
@@ -42,8 +42,8 @@ const LEAST_ALTERNATION_M: f64 = 50.0;
 /// Seconds of the least change of speed where the rules ask for plain manoeuvres.
 pub(crate) const LEAST_CHANGE_S: f64 = 3.0;
 
-/// Factor of the cost of a route that joins the path by turns that are seen, but small, or very
-/// large, where the rules ask for plain manoeuvres.
+/// Factor of the cost of a route that joins the path by turns that are visible but small, or very
+/// large. It counts where the rules ask for plain manoeuvres.
 const ODD_TURNS_PRICE: f64 = 1e3;
 
 /// Line or arc of the route.
@@ -560,8 +560,8 @@ fn past(at: f64, step: f64) -> f64 {
     (at + step).max(at.next_up())
 }
 
-/// True where own ship is in an encounter from before, and the rules ask for plain manoeuvres: it is
-/// near its route then, and rarely exactly on it.
+/// True where own ship is in an encounter from before, and the rules ask for plain manoeuvres. It
+/// is near its route then, and rarely exactly on it.
 fn asks_for_plain(problem: &Problem) -> bool {
     let mut encountered = problem.encountered.iter();
     encountered.any(|e| e.risk_since < 0.0) || problem.under_way.is_some()

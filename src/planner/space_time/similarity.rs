@@ -35,8 +35,8 @@ const LARGEST_M: f64 = 640.0;
 /// Normalised radius of such sets, metres.
 const NORMAL_SET_M: f64 = 130.0;
 
-/// Grids at that size, powers of two, so that grid numbers are exact: positions of sets (0.06 mm),
-/// waypoints, on which plans must end, velocities (m/s), and times (s).
+/// Grids at that size are powers of two, so that grid numbers are exact. They are for positions of
+/// sets (0.06 mm), waypoints, on which plans must end, velocities (m/s), and times (s).
 const SET_GRID_M: f64 = 1.0 / 16_384.0;
 const WAYPOINT_GRID_M: f64 = 1.0 / 8_388_608.0;
 const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
@@ -193,7 +193,7 @@ impl Similarity {
         ConvexPolygon::from_ccw(vertices)
     }
 
-    /// Set of positions at t = 0, enlarged by more than the grids remove until the horizon;
+    /// Set of positions at t = 0, enlarged by more than the grids remove until the horizon. It is
     /// unchanged where it has too little room, or own ship has.
     fn places(&self, set: &ConvexPolygon, horizon: f64) -> ConvexPolygon {
         let exact = self.polygon(set, |p| self.place(p));
@@ -245,7 +245,8 @@ impl Similarity {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
         let legs = problem.desired.legs().iter();
         let speeds: Vec<f64> = legs.map(|l| rounded(l.speed / speed)).collect();
-        // the clock is read for each: hundreds of sets that change with time take tens of milliseconds
+        // the clock is read for each: hundreds of sets that change with time take tens of
+        // milliseconds
         let obstacles = self.within.iter().map(|i| {
             let obstacle = &problem.obstacles[*i];
             (!clock.is_up()).then(|| self.obstacle(obstacle, horizon))?

@@ -154,8 +154,8 @@ impl Recorded {
         self.table(COMPARISON)?.text()
     }
 
-    /// The document of a simulation, without the motions and the estimates; `None` in a recording of
-    /// anything else.
+    /// The document of a simulation, without the motions and the estimates; `None` in a recording
+    /// of anything else.
     pub fn simulation(&self) -> Option<String> {
         self.table(SIMULATION)?.text()
     }

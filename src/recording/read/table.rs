@@ -70,9 +70,9 @@ impl EntityTable {
         table
     }
 
-    /// The table for a CSV file, its header first: the times, then a column for each named curve
-    /// and one for each other component, as JSON. Where something changes in time, what holds at
-    /// all times is left out.
+    /// The table for a CSV file, its header first. Its columns are the times, each named curve, and
+    /// each other component as JSON. Where something changes in time, components that hold at all
+    /// times are left out.
     pub fn csv_rows(&self) -> Vec<Vec<String>> {
         let is_timed = |row: &EntityRow| row.time.is_some();
         let any_timed = self.rows.iter().any(is_timed);

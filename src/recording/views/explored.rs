@@ -99,8 +99,8 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle` is
-    /// an index of [`Run::targets`], or behind the last for land.
+    /// Obstacle that an edge meets, the time of contact, and the limit that it breaks. `obstacle`
+    /// is an index of [`Run::targets`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles().nth(obstacle) else {
             let land_obstacle = self

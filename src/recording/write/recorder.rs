@@ -8,8 +8,7 @@ use rerun::{
 };
 
 /// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
-/// environment variables that redirect it; this has none, so that the same run makes the same
-/// recording.
+/// environment variables that redirect it. This has none, so that equal runs make equal recordings.
 #[derive(Debug, Default)]
 pub struct Recorder {
     chunks: Vec<Chunk>,

@@ -62,7 +62,7 @@ pub fn write_simulation(simulated: &Simulated, path: &Path) -> Result<(), Record
     put(path, title, (SIMULATION, &text), |rec| log(rec, simulated))
 }
 
-/// The document without what grows with the time sailed and is drawn.
+/// The document without the parts that grow with the time sailed and are drawn.
 fn without_motions(document: &SimulationDocument) -> SimulationDocument {
     let mut short = document.clone();
     short.sailed.clear();

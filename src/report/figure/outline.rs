@@ -37,8 +37,8 @@ pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
     })
 }
 
-/// The points of a polyline without those on the straight way between their neighbours. What is left
-/// out was within this fraction of the way.
+/// The points of a polyline without those on the straight way between their neighbours. The points
+/// left out were within this fraction of the way.
 fn bends(points: &[Vector]) -> Vec<Vector> {
     const STRAIGHT: f64 = 1e-4;
     let mut kept: Vec<Vector> = Vec::with_capacity(points.len());

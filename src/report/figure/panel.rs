@@ -69,7 +69,7 @@ pub struct Panel {
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     notes: Vec<TextAnnotation>,
-    /// What labels keep clear of: texts and ships, and curves.
+    /// Texts and ships; labels keep clear of them and of the curves.
     taken: Vec<Window>,
     curves: Vec<Vec<Vector>>,
 }

@@ -182,7 +182,7 @@ pub(super) struct Charted {
     pub areas: Vec<Vec<Vector>>,
 }
 
-/// What a chart shows at the same times.
+/// Own ship and the targets at the same times, as a chart shows them.
 pub(super) struct Traffic {
     /// Own ship's track; empty without one.
     pub track: Vec<Vector>,
@@ -191,7 +191,7 @@ pub(super) struct Traffic {
     /// Own ship at these times; empty without a track.
     pub own: Vec<Pose>,
     pub targets: Vec<Charted>,
-    /// What own ship's track is.
+    /// The legend's word for own ship's track.
     pub planned: &'static str,
     /// Where own ship and a target are closest, and the words of the legend.
     pub closest: Option<([Vector; 2], String)>,

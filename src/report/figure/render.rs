@@ -148,7 +148,7 @@ impl Figure {
     }
 }
 
-/// A text of at most so many letters.
+/// A text cut to at most this many letters.
 pub(super) fn shortened(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters {
         return text.to_owned();

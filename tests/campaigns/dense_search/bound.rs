@@ -1,7 +1,8 @@
 //! A lower bound of the cost to go, so that the dense search can leave out what cannot win.
 //!
 //! The error of a point is at least `sqrt(across² + kappa lag²)`, the form without its clamp
-//! (docs/theory.md, section 7). Three facts bound its integral from below over steps of equal length:
+//! (docs/theory.md, section 7). Three facts bound its integral from below over steps of equal
+//! length:
 //! - *across* cannot shrink faster than the ship can turn toward the path and run there at full
 //!   speed;
 //! - *lag* cannot shrink faster than own ship can turn along the path and run there at full speed;
@@ -111,8 +112,8 @@ impl Bound {
         self.outside[index.min(self.outside.len() - 1)]
     }
 
-    /// Integral over one step of the square of a quantity that is concave in time with these ends
-    /// and counts only where it is positive: a concave curve lies above its chord.
+    /// Integral over one step of the square of a quantity, counted only where it is positive. The
+    /// quantity has these ends and is concave in time, so it lies above its chord.
     fn squared(&self, (a, b): (f64, f64)) -> f64 {
         let integral = match (a > 0.0, b > 0.0) {
             (true, true) => (a * a + a * b + b * b) / 3.0,
@@ -123,8 +124,9 @@ impl Bound {
         integral * self.step
     }
 
-    /// Least error outside, sampled; then its envelope under the largest rate at which an error can
-    /// change; then the integral of the lowest that two neighbouring samples allow between them.
+    /// Samples the least error outside and takes its envelope under the largest rate at which an
+    /// error can change. Then integrates the lowest error that two neighbouring samples allow
+    /// between them.
     fn tabulate_outside(&mut self, problem: &Problem, steps: usize) {
         let spacing = self.step / SAMPLES as f64;
         let rate = (0..3600)
@@ -156,8 +158,8 @@ impl Bound {
         }
     }
 
-    /// Least error of a point outside every set: per set, outside is a union of half-planes, and
-    /// the least error in a half-plane at depth `d` is `d / sqrt(n_across² + n_along² / kappa)`.
+    /// Least error of a point outside every set. The outside of a set is a union of half-planes.
+    /// The least error in a half-plane at depth `d` is `d / sqrt(n_across² + n_along² / kappa)`.
     fn least_outside(&self, problem: &Problem, time: f64) -> f64 {
         let desired = self.leg.start + self.leg.direction * (self.leg.speed * time);
         let of_set = |o: &searoom::obstacle::PolytopeObstacle| {
@@ -177,8 +179,8 @@ impl Bound {
     }
 }
 
-/// Metres made good in a wished direction within `length` metres by a ship that first points `away`
-/// (radians) from it, turns at once on its smallest circle and then runs on; not below 0: it may
+/// Metres made good in a wished direction within `length` metres. The ship first points `away`
+/// (radians) from it, turns at once on its smallest circle and then runs on. Not below 0, as it may
 /// also stay. Convex in `length`.
 fn progress(away: f64, length: f64, radius: f64) -> f64 {
     let turning = length.min(away * radius);

@@ -63,7 +63,7 @@ impl Default for DenseSearch {
 }
 
 impl DenseSearch {
-    /// Cells that grow with the manoeuvre, so that even a dear one is searched in seconds: an error
+    /// Cells that grow with the manoeuvre, so that even a dear one is searched in seconds. An error
     /// that costs `incumbent` m² is as large as its cubic root. Where the cells have grown it
     /// overlooks a few per cent that the default still finds.
     pub fn coarse(incumbent: f64) -> Self {
@@ -98,7 +98,7 @@ struct State {
     pose: Pose,
     /// Integral of the error so far, m² s.
     cost: f64,
-    /// That, and the lower bound of what is still to come: what states of one cell are compared by.
+    /// The cost plus the lower bound of the cost to go. States of one cell are compared by it.
     total: f64,
     /// Index of the state before, and the step from there.
     before: Option<(usize, Segment)>,
@@ -231,8 +231,9 @@ impl Scene<'_> {
             .collect()
     }
 
-    /// Distance from the desired line, lag behind the desired motion along it (metres), and whether
-    /// the nearest point in space-time is on the leg: then the error is `across² + kappa lag²`.
+    /// Distance from the desired line, lag behind the desired motion along it (metres), and true
+    /// where the nearest point in space-time is on the leg. Then the error is
+    /// `across² + kappa lag²`.
     fn off(&self, position: Vector, time: f64) -> (f64, f64, bool) {
         let offset = position - self.leg.start;
         let (along, speed) = (self.leg.direction.dot(&offset), self.leg.speed);
@@ -260,8 +261,8 @@ impl Scene<'_> {
     }
 
     /// The integral of the error along a segment, m² s. Along a line whose nearest points are on
-    /// the desired leg it is that of a quadratic; otherwise three Gauss points for every half
-    /// radian of an arc or 5 s of a line.
+    /// the desired leg it is that of a quadratic. Otherwise there are three Gauss points for every
+    /// half radian of an arc or 5 s of a line.
     fn cost(&self, segment: &Segment) -> f64 {
         if segment.turn_rate == 0.0 {
             let a = self.off(segment.start.position, segment.start_time);
@@ -332,8 +333,9 @@ impl Scene<'_> {
             && self.stretch_is_clear(segment, middle, to)
     }
 
-    /// Ways from a state to the last waypoint, in the leg's own frame: back to the path at an
-    /// angle, recover the lag, then at the desired speed; and near the end straight to it.
+    /// Ways from a state to the last waypoint, in the leg's own frame. They go back to the path at
+    /// an angle, recover the lag, and go on at the desired speed. Near the end they go straight to
+    /// it.
     fn closings(&self, pose: &Pose, time: f64) -> Vec<Vec<Segment>> {
         let leg = &self.leg;
         let radius = self.problem.own.turning_radius;

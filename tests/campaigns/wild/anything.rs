@@ -1,5 +1,5 @@
-//! Any scene that a file can hold: each planner and every setting, places far from the origin,
-//! land, path networks, budgets of milliseconds, numbers of any size.
+//! Any scene that a file can hold, with each planner and every setting. Places may be far from the
+//! origin, budgets milliseconds, numbers of any size; there may be land and path networks.
 
 use std::f64::consts::PI;
 

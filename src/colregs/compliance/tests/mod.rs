@@ -159,7 +159,7 @@ fn giving_way_leads_astern_of_the_other() {
 
 #[test]
 fn standing_on_is_holding_on_and_never_turning_to_port() {
-    // the other gives way: she is too slow to be met
+    // the other gives way: it is too slow to be met
     let held = conduct(&[(0.0, 240.0)], 760.0, 720.0, -FRAC_PI_2, 5.0);
     assert!(held.complies(), "{held:?}");
     assert!(held.scores.rule_17 > Some(0.3), "{held:?}");

@@ -157,7 +157,7 @@ pub struct Multipliers<'a, const N: usize> {
 /// ```text
 /// min  sum cost_k(x_k, u_k, x_k+1)     x_0 given
 /// s.t. defect_k(x_k, u_k, x_k+1) = 0                 N equations that determine x_k+1
-///      rows_k(x_k, u_k, x_k+1) >= 0                  as many as the stage says, at an exact penalty
+///      rows_k(x_k, u_k, x_k+1) >= 0                  as many as the stage has, at an exact penalty
 ///      low <= u_k <= high                            strictly within; infinite where there is none
 /// ```
 ///

@@ -97,7 +97,8 @@ impl State {
 }
 
 /// Plan that is clear of every set and of land, by a coarse search over position, course and time.
-/// `None` where none was found within the budget. The plan is not refined. Ten to several hundred milliseconds.
+/// `None` where none was found within the budget. The plan is not refined. Ten to several hundred
+/// milliseconds.
 pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Plan> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);

@@ -1,5 +1,5 @@
-//! What the graph and its refinement miss: sequential conflict resolution, hybrid A* over a
-//! cost-to-go grid, and escape from sets that own ship starts in.
+//! Searches for plans that the graph and its refinement miss: sequential conflict resolution,
+//! hybrid A* over a cost-to-go grid, and escape from sets that own ship starts in.
 
 pub(crate) mod cost_to_go;
 pub(crate) mod escape;

@@ -319,8 +319,9 @@ impl SpeedSectors {
         });
     }
 
-    /// Sectors from one tangent direction of a face to the other: around its normal where own ship
-    /// always approaches the other face, around the opposite where it always recedes.
+    /// Sectors from one tangent direction of a face to the other. They lie around its normal where
+    /// own ship always approaches the other face, and around the opposite direction where it always
+    /// recedes.
     fn subdivide(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
         let own = self.directions[first].plane;
         let from = heading_of(self.directions[first].ahead);

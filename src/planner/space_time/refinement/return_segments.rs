@@ -7,8 +7,8 @@ use crate::planner::space_time::refinement::rollout::Rollout;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::tolerance;
 
-/// Cost of the route from a position and time, its rates per second and per metre, its second rate
-/// per second, and the schedule's seconds per metre there.
+/// Cost of the route from a position and time, with its rates per second and per metre and its
+/// second rate per second. Also the schedule's seconds per metre there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReturnSegments {
     pub cost: f64,

@@ -98,8 +98,8 @@ impl<'a> CoarseSearch<'a> {
         Some((motion, refined))
     }
 
-    /// Refined manoeuvres along a path, given by times and positions: one to the last waypoint, and
-    /// one back onto the route after the last corner that is off it.
+    /// Refined manoeuvres along a path, given by times and positions. One goes to the last
+    /// waypoint, one back onto the route after the last corner that is off it.
     fn along(&self, path: Vec<(f64, Vector)>, cells: f64, clock: Clock) -> Vec<Refinement> {
         let tolerance = cells * self.grid.cell;
         let problem = self.context.problem;
@@ -168,8 +168,8 @@ fn corners_of(
 }
 
 /// Points of a path, given by times and positions, between which it is straight and steady within a
-/// tolerance in metres (Douglas and Peucker, doi:10.3138/FM57-6770-U75U-7727, with the distance at
-/// the same time).
+/// tolerance in metres. By Douglas and Peucker, doi:10.3138/FM57-6770-U75U-7727, with the distance
+/// at the same time.
 fn simplified(path: &[(f64, Vector)], tolerance: f64) -> Vec<(f64, Vector)> {
     let [first, between @ .., last] = path else {
         return path.to_vec();

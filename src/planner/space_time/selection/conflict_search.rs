@@ -19,7 +19,8 @@ use crate::planner::space_time::selection::initial_guess::{
 };
 use crate::trajectory::Segment;
 
-/// Largest number of answers: the cheapest one before insertions need not be the cheapest one after them.
+/// Largest number of answers: the cheapest one before insertions need not be the cheapest one after
+/// them.
 const MAX_ANSWERS: usize = 3;
 
 /// Refinement steps of a child.
@@ -32,8 +33,8 @@ pub(crate) const MAX_CORNERS: usize = 6;
 const MOST_WITH_SLOW_TURNS: usize = 3;
 const MOST_WITH_ALL_SPEEDS: usize = 4;
 
-/// A corner this near to the route is on it, in turning radii; lines at less than this angle to it,
-/// in radians, do not return to it.
+/// A corner this near to the route, in turning radii, is on it. A line at less than this angle to
+/// it, in radians, does not return to it.
 const ON_ROUTE: f64 = 0.05;
 
 /// Turn out of the way of a target, radians.
@@ -207,8 +208,9 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
     segment.pose_at(time.max(segment.start_time))
 }
 
-/// Refinement of the manoeuvre that leaves the nominal motion at the first of at least two corners
-/// and goes through the others, to the last waypoint or back onto the route; `None` where none fits.
+/// Refinement of a manoeuvre through at least two corners. It leaves the nominal motion at the
+/// first one, and goes through the others to the last waypoint or back onto the route. `None` where
+/// none fits.
 pub(crate) fn through(
     context: &Context,
     nominal_motion: &[Segment],
@@ -304,8 +306,8 @@ fn corners_of(legs: &[Segment]) -> Vec<Corner> {
     corners
 }
 
-/// Manoeuvre through corners. After the last one it goes to the last waypoint if the node does, and
-/// else back onto the route, at an angle unless that corner is where it returns.
+/// Manoeuvre through corners. After the last one it goes to the last waypoint if the node does.
+/// Otherwise it goes back onto the route, at an angle unless that corner is where it returns.
 fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Option<InitialGuess> {
     let (problem, route) = (context.problem, context.route);
     let speeds = ManoeuvreSpeeds::of(problem);

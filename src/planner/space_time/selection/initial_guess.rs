@@ -275,7 +275,7 @@ impl EvasiveManoeuvre {
     }
 }
 
-/// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down and loses
+/// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down. It loses
 /// distance by a turn of [`WAITING_TURN`] to the side, a turn back of twice that, and a turn onto
 /// the route.
 pub(crate) fn waiting(
@@ -322,8 +322,9 @@ pub(crate) fn waiting(
     builder.build(Ending::Return { leg, speed: fast })
 }
 
-/// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed, turns to the
-/// side halfway through the contact for the missing distance, and loses its lead on a slow return.
+/// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed. It turns to
+/// the side halfway through the contact for the missing distance, and loses its lead on a slow
+/// return.
 pub(crate) fn ahead(
     problem: &Problem,
     side: Side,

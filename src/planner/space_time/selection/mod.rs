@@ -128,8 +128,7 @@ impl<'a> Selection<'a> {
     }
 
     /// Refines the graph's plan and the predefined manoeuvres around the conflicts of the nominal
-    /// motion, and searches for cheaper ones among several targets; true when the deadline was
-    /// reached.
+    /// motion. Searches for cheaper ones among several targets. True when the deadline was reached.
     pub(crate) fn refine(
         &mut self,
         nominal_motion: &[Segment],
@@ -351,7 +350,7 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
     running.iter().min_by(costs)
 }
 
-/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`, and none
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`. None is
 /// dearer than the cheapest by more than a fraction: insertions can gain more than its lead.
 fn leaders(running: &[Refinement], most: usize, margin: f64) -> Vec<(InitialGuess, f64)> {
     let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);

@@ -2,7 +2,7 @@
 //!
 //! A refined manoeuvre is simplified: one speed, no short segment variables, few turns. It is
 //! refined again with a least time for each segment variable. Candidates are ranked by their cost
-//! with the [`Prices`] of their alterations, so the manoeuvre as it was wins where the simpler one
+//! with the [`Prices`] of their alterations. So the manoeuvre as it was wins where the simpler one
 //! is too dear or not clear.
 
 use super::{Selection, leaders, refined};
@@ -34,8 +34,8 @@ const MOST_TURNS: usize = 4;
 const SPEED_CHANGE: f64 = 0.02;
 const TURN: f64 = std::f64::consts::PI / 90.0;
 
-/// Fraction of the least time below which a segment variable is dropped, not prolonged; and of the
-/// least time at a speed below which less speed is given up.
+/// Fraction of the least time below which a segment variable is dropped, not prolonged. Also the
+/// fraction of the least time at a speed below which less speed is given up.
 const DROPPED: f64 = 0.5;
 
 /// Number of manoeuvres that are simplified, and relative cost difference up to which they are.
@@ -140,9 +140,9 @@ impl Alterations {
 }
 
 impl Selection<'_> {
-    /// Adds the best clear candidate of the refinements and of tidy ones: the best refinements
-    /// simplified, and where these are not tidy or too dear, the simplified initial guesses. Each
-    /// candidate makes good the time it has lost, or does not.
+    /// Adds the best clear candidate of the refinements and of tidy ones. Tidy ones are the best
+    /// refinements simplified, or, where these are not tidy or too dear, the simplified initial
+    /// guesses. Each candidate makes good the time it has lost, or does not.
     pub(super) fn add_tidy(
         &mut self,
         tidy: &Tidiness,
