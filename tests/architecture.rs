@@ -28,7 +28,7 @@ colregs: frame tolerance geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory map
 planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
 evaluation: parallel frame tolerance geometry map vessel target trajectory colregs
-verification: document frame tolerance geometry vessel target trajectory evaluation text
+verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: parallel frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
 simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document

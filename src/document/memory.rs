@@ -3,25 +3,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{
-    InitialSetDocument, SegmentDocument, StartDocument, VelocitySetDocument, segment,
-};
+use super::parts::{SegmentDocument, StartDocument, segment};
 use super::plan::{PlanDocument, segment_document, start};
-use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory, Thresholds};
 use crate::frame::{
-    Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians,
-    heading_from_course_deg, radians_from_deg, wrap,
+    Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, heading_from_course_deg,
+    radians_from_deg, wrap,
 };
-use crate::geometry::ConvexPolygon;
 use crate::pipeline::Run;
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
-use crate::target::{DomainKind, Motion, ShipTrack, Uncertainty};
+use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::tolerance::{self, POSITION_SIGMAS};
 use crate::trajectory::Segment;
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::OwnShip;
 
 /// Own ship may be this far from where the previous plan has it: own lengths, and degrees. Farther
 /// off, the manoeuvre under way is not the one that own ship carries out.
@@ -477,38 +473,7 @@ fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) 
 fn ship_then(previous: &PlanDocument, name: &str) -> Option<ShipTrack> {
     let mut targets = previous.targets.iter();
     let then = targets.find(|target| target.name == name)?;
-    then.ship.as_ref().map(track)
-}
-
-/// The tracked ship of a document; its domain is unknown.
-pub(crate) fn track(ship: &ShipDocument) -> ShipTrack {
-    ShipTrack {
-        pose: Pose::new(
-            Vector::new(ship.position.east_m, ship.position.north_m),
-            heading_from_course_deg(ship.course_deg),
-        ),
-        speed: ship.speed_mps,
-        hull: Hull::new(ship.length_m, ship.beam_m),
-        position_std: ship.position_std_m,
-        speed_spread: ship.speed_spread_mps,
-        course_spread: radians_from_deg(ship.course_spread_deg),
-        starboard_turn: radians_from_deg(ship.starboard_turn_deg),
-        turn_rate: radians_from_deg(ship.turn_rate_deg_per_s),
-        kept_positions: match &ship.kept_positions {
-            Some(InitialSetDocument::Polygon { vertices_m }) => polygon(vertices_m),
-            _ => None,
-        },
-        kept_velocities: match &ship.kept_velocities {
-            Some(VelocitySetDocument::Polygon { vertices_mps }) => polygon(vertices_mps),
-            _ => None,
-        },
-        domain: DomainKind::Hull,
-    }
-}
-
-fn polygon(vertices: &[[f64; 2]]) -> Option<ConvexPolygon> {
-    let points: Vec<Vector> = vertices.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
-    ConvexPolygon::hull(&points).ok()
+    then.ship.as_ref()?.track().ok()
 }
 
 /// Memory of a target in the previous plan.

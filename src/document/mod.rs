@@ -13,6 +13,7 @@ mod lint;
 mod memory;
 mod parts;
 mod plan;
+mod sets;
 mod simulation;
 mod suite;
 mod targets;
@@ -31,8 +32,6 @@ pub use legs::PlannedLeg;
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub(crate) use memory::state_document;
-#[cfg(feature = "recording")]
-pub(crate) use memory::track;
 pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
     TargetMemoryDocument, remember,
@@ -48,6 +47,7 @@ pub use plan::path_time::{
 };
 pub use plan::{PLAN_FORMAT, PLAN_MEBIBYTES, PlanDocument};
 pub(crate) use plan::{finite, planner_names, position, segment_document};
+pub use sets::{InitialSetDocument, VelocitySetDocument};
 pub use simulation::*;
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
