@@ -151,7 +151,7 @@ impl PlanDocument {
 }
 
 /// Name of the minimised quantity.
-pub(super) fn objective(scenario: &Scenario) -> &'static str {
+pub(crate) fn objective(scenario: &Scenario) -> &'static str {
     match scenario.planner.facts().minimises {
         Minimises::Own(name) => name,
         Minimises::SpaceTimeError | Minimises::Objective => scenario.objective.word(),
@@ -176,7 +176,7 @@ pub(crate) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value + 0.0)
 }
 
-pub(super) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
+pub(crate) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
     let document = |violation: &Violation| ViolationDocument {
         what: violation.what.clone(),
         t_s: finite(violation.time),
@@ -191,7 +191,7 @@ pub(crate) fn position(p: Vector) -> PositionDocument {
     }
 }
 
-pub(super) fn timing(run: &Run) -> TimingDocument {
+pub(crate) fn timing(run: &Run) -> TimingDocument {
     TimingDocument {
         plan_s: run.plan_time.as_secs_f64(),
     }
@@ -268,7 +268,7 @@ fn cost(run: &Run) -> Option<CostDocument> {
 
 /// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the
 /// planner sums it in other coordinates, so the last digits differ.
-pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
+pub(crate) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
     match (scenario.planner.facts().minimises, scenario.objective) {
         (Minimises::Own(_), _) | (_, Objective::LengthRisk { .. }) => plan.cost,
         (_, Objective::SpaceTimeError) => evaluation.space_time_error,
@@ -278,7 +278,7 @@ pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluatio
 }
 
 /// Costs of any motion.
-pub(super) fn cost_of(
+pub(crate) fn cost_of(
     trajectory: &Trajectory,
     evaluation: &Evaluation,
     objective: f64,
@@ -312,7 +312,7 @@ fn turn(turn: Alteration) -> TurnDocument {
     }
 }
 
-pub(super) fn stats(run: &Run) -> SearchStatsDocument {
+pub(crate) fn stats(run: &Run) -> SearchStatsDocument {
     SearchStatsDocument {
         expanded: run.planned.stats.expanded,
         generated: run.planned.stats.generated,

@@ -18,6 +18,7 @@
 
 mod claim;
 mod coverage;
+mod document;
 mod figures;
 mod motion;
 mod outcome;
