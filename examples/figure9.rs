@@ -7,6 +7,7 @@
 
 mod shared;
 
+use searoom::document::PlanDocument;
 use searoom::pipeline;
 use searoom::report::figure::{FigureError, plan_figure};
 use searoom::scenario::Scenario;
@@ -14,5 +15,5 @@ use searoom::scenario::Scenario;
 fn main() -> Result<(), FigureError> {
     let text = include_str!("../scenarios/paper/figure_9.toml");
     let run = pipeline::run(Scenario::parse(text).expect("a sound scenario"));
-    shared::write(plan_figure(&run), "figure9.svg")
+    shared::write(plan_figure(&run, &PlanDocument::of(&run)), "figure9.svg")
 }

@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use searoom::document::PlanDocument;
 use searoom::pipeline;
 use searoom::report::figure::{comparison_figure, plan_figure, simulation_figure};
 use searoom::scenario::Scenario;
@@ -44,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     for name in PLANS {
         let run = pipeline::run(read(name)?);
-        plan_figure(&run).write(&picture(name, ""))?;
+        plan_figure(&run, &PlanDocument::of(&run)).write(&picture(name, ""))?;
     }
     let scenario = read(SAILED)?;
     let mut simulation = Simulation::new(scenario.clone(), false).map_err(|f| f.to_string())?;

@@ -70,6 +70,7 @@
 //! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |
 //! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
+//! | [`replanning`] | what a plan leaves to the next one |
 //! | [`simulation`] | scenarios sailed in the closed loop |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
 //! | [`document`] | published documents: the single description of a result |
@@ -148,6 +149,7 @@ pub mod pipeline;
 pub mod planner;
 #[cfg(feature = "recording")]
 pub mod recording;
+pub mod replanning;
 pub mod report;
 pub mod scenario;
 pub mod search;

@@ -21,21 +21,22 @@ text:
 input: frame text
 geometry: tolerance frame numerics
 trajectory: frame tolerance geometry
-vessel: frame tolerance geometry trajectory
+vessel: frame tolerance geometry
 map: frame geometry tolerance input
 target: frame geometry tolerance vessel
 colregs: frame tolerance geometry trajectory target vessel input text
-obstacle: frame geometry tolerance numerics target trajectory map
+obstacle: frame geometry tolerance numerics target trajectory
 planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
-evaluation: parallel frame tolerance geometry map vessel target trajectory colregs
-verification: document frame tolerance geometry vessel target trajectory evaluation text
+evaluation: parallel frame tolerance geometry vessel target trajectory
+verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
-pipeline: parallel frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
-simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document
-study: document frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline
-document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation verification scenario pipeline study text
-report: frame tolerance geometry trajectory vessel map target colregs obstacle planner evaluation verification scenario pipeline document study simulation output text
-recording: frame tolerance geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document study simulation output
+pipeline: parallel frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario
+simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning
+study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
+document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
+replanning: document frame tolerance trajectory vessel target colregs planner scenario
+report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
+recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output
 ";
 
 /// The row of a module in [`MAY_USE`].

@@ -7,10 +7,11 @@ mod simulation;
 mod value;
 
 use pyo3::prelude::*;
-use searoom::document::{ScenarioComparisonDocument, VerifiedPlanDocument, remember};
+use searoom::document::{ScenarioComparisonDocument, VerifiedPlanDocument};
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
+use searoom::replanning::remember;
 use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint};
 use searoom::study::compare::{Entry, candidates, methods};
 use searoom::verification::{is_simulation, verified_plan, verify, verify_simulations};

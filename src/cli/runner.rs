@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use searoom::document::{PLAN_MEBIBYTES, PlanDocument, remember};
+use searoom::document::{PLAN_MEBIBYTES, PlanDocument};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
+use searoom::replanning::remember;
 use searoom::scenario::import::Assumed;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::InitialSetDocument;
+use super::sets::InitialSetDocument;
 
 /// Results of `assess`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -267,7 +267,8 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
 fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
     add("turn", turn(cost));
     let error = square_metres(cost.space_time_error_m2);
-    let by_length = square_metres(cost.space_time_error_arc_length_m2);
+    let by_length = cost.space_time_error_arc_length_m2;
+    let by_length = square_metres(by_length.unwrap_or(f64::NAN));
     add("J", format!("{error} m² ({by_length} m² by arc length)"));
     let way = format!("{:.1} s and {:.0} m", cost.duration_s, cost.length_m);
     match cost.delay_s {

@@ -13,6 +13,7 @@ mod lint;
 mod memory;
 mod parts;
 mod plan;
+mod sets;
 mod simulation;
 mod suite;
 mod targets;
@@ -30,13 +31,11 @@ pub use encounter::{
 pub use legs::PlannedLeg;
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
-pub(crate) use memory::state_document;
-#[cfg(feature = "recording")]
-pub(crate) use memory::track;
 pub use memory::{
     KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
-    TargetMemoryDocument, remember,
+    TargetMemoryDocument,
 };
+pub(crate) use memory::{state_document, steady};
 pub(crate) use parts::segment;
 pub use parts::*;
 pub use plan::control::{
@@ -47,7 +46,11 @@ pub use plan::path_time::{
     PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument,
 };
 pub use plan::{PLAN_FORMAT, PLAN_MEBIBYTES, PlanDocument};
-pub(crate) use plan::{finite, planner_names, position, segment_document};
+pub(crate) use plan::{
+    cost_of, finite, minimised, objective, planner_names, position, segment_document, stats,
+    timing, violations,
+};
+pub use sets::{InitialSetDocument, VelocitySetDocument};
 pub use simulation::*;
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::sets::{InitialSetDocument, VelocitySetDocument};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::trajectory::Segment;
 
@@ -10,6 +11,12 @@ use crate::trajectory::Segment;
 pub struct PositionDocument {
     pub east_m: f64,
     pub north_m: f64,
+}
+
+impl PositionDocument {
+    pub(crate) fn point(&self) -> Vector {
+        Vector::new(self.east_m, self.north_m)
+    }
 }
 
 /// Own ship and its limits, with the keys of the scenario file.
@@ -45,6 +52,7 @@ pub struct RelaxationDocument {
     pub kind: String,
     pub target: String,
     pub amount: f64,
+    #[serde(default)]
     pub unit: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
@@ -72,8 +80,10 @@ pub struct ViolationDocument {
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
+    #[serde(default)]
     pub space_time_error_until_s: f64,
-    pub space_time_error_arc_length_m2: f64,
+    /// Null for a motion without length.
+    pub space_time_error_arc_length_m2: Option<f64>,
     pub arrived: bool,
     pub duration_s: f64,
     pub length_m: f64,
@@ -179,32 +189,6 @@ pub struct NodeDocument {
 pub struct TrajectoryDocument {
     pub segments: Option<Vec<SegmentDocument>>,
     pub samples: Vec<SampleDocument>,
-}
-
-/// Convex set of positions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum InitialSetDocument {
-    Polygon {
-        vertices_m: Vec<[f64; 2]>,
-    },
-    Ellipse {
-        center_m: [f64; 2],
-        shape_m2: [[f64; 2]; 2],
-    },
-}
-
-/// Convex set of velocities.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum VelocitySetDocument {
-    Polygon {
-        vertices_mps: Vec<[f64; 2]>,
-    },
-    Ellipse {
-        center_mps: [f64; 2],
-        shape_m2_per_s2: [[f64; 2]; 2],
-    },
 }
 
 /// Space-time obstacle.

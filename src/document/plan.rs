@@ -15,12 +15,12 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
-use super::targets::{TargetDocument, initial_set, target, velocity_set};
+use super::sets::vertices;
+use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
-use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
@@ -62,11 +62,14 @@ pub struct PlanDocument {
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
+    /// Empty in an old document.
+    #[serde(default)]
     pub verdict: String,
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
+    #[serde(default)]
     pub safe: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
@@ -148,7 +151,7 @@ impl PlanDocument {
 }
 
 /// Name of the minimised quantity.
-pub(super) fn objective(scenario: &Scenario) -> &'static str {
+pub(crate) fn objective(scenario: &Scenario) -> &'static str {
     match scenario.planner.facts().minimises {
         Minimises::Own(name) => name,
         Minimises::SpaceTimeError | Minimises::Objective => scenario.objective.word(),
@@ -173,7 +176,7 @@ pub(crate) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value + 0.0)
 }
 
-pub(super) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
+pub(crate) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
     let document = |violation: &Violation| ViolationDocument {
         what: violation.what.clone(),
         t_s: finite(violation.time),
@@ -188,11 +191,7 @@ pub(crate) fn position(p: Vector) -> PositionDocument {
     }
 }
 
-pub(super) fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
-    polygon.vertices().iter().copied().map(plain).collect()
-}
-
-pub(super) fn timing(run: &Run) -> TimingDocument {
+pub(crate) fn timing(run: &Run) -> TimingDocument {
     TimingDocument {
         plan_s: run.plan_time.as_secs_f64(),
     }
@@ -269,7 +268,7 @@ fn cost(run: &Run) -> Option<CostDocument> {
 
 /// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the
 /// planner sums it in other coordinates, so the last digits differ.
-pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
+pub(crate) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
     match (scenario.planner.facts().minimises, scenario.objective) {
         (Minimises::Own(_), _) | (_, Objective::LengthRisk { .. }) => plan.cost,
         (_, Objective::SpaceTimeError) => evaluation.space_time_error,
@@ -279,7 +278,7 @@ pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluatio
 }
 
 /// Costs of any motion.
-pub(super) fn cost_of(
+pub(crate) fn cost_of(
     trajectory: &Trajectory,
     evaluation: &Evaluation,
     objective: f64,
@@ -289,7 +288,7 @@ pub(super) fn cost_of(
     CostDocument {
         objective,
         space_time_error_m2: evaluation.space_time_error,
-        space_time_error_arc_length_m2: evaluation.arc_length_error,
+        space_time_error_arc_length_m2: finite(evaluation.arc_length_error),
         space_time_error_until_s: evaluation.counted.until,
         arrived,
         duration_s: evaluation.duration,
@@ -313,7 +312,7 @@ fn turn(turn: Alteration) -> TurnDocument {
     }
 }
 
-pub(super) fn stats(run: &Run) -> SearchStatsDocument {
+pub(crate) fn stats(run: &Run) -> SearchStatsDocument {
     SearchStatsDocument {
         expanded: run.planned.stats.expanded,
         generated: run.planned.stats.generated,
@@ -402,8 +401,8 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
         ObstacleDocument {
             name: set.name().to_owned(),
             valid_s: times.map(|time| from + time),
-            initial_set: initial_set(&sets.initial),
-            velocity_set: velocity_set(&sets.velocities[0].velocities),
+            initial_set: (&sets.initial).into(),
+            velocity_set: (&sets.velocities[0].velocities).into(),
         }
     };
     match set {
@@ -415,17 +414,4 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
             .map(|slab| entry(slab.obstacle(), [slab.start(), slab.end().min(left)]))
             .collect(),
     }
-}
-
-pub(super) fn plain(p: Vector) -> [f64; 2] {
-    // adding +0.0 converts a negative zero to zero
-    [p.x + 0.0, p.y + 0.0]
-}
-
-pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
-    let q = ellipse.shape();
-    [
-        plain(Vector::new(q[(0, 0)], q[(0, 1)])),
-        plain(Vector::new(q[(1, 0)], q[(1, 1)])),
-    ]
 }

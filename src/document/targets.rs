@@ -2,11 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{InitialSetDocument, PositionDocument, VelocitySetDocument};
-use super::plan::{plain, rows, vertices};
-use crate::frame::{course_deg_from_heading, deg_from_radians};
-use crate::geometry::ConvexSet;
-use crate::target::{ShipTrack, Target, TimedVelocitySet};
+use super::parts::PositionDocument;
+use super::plan::position;
+use super::sets::{InitialSetDocument, VelocitySetDocument};
+use crate::frame::{
+    Pose, course_deg_from_heading, deg_from_radians, heading_from_course_deg, radians_from_deg,
+};
+use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::scenario::Fault;
+use crate::target::{DomainKind, ShipTrack, Target, TimedVelocitySet};
+use crate::vessel::Hull;
 
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,23 +58,22 @@ pub struct TimedSetDocument {
 pub(super) fn target(target: &Target) -> TargetDocument {
     let timed = |timed: &TimedVelocitySet| TimedSetDocument {
         until_s: timed.until.is_finite().then_some(timed.until),
-        set: velocity_set(&timed.velocities),
+        set: (&timed.velocities).into(),
     };
     let sets = target.sets();
     TargetDocument {
         name: target.name.clone(),
         representation: target.representation.word().to_owned(),
         ship: target.ship().map(ship),
-        initial_set: sets.map(|sets| initial_set(&sets.initial)),
+        initial_set: sets.map(|sets| (&sets.initial).into()),
         velocity_sets: sets
             .map_or_else(Vec::new, |sets| sets.velocities.iter().map(timed).collect()),
     }
 }
 
 fn ship(track: &ShipTrack) -> ShipDocument {
-    let [east_m, north_m] = plain(track.pose.position);
     ShipDocument {
-        position: PositionDocument { east_m, north_m },
+        position: position(track.pose.position),
         course_deg: course_deg_from_heading(track.pose.heading),
         speed_mps: track.speed,
         length_m: track.hull.length,
@@ -79,33 +83,42 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         course_spread_deg: deg_from_radians(track.course_spread),
         starboard_turn_deg: deg_from_radians(track.starboard_turn),
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
-        kept_positions: (track.kept_positions.as_ref())
-            .map(|set| initial_set(&ConvexSet::from(set.clone()))),
-        kept_velocities: (track.kept_velocities.as_ref())
-            .map(|set| velocity_set(&ConvexSet::from(set.clone()))),
+        kept_positions: (track.kept_positions.clone()).map(|set| (&ConvexSet::from(set)).into()),
+        kept_velocities: (track.kept_velocities.clone()).map(|set| (&ConvexSet::from(set)).into()),
     }
 }
 
-pub(super) fn initial_set(set: &ConvexSet) -> InitialSetDocument {
-    match set {
-        ConvexSet::Polygon(set) => InitialSetDocument::Polygon {
-            vertices_m: vertices(set),
-        },
-        ConvexSet::Ellipse(set) => InitialSetDocument::Ellipse {
-            center_m: plain(set.center()),
-            shape_m2: rows(set),
-        },
+impl ShipDocument {
+    /// The tracked ship; its domain is not in the document. The fault names a kept set that is no
+    /// convex polygon; numbers are taken as they are.
+    pub(crate) fn track(&self) -> Result<ShipTrack, Fault> {
+        let positions = self.kept_positions.as_ref().map(InitialSetDocument::set);
+        let velocities = self.kept_velocities.as_ref().map(VelocitySetDocument::set);
+        Ok(ShipTrack {
+            pose: Pose::new(
+                self.position.point(),
+                heading_from_course_deg(self.course_deg),
+            ),
+            speed: self.speed_mps,
+            hull: Hull::new(self.length_m, self.beam_m),
+            position_std: self.position_std_m,
+            speed_spread: self.speed_spread_mps,
+            course_spread: radians_from_deg(self.course_spread_deg),
+            starboard_turn: radians_from_deg(self.starboard_turn_deg),
+            turn_rate: radians_from_deg(self.turn_rate_deg_per_s),
+            kept_positions: kept("kept_positions", positions)?,
+            kept_velocities: kept("kept_velocities", velocities)?,
+            domain: DomainKind::Hull,
+        })
     }
 }
 
-pub(super) fn velocity_set(set: &ConvexSet) -> VelocitySetDocument {
-    match set {
-        ConvexSet::Polygon(set) => VelocitySetDocument::Polygon {
-            vertices_mps: vertices(set),
-        },
-        ConvexSet::Ellipse(set) => VelocitySetDocument::Ellipse {
-            center_mps: plain(set.center()),
-            shape_m2_per_s2: rows(set),
-        },
+/// A polygon that earlier plans leave of a ship's positions or velocities.
+fn kept(key: &str, set: Option<Result<ConvexSet, Fault>>) -> Result<Option<ConvexPolygon>, Fault> {
+    match set.transpose() {
+        Ok(Some(ConvexSet::Polygon(polygon))) => Ok(Some(polygon)),
+        Ok(Some(ConvexSet::Ellipse(_))) => Err(Fault::new(key, "an ellipse", "a polygon")),
+        Ok(None) => Ok(None),
+        Err(fault) => Err(Fault::new(key, fault.found, fault.allowed)),
     }
 }

@@ -67,7 +67,10 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
         plain(&entry.method),
         verdict(&entry.verdict),
         figure(|c| c.space_time_error_m2, square_metres),
-        figure(|c| c.space_time_error_arc_length_m2, square_metres),
+        or_dash(
+            cost.and_then(|c| c.space_time_error_arc_length_m2)
+                .map(square_metres),
+        ),
         figure(|c| c.duration_s, tenths),
         or_dash(cost.and_then(|c| c.delay_s).map(signed)),
         figure(|c| c.length_m, |length| format!("{length:.0}")),
@@ -150,7 +153,7 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         cost.is_some_and(|c| c.arrived).to_string(),
         number(|c| c.space_time_error_m2),
         number(|c| c.space_time_error_until_s),
-        number(|c| c.space_time_error_arc_length_m2),
+        optional(cost.and_then(|c| c.space_time_error_arc_length_m2)),
         number(|c| c.duration_s),
         optional(cost.and_then(|c| c.delay_s)),
         number(|c| c.length_m),

@@ -1,14 +1,16 @@
 //! Parses and validates a plan document; the result has no invalid state.
 
-use super::FORMAT;
-use super::file::{PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
-use crate::document::{OwnShipDocument, PositionDocument, planner_names};
+use crate::document::{
+    InitialSetDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument, PositionDocument,
+    TargetDocument, planner_names,
+};
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
-use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
-use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
-use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
+use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::geometry::Polygon;
+use crate::input::Fault;
+use crate::target::{Motion, Representation, Target, TimedVelocitySet, Uncertainty};
 use crate::text::short_numbers;
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
@@ -74,7 +76,7 @@ pub(super) enum ClaimedMotion {
 /// Content of a parsed document.
 #[derive(Debug)]
 pub(super) struct Claim {
-    pub file: PlanFile,
+    pub file: PlanDocument,
     pub own: OwnShip,
     pub desired: DesiredTrajectory,
     /// Paths to which own ship is restricted, if any.
@@ -97,28 +99,28 @@ impl Claim {
     /// Time after the end of the motion over which a clearance is reported, seconds.
     pub fn arrival_hold(&self) -> f64 {
         let cost = self.file.cost.as_ref();
-        cost.and_then(|cost| cost.arrival_hold_s).unwrap_or(0.0)
+        cost.map_or(0.0, |cost| cost.arrival_hold_s)
     }
 
     /// Parses a document; the error is the first field that is unreadable or invalid.
     pub fn read(text: &str) -> Result<Self, ClaimError> {
-        let file: PlanFile = parse(text)?;
-        if file.format != FORMAT {
-            return Err(fault("format", format!("'{}'", file.format), FORMAT));
+        let file: PlanDocument = parse(text)?;
+        if file.format != PLAN_FORMAT {
+            return Err(fault("format", format!("'{}'", file.format), PLAN_FORMAT));
         }
         word("planner", &file.planner, &planner_names())?;
         word("compliance", &file.compliance, &COMPLIANCES)?;
         word("objective", &file.objective, &OBJECTIVES)?;
         word("outcome", &file.outcome, &OUTCOMES)?;
         positive("horizon_s", file.horizon_s)?;
-        let hold = file.cost.as_ref().and_then(|cost| cost.arrival_hold_s);
-        let hold = hold.unwrap_or(0.0);
+        let hold = (file.cost.as_ref()).map_or(0.0, |cost| cost.arrival_hold_s);
         within("cost.arrival_hold_s", hold, 0.0, LONGEST_HOLD_S)?;
         within("max_risk", file.max_risk, 0.0, 1.0 - f64::EPSILON)?;
         not_negative("time_weight_m2_per_s2", file.time_weight_m2_per_s2)?;
         let own = own_ship(&file.own_ship)?;
         let mission = &file.mission;
-        let waypoints: Vec<Vector> = mission.waypoints.iter().copied().map(point).collect();
+        let points = |path: &[PositionDocument]| path.iter().map(PositionDocument::point).collect();
+        let waypoints: Vec<Vector> = points(&mission.waypoints);
         let speeds = mission.leg_speeds_mps.len();
         if speeds + 1 != waypoints.len() {
             let found = format!("{speeds} speeds for {} waypoints", waypoints.len());
@@ -132,7 +134,7 @@ impl Claim {
         })?;
         let paths = (file.planner == PATH_TIME).then(|| {
             let others = mission.alternatives.iter();
-            let others = others.map(|path| path.iter().copied().map(point).collect());
+            let others = others.map(|path| points(path));
             std::iter::once(waypoints).chain(others).collect()
         });
         let targets = (file.targets.iter().enumerate())
@@ -148,7 +150,7 @@ impl Claim {
         let (sets, mut faults) = sets::read(&file.obstacles, &file.relaxations, file.horizon_s)?;
         let land = (file.land.iter().enumerate())
             .map(|(index, ring)| {
-                let ring: Vec<Vector> = ring.iter().copied().map(vector).collect();
+                let ring: Vec<Vector> = ring.iter().copied().map(Vector::from).collect();
                 Polygon::new(&[ring]).map_err(|e| fault(&format!("land[{index}]"), e, "a polygon"))
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -192,7 +194,7 @@ fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> 
                 true => "none in an empty document".to_owned(),
                 false => format!("none in a document with the keys {}", keys.join(", ")),
             };
-            fault("format", found, FORMAT)
+            fault("format", found, PLAN_FORMAT)
         }
         (None, None) => shape("found no JSON object; allowed: a plan document".to_owned()),
     }
@@ -237,14 +239,6 @@ pub(super) fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
     within(path, value, 0.0, f64::INFINITY)
 }
 
-pub(super) fn point(place: PositionDocument) -> Vector {
-    Vector::new(place.east_m, place.north_m)
-}
-
-pub(super) fn vector([x, y]: [f64; 2]) -> Vector {
-    Vector::new(x, y)
-}
-
 fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     let mut least = 0.0;
     for (index, speed) in own.speeds_mps.iter().enumerate() {
@@ -257,7 +251,10 @@ fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     }
     not_negative("own_ship.land_margin_m", own.land_margin_m)?;
     Ok(OwnShip {
-        pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
+        pose: Pose::new(
+            own.position.point(),
+            heading_from_course_deg(own.course_deg),
+        ),
         speed: within("own_ship.speed_mps", own.speed_mps, 0.0, FASTEST_MPS)?,
         hull: Hull::new(
             not_negative("own_ship.length_m", own.length_m)?,
@@ -270,28 +267,18 @@ fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     })
 }
 
-pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<ConvexSet, ClaimError> {
-    match (&set.vertices_m, set.center_m, set.shape_m2) {
-        (Some(vertices), None, None) => {
-            let points: Vec<Vector> = vertices.iter().copied().map(vector).collect();
-            ConvexPolygon::from_vertices(&points)
-                .map(ConvexSet::Polygon)
-                .map_err(|e| fault(path, e, "the vertices of a convex polygon"))
-        }
-        (None, Some(center), Some([a, b])) => {
-            let shape = nalgebra::Matrix2::new(a[0], a[1], b[0], b[1]);
-            Ellipse::new(vector(center), shape)
-                .map(ConvexSet::Ellipse)
-                .map_err(|e| fault(path, e, "a centre and a shape matrix"))
-        }
-        _ => {
-            let found = "neither vertices alone nor centre and shape alone";
-            Err(fault(path, found, "one of the two"))
-        }
-    }
+/// What is read of the document at a place, or where it is wrong.
+pub(super) fn placed<T>(path: &str, read: Result<T, Fault>) -> Result<T, ClaimError> {
+    read.map_err(|wrong| {
+        let path = match wrong.path.as_str() {
+            "" => path.to_owned(),
+            key => format!("{path}.{key}"),
+        };
+        fault(&path, wrong.found, &wrong.allowed)
+    })
 }
 
-fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
+fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
     let found = target.representation.as_str();
     let mut known = Representation::WORDS.iter();
     let Some((_, representation)) = known.find(|(word, _)| *word == found) else {
@@ -301,29 +288,21 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
     let motion = match (&target.ship, &target.initial_set) {
         (Some(ship), None) if target.velocity_sets.is_empty() => {
             let at = |key: &str| format!("{path}.ship.{key}");
-            let number = |key: &str, value: f64| not_negative(&at(key), value);
-            let heading = heading_from_course_deg(ship.course_deg);
-            let speed = number("speed_mps", ship.speed_mps)?;
-            let (length, beam) = (ship.length_m, ship.beam_m);
-            let hull = Hull::new(number("length_m", length)?, number("beam_m", beam)?);
-            let position_std = number("position_std_m", ship.position_std_m)?;
-            let speed_spread = number("speed_spread_mps", ship.speed_spread_mps)?;
-            let spread = &at("course_spread_deg");
-            let course_spread = within(spread, ship.course_spread_deg, 0.0, 180.0)?;
-            let spread = &at("starboard_turn_deg");
-            let starboard_turn = within(spread, ship.starboard_turn_deg, -180.0, 180.0)?;
-            let turn_rate = number("turn_rate_deg_per_s", ship.turn_rate_deg_per_s)?;
-            Motion::Ship(ShipTrack {
-                position_std,
-                speed_spread,
-                course_spread: radians_from_deg(course_spread),
-                starboard_turn: radians_from_deg(starboard_turn),
-                turn_rate: radians_from_deg(turn_rate),
-                // The ship domain is no part of the proof.
-                kept_positions: kept(&at("kept_positions"), ship.kept_positions.as_ref())?,
-                kept_velocities: kept(&at("kept_velocities"), ship.kept_velocities.as_ref())?,
-                ..ShipTrack::exact(Pose::new(point(ship.position), heading), speed, hull)
-            })
+            for (key, value) in [
+                ("speed_mps", ship.speed_mps),
+                ("length_m", ship.length_m),
+                ("beam_m", ship.beam_m),
+                ("position_std_m", ship.position_std_m),
+                ("speed_spread_mps", ship.speed_spread_mps),
+                ("turn_rate_deg_per_s", ship.turn_rate_deg_per_s),
+            ] {
+                not_negative(&at(key), value)?;
+            }
+            let course_spread = at("course_spread_deg");
+            within(&course_spread, ship.course_spread_deg, 0.0, 180.0)?;
+            let turn = at("starboard_turn_deg");
+            within(&turn, ship.starboard_turn_deg, -180.0, 180.0)?;
+            Motion::Ship(placed(&format!("{path}.ship"), ship.track())?)
         }
         (None, Some(initial)) if !target.velocity_sets.is_empty() => {
             explicit(path, initial, target)?
@@ -340,20 +319,12 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
     })
 }
 
-/// A polygon that earlier plans leave of a ship's positions or velocities.
-fn kept(path: &str, set: Option<&SetFile>) -> Result<Option<ConvexPolygon>, ClaimError> {
-    let Some(set) = set else {
-        return Ok(None);
-    };
-    let read = plane_set(path, set)?;
-    match read.as_polygon() {
-        Some(polygon) => Ok(Some(polygon.clone())),
-        None => Err(fault(path, "an ellipse", "a polygon")),
-    }
-}
-
-fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion, ClaimError> {
-    let initial = plane_set(&format!("{path}.initial_set"), initial)?;
+fn explicit(
+    path: &str,
+    initial: &InitialSetDocument,
+    target: &TargetDocument,
+) -> Result<Motion, ClaimError> {
+    let initial = placed(&format!("{path}.initial_set"), initial.set())?;
     let mut velocities = Vec::new();
     for (index, timed) in target.velocity_sets.iter().enumerate() {
         let field = format!("{path}.velocity_sets[{index}]");
@@ -363,7 +334,7 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             let found = found[usize::from(last)];
             return Err(fault(&path, found, "a time, and null for the last"));
         }
-        let set = plane_set(&field, &timed.set)?;
+        let set = placed(&field, timed.set.set())?;
         if set.as_polygon().is_some() != initial.as_polygon().is_some() {
             return Err(fault(path, "a polygon with an ellipse", "sets of one kind"));
         }

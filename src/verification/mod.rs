@@ -13,14 +13,13 @@
 //! - that the reported properties are those of the motion: safety, costs, risks, samples and least
 //!   distances.
 //!
-//! It uses no planner, obstacle or contact test, and parses the document by its own schema. It
-//! shares with the planners only geometry, segments, and the hull and velocity sets of a tracked
-//! ship (`target`).
+//! It uses no planner, obstacle or contact test. It shares with the planners only the schema of the
+//! document, geometry, segments, and the hull and velocity sets of a tracked ship (`target`).
 
 mod claim;
 mod coverage;
+mod document;
 mod figures;
-mod file;
 mod motion;
 mod outcome;
 mod reached;
@@ -40,9 +39,6 @@ use crate::evaluation::{
 };
 use crate::text::short_numbers;
 use crate::trajectory::Segment;
-
-/// Name of the supported document format.
-pub const FORMAT: &str = "searoom-plan/1";
 
 /// Result of the verification of a plan document.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,9 +116,12 @@ impl Verification {
 /// assert!(error.to_string().contains("scenario"));
 /// ```
 pub fn verify(text: &str) -> Result<Verification, ClaimError> {
-    let claim = Claim::read(text)?;
+    Ok(verified(&Claim::read(text)?))
+}
+
+fn verified(claim: &Claim) -> Verification {
     let mut violations = claim.faults.clone();
-    let request = request(&claim);
+    let request = request(claim);
     let evaluation = claim.motion.as_ref().map(|motion| match motion {
         ClaimedMotion::Segments(_) => evaluate(&request),
         ClaimedMotion::Steered {
@@ -139,16 +138,16 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
             },
         ),
     });
-    violations.extend(coverage::check(&claim));
-    violations.extend(outcome::releases(&claim));
-    violations.extend(outcome::check(&claim));
-    violations.extend(outcome::safety(&claim, evaluation.as_ref()));
+    violations.extend(coverage::check(claim));
+    violations.extend(outcome::releases(claim));
+    violations.extend(outcome::check(claim));
+    violations.extend(outcome::safety(claim, evaluation.as_ref()));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());
         if motion.is_sound() {
-            violations.extend(figures::check(&claim, evaluation));
-            violations.extend(risk::check(&claim, &request));
-            violations.extend(samples::check(&claim, motion));
+            violations.extend(figures::check(claim, evaluation));
+            violations.extend(risk::check(claim, &request));
+            violations.extend(samples::check(claim, motion));
         }
     }
     let claimed_from = |name: &str| {
@@ -160,7 +159,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
     }
     // A NaN time sorts last.
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
-    Ok(Verification {
+    Verification {
         scenario: claim.file.scenario.clone(),
         planner: claim.file.planner.clone(),
         outcome: claim.file.outcome.clone(),
@@ -178,16 +177,16 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         land: claim.land.len(),
         evaluation,
         violations,
-    })
+    }
 }
 
 /// The plan of a document that verifies; otherwise why it is not one.
 pub fn verified_plan(text: &str) -> Result<PlanDocument, String> {
-    let checked = verify(text).map_err(|error| error.to_string())?;
-    if let Some(violation) = checked.violations.first() {
-        return Err(format!("not a plan that verifies: {}", violation.what));
+    let claim = Claim::read(text).map_err(|error| error.to_string())?;
+    match verified(&claim).violations.first() {
+        Some(violation) => Err(format!("not a plan that verifies: {}", violation.what)),
+        None => Ok(claim.file),
     }
-    serde_json::from_str(text).map_err(|error| error.to_string())
 }
 
 fn request(claim: &Claim) -> Request<'_> {

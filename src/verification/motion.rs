@@ -1,9 +1,8 @@
 //! Motion of a document: segments, or nodes with forces.
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
-use super::file::{ControlFile, PlanFile};
-use crate::document::SampleDocument;
 pub(super) use crate::document::segment;
+use crate::document::{ControlDocument, PlanDocument, SampleDocument};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{ForceNode, Segment, Steered};
@@ -57,7 +56,7 @@ pub(super) fn around(segments: &[Segment], time: f64) -> impl Iterator<Item = &S
 /// Reads the motion. `None` for a document without a plan; nodes that form no valid motion are
 /// added to `faults`.
 pub(super) fn read(
-    file: &PlanFile,
+    file: &PlanDocument,
     faults: &mut Vec<Violation>,
 ) -> Result<Option<ClaimedMotion>, ClaimError> {
     let Some(trajectory) = &file.trajectory else {
@@ -103,7 +102,7 @@ pub(super) fn read(
     }
 }
 
-fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
+fn weights(control: &ControlDocument) -> Result<StageWeights, ClaimError> {
     let checked = |key: &str, values: &[f64]| {
         values.iter().enumerate().try_for_each(|(index, value)| {
             not_negative(&format!("optimal_control.{key}[{index}]"), *value).map(|_| ())

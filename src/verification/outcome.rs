@@ -2,6 +2,7 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::mismatch;
+use crate::document::RelaxationDocument;
 use crate::evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use crate::tolerance;
 
@@ -10,17 +11,18 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     let file = &claim.file;
     let mut found = Vec::new();
     let safe = evaluation.is_some_and(Evaluation::safe);
-    let nothing = || "nothing".to_owned();
-    if file.safe != Some(safe) {
-        let said = file.safe.map_or_else(nothing, |said| said.to_string());
-        found.push(mismatch("safe", said, safe));
+    if file.safe != safe {
+        found.push(mismatch("safe", file.safe, safe));
     }
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
     let word = outcome_word(&file.outcome, evaluation.map(|e| e.safety), risk);
     let gives_up_rules = file.relaxations.iter().any(|r| r.kind == "compliance");
     let word = without_rules(word, gives_up_rules);
-    if file.verdict.as_ref() != Some(&word) {
-        let said = file.verdict.clone().unwrap_or_else(nothing);
+    if file.verdict != word {
+        let said = match file.verdict.as_str() {
+            "" => "nothing",
+            said => said,
+        };
         found.push(mismatch("verdict", said, word));
     }
     found
@@ -73,8 +75,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     }
     let most_important = file.relaxations.first();
     if file.relaxation.as_ref() != most_important {
-        let name = |r: Option<&super::file::RelaxationFile>| {
-            let name = |r: &super::file::RelaxationFile| format!("{} of '{}'", r.kind, r.target);
+        let name = |r: Option<&RelaxationDocument>| {
+            let name = |r: &RelaxationDocument| format!("{} of '{}'", r.kind, r.target);
             r.map_or("nothing".to_owned(), name)
         };
         let so = format!("the first of relaxations, {}", name(most_important));
@@ -98,9 +100,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         if relaxation.kind == "domain" && relaxation.amount == 0.0 {
             found.push(mismatch(&what, "a domain reduced by 0", "nothing given up"));
         }
-        let again = |r: &&super::file::RelaxationFile| {
-            r.kind == relaxation.kind && r.target == relaxation.target
-        };
+        let again =
+            |r: &&RelaxationDocument| r.kind == relaxation.kind && r.target == relaxation.target;
         if file.relaxations[..index].iter().any(|r| again(&r)) {
             found.push(mismatch(
                 &what,

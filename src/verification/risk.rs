@@ -8,9 +8,9 @@
 use super::claim::{Claim, ClaimedMotion};
 use super::coverage::largest;
 use super::figures::near;
-use super::file::EncounterFile;
 use super::mismatch;
 use super::motion::around;
+use crate::document::EncounterDocument;
 use crate::evaluation::{MovingSlabs, Request, SpaceTimeSet, Violation, least_margins};
 use crate::frame::direction;
 use crate::geometry::ConvexPolygon;
@@ -25,7 +25,7 @@ const KIND: &str = "risk";
 pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
     let mut found = Vec::new();
     let encounters = &claim.file.encounters;
-    let said = |encounter: &EncounterFile| encounter.max_risk.unwrap_or(f64::NAN);
+    let said = |encounter: &EncounterDocument| encounter.max_risk.unwrap_or(f64::NAN);
     let most = largest(encounters.iter().map(said)).max(0.0);
     if let Some(cost) = &claim.file.cost
         && !near(cost.max_risk, most)
@@ -44,12 +44,12 @@ pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
     found
 }
 
-fn label(encounter: &EncounterFile, key: &str) -> String {
+fn label(encounter: &EncounterDocument, key: &str) -> String {
     format!("encounter with '{}', {key}", encounter.target)
 }
 
 /// Checks that the risk is at most the accepted one; for a released set it may be up to 1.
-fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
+fn bounds(claim: &Claim, encounter: &EncounterDocument, said: f64) -> Option<Violation> {
     let mut sets = claim.sets.iter();
     let released = sets.any(|set| set.name == encounter.target && set.from > 0.0);
     let accepted = if released { 1.0 } else { claim.file.max_risk };
@@ -59,7 +59,7 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
 }
 
 /// Checks that a target whose risk is taken has a relaxation with that risk.
-fn relaxation(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
+fn relaxation(claim: &Claim, encounter: &EncounterDocument, said: f64) -> Option<Violation> {
     let mut named = claim.file.relaxations.iter();
     let named = named.find(|r| r.kind == KIND && r.target == encounter.target);
     let what = format!("relaxation of '{}', amount", encounter.target);
@@ -74,7 +74,7 @@ fn relaxation(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Vio
 }
 
 /// Checks that a time is given if, and only if, a risk is taken.
-fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
+fn instant(encounter: &EncounterDocument, said: f64) -> Option<Violation> {
     let what = label(encounter, "max_risk_t_s");
     match encounter.max_risk_t_s {
         Some(time) if said == 0.0 => Some(mismatch(&what, time, "nothing")),
@@ -86,7 +86,7 @@ fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
 /// Checks the risk along lines and arcs from both sides.
 fn taken(
     claim: &Claim,
-    encounter: &EncounterFile,
+    encounter: &EncounterDocument,
     segments: &[Segment],
     request: &Request,
 ) -> Option<Violation> {

@@ -1,9 +1,9 @@
 //! Assembles the sets of a document from entries with successive velocity sets.
 
-use super::claim::{ClaimError, fault, plane_set};
+use super::claim::{ClaimError, fault, placed};
 use super::coverage::{largest, sampled_directions};
-use super::file::{ObstacleFile, RelaxationFile};
 use super::reached::{in_order, widest};
+use crate::document::{ObstacleDocument, RelaxationDocument};
 use crate::evaluation::{SpaceTimeSet, Violation};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
@@ -16,8 +16,8 @@ use nalgebra::Matrix2;
 /// Each entry is valid until the next one starts, with the section reached then, and the last one
 /// until the horizon. The first one starts at 0, or at the release of a set that is entered.
 pub(super) fn read(
-    entries: &[ObstacleFile],
-    relaxations: &[RelaxationFile],
+    entries: &[ObstacleDocument],
+    relaxations: &[RelaxationDocument],
     horizon: f64,
 ) -> Result<(Vec<SpaceTimeSet>, Vec<Violation>), ClaimError> {
     let mut sets: Vec<SpaceTimeSet> = Vec::new();
@@ -54,8 +54,8 @@ pub(super) fn read(
             let what = format!("valid until {to} s, expected the horizon, {horizon} s");
             note(what, to);
         }
-        let initial = plane_set(&format!("{path}.initial_set"), &entry.initial_set)?;
-        let velocity = plane_set(&format!("{path}.velocity_set"), &entry.velocity_set)?;
+        let initial = placed(&format!("{path}.initial_set"), entry.initial_set.set())?;
+        let velocity = placed(&format!("{path}.velocity_set"), entry.velocity_set.set())?;
         let is_polygon = |set: &ConvexSet| set.as_polygon().is_some();
         let before = section.as_ref().filter(|_| follows);
         let mut others = std::iter::once(&velocity).chain(before);
@@ -119,7 +119,7 @@ fn least_trace_sum(terms: [(&Ellipse, f64); 2]) -> Option<Ellipse> {
 }
 
 /// Release time of a set that is entered, seconds. The set is valid from then on.
-pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64> {
+pub(super) fn released(relaxations: &[RelaxationDocument], name: &str) -> Option<f64> {
     let mut own = relaxations.iter().filter(|r| r.target == name);
     own.find_map(|r| r.until_s)
 }

@@ -6,12 +6,13 @@ use searoom::colregs::{
     SteadyShip, Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
 };
-use searoom::document::{PlanDocument, remember};
+use searoom::document::PlanDocument;
 use searoom::frame::{Vector, direction};
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
+use searoom::replanning::remember;
 use searoom::scenario::{Memory, Scenario};
 use searoom::target::{Motion, ShipTrack};
 use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};

@@ -298,7 +298,7 @@ vessel = "cybership2-full"
     // the forces are some tenths of the limits of 686 kN and 514 kN
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
-    let axes = |run: &Run| plan_figure(run).svg();
+    let axes = |run: &Run| plan_figure(run, &PlanDocument::of(run)).svg();
     for (svg, third) in [
         (axes(&full), "Rate of turn [°/s]"),
         (axes(&free), "Speed through water [m/s]"),

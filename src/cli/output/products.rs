@@ -97,7 +97,7 @@ impl Products {
                 searoom::recording::write(run, plan, &place.file(stem, "rrd"))?;
             }
             if let Some(place) = &self.figures {
-                plan_figure(run).write(&place.file(stem, "svg"))?;
+                plan_figure(run, plan).write(&place.file(stem, "svg"))?;
             }
             if let Some(folder) = &self.plans {
                 let file = folder.join(format!("{stem}.json"));

@@ -130,7 +130,7 @@ impl FollowedPlan {
     fn new(scenario: &Scenario, from: f64, plan: &PlanDocument) -> Self {
         let segments = plan.trajectory.iter().flat_map(|t| t.segments.iter());
         let ships = plan.targets.iter().filter_map(|t| t.ship.as_ref());
-        let ships = ships.map(document::track);
+        let ships = ships.filter_map(|ship| ship.track().ok());
         Self {
             from,
             segments: (segments.flatten().map(document::segment))

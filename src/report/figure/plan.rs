@@ -68,16 +68,15 @@ const MOST_POINTS: u32 = 5_000;
 
 /// Draws the chart of a run, with its path-time diagram or its velocities and forces if present.
 /// The title is that of the scenario; the verdict is above the chart.
-pub fn plan_figure(run: &Run) -> Figure {
-    Figure::new(2, plan_panels(run)).titled(&run.scenario.title)
+pub fn plan_figure(run: &Run, document: &PlanDocument) -> Figure {
+    Figure::new(2, plan_panels(run, document)).titled(&run.scenario.title)
 }
 
 /// Panels of [`plan_figure`].
-pub fn plan_panels(run: &Run) -> Vec<Panel> {
+pub fn plan_panels(run: &Run, document: &PlanDocument) -> Vec<Panel> {
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
-    let verdict = document::verdict_line(&PlanDocument::of(run));
-    let mut panels = vec![chart_panel(&verdict, run)];
+    let mut panels = vec![chart_panel(&document::verdict_line(document), run)];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(motion));
     }

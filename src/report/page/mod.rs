@@ -67,7 +67,7 @@ impl HtmlReport {
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
         self.row(SuiteRunDocument::of(file, plan, Vec::new()));
-        let figures = self.draw(subject, plan_panels(run));
+        let figures = self.draw(subject, plan_panels(run, plan));
         let legs = legs_grid(plan);
         self.section(html! {
             h2 { (headline(plan)) }

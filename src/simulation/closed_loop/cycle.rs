@@ -2,10 +2,11 @@
 
 use super::Simulation;
 use crate::colregs::SteadyShip;
-use crate::document::{EstimateDocument, ReplanDocument, finite, position, remember};
+use crate::document::{EstimateDocument, ReplanDocument, finite, position};
 use crate::frame::{Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Relaxation, Run};
+use crate::replanning::remember;
 use crate::scenario::Memory;
 use crate::target::{Motion, ShipTrack};
 use crate::tolerance::TOUCH_M;

@@ -6,6 +6,7 @@
 
 mod applies;
 mod baseline;
+mod document;
 mod method;
 mod stroke;
 

@@ -1,0 +1,154 @@
+//! Document of a comparison.
+
+use std::collections::BTreeSet;
+
+use super::{Entry, Inapplicable};
+use crate::document::{
+    EntryDocument, InapplicableDocument, ScenarioComparisonDocument, TrackPointDocument, cost_of,
+    finite, minimised, objective, position, stats, timing,
+};
+use crate::evaluation::{Safety, outcome_word, without_rules};
+use crate::pipeline::{Run, Verdict};
+use crate::scenario::Scenario;
+use crate::trajectory::largest_alteration;
+
+/// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
+/// steps.
+const TRACK_STEP: f64 = 5.0;
+const MOST_STEPS: f64 = 1000.0;
+
+/// Why a baseline has no motion.
+const NO_VELOCITY: &str = "no constant velocity is out of every velocity obstacle";
+
+impl ScenarioComparisonDocument {
+    /// Builds the document of a compared scenario.
+    pub fn of(
+        file: String,
+        scenario: &Scenario,
+        entries: &[Entry],
+        inapplicable: &[Inapplicable],
+    ) -> Self {
+        Self {
+            file,
+            scenario: Some(scenario.title.clone()),
+            error: None,
+            entries: (entries.iter())
+                .map(|entry| EntryDocument::of(scenario, entry))
+                .collect(),
+            inapplicable: (inapplicable.iter())
+                .map(|other| InapplicableDocument {
+                    method: other.method.to_string(),
+                    reason: other.reason.clone(),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl EntryDocument {
+    fn of(scenario: &Scenario, entry: &Entry) -> Self {
+        let (run, motion) = (entry.run.as_deref(), entry.motion.as_ref());
+        let plan = run.and_then(|run| run.planned.outcome.plan());
+        let trajectory = entry.trajectory();
+        let verified = motion.is_some_and(|motion| motion.evaluation.verified());
+        let max_risk = entry.candidate.max_risk;
+        let largest_risk = entry.largest_risk();
+        let outcome = match (run, motion) {
+            (Some(run), _) => Verdict::of(run).word(),
+            (None, None) => Verdict::Infeasible.word(),
+            _ if !verified => "collides",
+            // clear of the level sets alone
+            _ if max_risk > 0.0 && largest_risk > 0.0 => Verdict::Relaxed.word(),
+            _ => "clear",
+        };
+        let turn = trajectory
+            .and_then(|motion| largest_alteration(motion, scenario.own_ship.pose.heading));
+        let conduct = entry.conduct(scenario);
+        let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
+        let broken = broken.into_iter().map(str::to_owned).collect();
+        Self {
+            method: entry.candidate.method.to_string(),
+            max_risk,
+            objective: run.map(|run| objective(&run.scenario).to_owned()),
+            outcome: outcome.to_owned(),
+            verdict: without_rules(
+                outcome_word(outcome, entry.safety(), largest_risk),
+                run.is_some_and(Run::gives_up_rules),
+            ),
+            reason: match (run, motion) {
+                (Some(run), _) => run.reason(),
+                (None, Some(_)) => None,
+                (None, None) => Some(NO_VELOCITY.to_owned()),
+            },
+            verified,
+            safe: entry.safety() == Some(Safety::Safe),
+            cost: motion.map(|motion| {
+                // a baseline has no other objective
+                let found = &motion.evaluation;
+                let run = entry.run.as_ref();
+                let objective = run.zip(plan).map_or(found.space_time_error, |(run, plan)| {
+                    minimised(&run.scenario, plan, found)
+                });
+                let (way, risks) = (&motion.trajectory, &motion.risks);
+                let mut cost = cost_of(way, found, objective, motion.arrived, risks);
+                cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
+                cost
+            }),
+            largest_turn_deg: turn.map(|turn| turn.degrees),
+            largest_turn_side: turn.map(|turn| turn.side.to_string()),
+            breaks: (!conduct.is_empty()).then_some(broken),
+            search_stats: run.map(stats),
+            timing: run.map(timing),
+            track: track(entry),
+        }
+    }
+}
+
+fn track(entry: &Entry) -> Vec<TrackPointDocument> {
+    let Some(trajectory) = entry.trajectory() else {
+        return Vec::new();
+    };
+    let end = trajectory.end_time();
+    let step = TRACK_STEP.max(end / MOST_STEPS);
+    let steps = (end / step).ceil().clamp(1.0, MOST_STEPS) as usize;
+    (0..=steps)
+        .map(|k| if k == steps { end } else { k as f64 * step })
+        .filter_map(|time| Some((finite(time)?, entry.position_at(time)?)))
+        .map(|(t_s, at)| TrackPointDocument {
+            t_s,
+            position: position(at),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_track_has_no_more_than_its_thousandth_parts() {
+        for (way, expected) in [(1000.0, 5.0), (200_000.0, 40.0)] {
+            let text = format!(
+                r#"title = "long"
+                horizon_s = 100000.0
+                own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8,
+                    turning_radius_m = 100 }}
+                mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {way}, north_m = 0 }}] }}"#
+            );
+            let scenario = Scenario::parse(&text).expect("valid");
+            let entries = super::super::compare(&scenario, &[0.0]);
+            let tracks: Vec<_> = entries
+                .iter()
+                .map(track)
+                .filter(|t| !t.is_empty())
+                .collect();
+            assert!(!tracks.is_empty());
+            let direct = tracks.iter().find(|t| t[t.len() - 1].t_s < way / 5.0 + 1.0);
+            let direct = direct.expect("one that arrives");
+            assert!((direct[1].t_s - expected).abs() < 1e-6, "{:?}", direct[1]);
+            for t in tracks {
+                assert!(t.len() <= MOST_STEPS as usize + 1 && t.is_sorted_by_key(|p| p.t_s));
+            }
+        }
+    }
+}
