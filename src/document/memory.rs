@@ -9,7 +9,7 @@ use super::parts::{
 use super::plan::{PlanDocument, segment_document, start};
 use super::targets::ShipDocument;
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
-use crate::colregs::{Risk, Role, SteadyShip, TargetMemory, Thresholds};
+use crate::colregs::{Risk, Role, Situation, SteadyShip, TargetMemory, Thresholds};
 use crate::frame::{
     Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians,
     heading_from_course_deg, radians_from_deg, wrap,
@@ -139,7 +139,7 @@ impl MemoryDocument {
                 .map(|(target, known)| TargetMemoryDocument {
                     name: target.name.clone(),
                     role: known.role.as_ref().map(|risk| KnownRoleDocument {
-                        role: risk.role.name().to_owned(),
+                        role: risk.role.word().to_owned(),
                         own_ship: state_document(risk.time, &risk.own),
                         target: state_document(risk.time, &risk.target),
                     }),
@@ -569,7 +569,7 @@ fn role_now(
     match lasting {
         Some(risk)
             if turned(&risk) > radians_from_deg(NEW_COURSE_DEG)
-                && !matches!(risk.role, Role::Overtaking | Role::Overtaken) =>
+                && risk.role.duties().situation != Some(Situation::Overtaking) =>
         {
             let present = OwnSamples::of_past(&[], now, samples.hull(), samples.ordered_speed());
             let present = ComplianceReport::samples(&present, ship, None, thresholds);
@@ -618,9 +618,7 @@ pub(crate) fn steady(state: &StateDocument, elapsed: f64) -> (f64, SteadyShip) {
 }
 
 fn risk(known: &KnownRoleDocument, elapsed: f64) -> Option<Risk> {
-    let role = Role::DUTIES
-        .into_iter()
-        .find(|role| role.name() == known.role)?;
+    let (_, role) = Role::with_rule().find(|(word, _)| *word == known.role)?;
     let (time, own) = steady(&known.own_ship, elapsed);
     Some(Risk {
         role,
