@@ -163,7 +163,7 @@ fn row(
             .collect();
         times.push(quantile(&mut of_this, 0.5));
         let conduct: Vec<ComplianceReport> =
-            run.conduct(thresholds).into_iter().flatten().collect();
+            run.compliance(thresholds).into_iter().flatten().collect();
         scores.extend(conduct.iter().map(|c| c.scores.least()));
         if is_clear(&run) {
             clear += 1;

@@ -2,7 +2,7 @@
 //! sets, roles, and the plan that own ship follows.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
-use crate::colregs::{Risk, Role, SteadyShip, TargetMemory, Thresholds};
+use crate::colregs::{Risk, Role, Situation, SteadyShip, TargetMemory, Thresholds};
 use crate::document::{MemoryDocument, PlanDocument, segment, steady};
 use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
@@ -413,7 +413,7 @@ fn role_now(
     match lasting {
         Some(risk)
             if turned(&risk) > radians_from_deg(NEW_COURSE_DEG)
-                && !matches!(risk.role, Role::Overtaking | Role::Overtaken) =>
+                && risk.role.duties().situation != Some(Situation::Overtaking) =>
         {
             let present = OwnSamples::of_past(&[], now, samples.hull(), samples.ordered_speed());
             let present = ComplianceReport::samples(&present, ship, None, thresholds);

@@ -11,7 +11,7 @@ use crate::vessel::OwnShip;
 
 /// Initial sets of one target for own ship's centre, metres: hard set and ship domain.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shapes {
+pub struct ShipDomain {
     /// Hulls on every possible heading, safety margin and position uncertainty: the claim of
     /// safety.
     pub hard: ConvexPolygon,
@@ -42,7 +42,12 @@ pub struct Shapes {
 /// [`tolerance::START_M`] outside: first `e` shrinks, then the base toward the hull. A start inside
 /// the hard set changes nothing: there is no plan. A value that is not finite makes the set the
 /// origin; checked input has none.
-pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
+pub fn ship_domain(
+    own: &OwnShip,
+    target: &ShipTrack,
+    risk: Option<&Risk>,
+    horizon: f64,
+) -> ShipDomain {
     // relative to the target: far from the origin every edge would lose digits
     let place = target.pose.position;
     let about = |pose: Pose| Pose::new(pose.position - place, pose.heading);
@@ -54,8 +59,8 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
         pose: about(target.pose),
         ..target.clone()
     };
-    let about = shapes_about(own, target, risk, horizon);
-    Shapes {
+    let about = ship_domain_about(own, target, risk, horizon);
+    ShipDomain {
         hard: about.hard.translated(place),
         with_domain: about.with_domain.translated(place),
         full: about.full.translated(place),
@@ -63,8 +68,13 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
     }
 }
 
-/// [`shapes`] for a target at the origin.
-fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
+/// [`ship_domain`] for a target at the origin.
+fn ship_domain_about(
+    own: &OwnShip,
+    target: &ShipTrack,
+    risk: Option<&Risk>,
+    horizon: f64,
+) -> ShipDomain {
     let reach = own.hull.half_diagonal() + own.safety_margin;
     let around = match &target.kept_positions {
         // the same polygon as below where nothing is excluded
@@ -79,7 +89,7 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     let hull = target.outer_hull(horizon);
     let hard = hull.minkowski_sum(&around);
     if target.domain == DomainKind::Hull {
-        return Shapes {
+        return ShipDomain {
             with_domain: hard.clone(),
             full: hard.clone(),
             hard,
@@ -87,7 +97,7 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
             reach: 0.0,
         };
     }
-    let shape = Shape {
+    let parts = DomainParts {
         base: base(target, &hull),
         sweep: match (target.domain, risk) {
             (DomainKind::Colregs, Some(risk)) => sweep(own, target, risk),
@@ -96,17 +106,17 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
         hull,
         around,
     };
-    let with_domain = shape.at(1.0, 1.0);
+    let with_domain = parts.at(1.0, 1.0);
     debug_assert!(
-        risk.is_none() || keeps_the_design_inequality(own, target, shape.sweep, &with_domain),
+        risk.is_none() || keeps_the_design_inequality(own, target, parts.sweep, &with_domain),
         "swept by {:?}",
-        shape.sweep
+        parts.sweep
     );
     let reach = beyond(&with_domain, &hard);
     let start = own.pose.position;
     let clear = |set: &ConvexPolygon| set.signed_distance(start) >= tolerance::START_M;
     if with_domain.signed_distance(start) > 0.0 || hard.contains(start) {
-        return Shapes {
+        return ShipDomain {
             hard,
             full: with_domain.clone(),
             with_domain,
@@ -114,12 +124,12 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
             reach,
         };
     }
-    let used = if clear(&shape.at(1.0, 0.0)) {
-        shape.at(1.0, largest(|swept| clear(&shape.at(1.0, swept))))
+    let used = if clear(&parts.at(1.0, 0.0)) {
+        parts.at(1.0, largest(|swept| clear(&parts.at(1.0, swept))))
     } else {
-        shape.at(largest(|grown| clear(&shape.at(grown, 0.0))), 0.0)
+        parts.at(largest(|grown| clear(&parts.at(grown, 0.0))), 0.0)
     };
-    Shapes {
+    ShipDomain {
         hard,
         reduced: beyond(&with_domain, &used),
         with_domain: used,
@@ -148,7 +158,7 @@ fn keeps_the_design_inequality(
     short.is_nan() || short <= rounding && reach(-bad) >= own.safety_margin - rounding
 }
 
-impl Shapes {
+impl ShipDomain {
     /// The ship domain reduced toward the hard set: `scale` 1 gives `with_domain`, 0 gives `hard`.
     /// Convex and nested. O(n + m).
     pub fn scaled(&self, scale: f64) -> ConvexPolygon {
@@ -172,14 +182,14 @@ fn beyond(set: &ConvexPolygon, other: &ConvexPolygon) -> f64 {
 }
 
 /// Parts of a ship domain.
-struct Shape {
+struct DomainParts {
     base: ConvexPolygon,
     hull: ConvexPolygon,
     sweep: Vector,
     around: ConvexPolygon,
 }
 
-impl Shape {
+impl DomainParts {
     /// The domain with its base between the hull (0) and the full size (1), and a fraction of the
     /// sweep. Increasing in both.
     fn at(&self, grown: f64, swept: f64) -> ConvexPolygon {

@@ -8,7 +8,7 @@ use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 use crate::vessel::OwnShip;
 
 /// m/s: below this relative speed the distance of two ships does not change.
-const NO_RELATIVE_SPEED: f64 = 1e-9;
+pub(super) const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// Own ship's role toward a target, and their closest approach on the desired trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]

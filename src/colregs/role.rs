@@ -62,37 +62,26 @@ pub enum Role {
     None,
 }
 
-impl Role {
-    /// The roles that own ship has while there is risk of collision.
-    pub const DUTIES: [Self; 10] = [
-        Self::HeadOn,
-        Self::GiveWay,
-        Self::StandOn,
-        Self::Overtaking,
-        Self::Overtaken,
-        Self::BothGiveWay,
-        Self::PortToPort,
-        Self::Rule19Forward,
-        Self::Rule19Starboard,
-        Self::Rule19Port,
-    ];
+words!(Role {
+    HeadOn => "head-on",
+    GiveWay => "give-way",
+    StandOn => "stand-on",
+    Overtaking => "overtaking",
+    Overtaken => "overtaken",
+    BothGiveWay => "both-give-way",
+    PortToPort => "port-to-port",
+    Rule19Forward => "rule-19-forward",
+    Rule19Starboard => "rule-19-starboard",
+    Rule19Port => "rule-19-port",
+    Static => "static",
+    None => "none",
+});
 
-    /// The role as tables, documents and recordings name it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::HeadOn => "head-on",
-            Self::GiveWay => "give-way",
-            Self::StandOn => "stand-on",
-            Self::Overtaking => "overtaking",
-            Self::Overtaken => "overtaken",
-            Self::BothGiveWay => "both-give-way",
-            Self::PortToPort => "port-to-port",
-            Self::Rule19Forward => "rule-19-forward",
-            Self::Rule19Starboard => "rule-19-starboard",
-            Self::Rule19Port => "rule-19-port",
-            Self::Static => "static",
-            Self::None => "none",
-        }
+impl Role {
+    /// The roles that own ship has while there is risk of collision, with their words.
+    pub fn with_rule() -> impl Iterator<Item = (&'static str, Self)> {
+        let all = Self::WORDS.iter().copied();
+        all.filter(|(_, role)| role.rule().is_some())
     }
 }
 
@@ -130,10 +119,11 @@ impl SteadyShip {
 }
 
 /// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)`
-/// of docs/colregs.md, section 1.3. It is an ordered list, so that every state has one role and the two
-/// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
-/// port-to-port twice, and none twice in line without closing. A mirrored state has the mirrored
-/// role.
+/// of docs/colregs.md, section 1.3.
+///
+/// It is an ordered list, so every state has one role and the two ships agree: head-on/head-on,
+/// give-way/stand-on, overtaking/overtaken, both-give-way twice, port-to-port twice, and none twice
+/// in line without closing. A mirrored state has the mirrored role.
 ///
 /// `None` if a number is not finite or the centres coincide: the caller must claim nothing. An own
 /// ship at rest has no duty of Rules 13 to 17: [`Role::None`].
@@ -245,8 +235,8 @@ pub(super) mod tests {
         }
     }
 
-    /// Each role by its own condition, in no order: a second reading of docs/colregs.md, section 1.3 from
-    /// angles that are found another way.
+    /// Each role by its own condition, in no order: a second reading of docs/colregs.md, section 1.3,
+    /// from angles that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;
@@ -351,7 +341,7 @@ pub(super) mod tests {
                 Role::PortToPort => Role::BothGiveWay,
                 same => same,
             };
-            let roles = Role::DUTIES.into_iter().chain([Role::Static, Role::None]);
+            let roles = Role::WORDS.iter().map(|(_, role)| *role);
             let described = roles.filter(|r| is(*r, &own, &other));
             assert_eq!(described.collect::<Vec<_>>(), [here], "{own:?} {other:?}");
             assert_eq!(mirror, expected, "{own:?} {other:?}");

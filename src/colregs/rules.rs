@@ -32,10 +32,20 @@ pub const MOST_SMALL_TURNS: usize = ScoreLimits::STANDARD.small_turns;
 pub struct RoleDuties {
     /// Number of the rule.
     pub rule: Option<u8>,
+    /// Paragraph that a forbidden heading, passing side or crossing ahead violates.
+    pub paragraph: Option<&'static str>,
+    /// How the two ships meet.
+    pub situation: Option<Situation>,
     /// Keeps clear by a readily apparent alteration: Rules 13 to 16.
     pub keeps_clear: bool,
     /// Keeps course and speed: Rule 17, and the overtaken ship.
     pub stands_on: bool,
+    /// When a ship that stands on may act, Rule 17(a)(ii).
+    pub may_act: MayAct,
+    /// Side of the first turn of a new plan: Rules 14, 15 and 19(d)(i).
+    pub first_turn_to: Option<Side>,
+    /// May go faster than ordered, to pass sooner.
+    pub may_speed_up: bool,
     /// Side to which own ship does not alter course: Rules 14(a), 15, 17(c) and 19(d).
     pub no_turn_to: Option<Side>,
     /// Side of its course to which own ship does not head before the target has passed.
@@ -44,8 +54,35 @@ pub struct RoleDuties {
     pub port_to_port: bool,
     /// Crossing ahead of the target.
     pub crossing_ahead: CrossingAhead,
+    /// The scores count crossing ahead of the target at less than a safe distance.
+    pub crossing_ahead_counts: bool,
     /// Side of the target to which its domain is swept, because own ship must not pass there.
     pub closed_side: ClosedSide,
+    /// Monitor that asks for an alteration.
+    pub alteration_monitor: Option<&'static str>,
+}
+
+/// How two ships meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Situation {
+    /// Rule 14, and ships that are already port to port.
+    HeadOn,
+    /// Rules 15 and 17.
+    Crossing,
+    /// Rule 13. It lasts until past and clear, whatever the target does: Rule 13(d).
+    Overtaking,
+    /// Rule 19.
+    NotInSight,
+}
+
+/// When a ship that stands on may act, Rule 17(a)(ii). In extremis it always may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MayAct {
+    /// From stage 3 on: within [`ScoreLimits::stage_3_lengths`] of the target.
+    WithinRange,
+    /// From the time in which it makes good [`ScoreLimits::overtaken_lengths`] before the closest
+    /// approach.
+    BeforeClosestApproach,
 }
 
 /// Whether own ship may cross the course line of a target ahead of it.
@@ -75,19 +112,51 @@ pub enum ClosedSide {
 /// No duty.
 const NONE: RoleDuties = RoleDuties {
     rule: None,
+    paragraph: None,
+    situation: None,
     keeps_clear: false,
     stands_on: false,
+    may_act: MayAct::WithinRange,
+    first_turn_to: None,
+    may_speed_up: false,
     no_turn_to: None,
     no_heading_to: None,
     port_to_port: false,
     crossing_ahead: CrossingAhead::Allowed,
+    crossing_ahead_counts: false,
     closed_side: ClosedSide::None,
+    alteration_monitor: None,
 };
 
-/// Rule 19(d), without the side.
+/// Rules 14(a) and (c): head-on, or already port to port.
+const RULE_14: RoleDuties = RoleDuties {
+    rule: Some(14),
+    paragraph: Some("14(a)"),
+    situation: Some(Situation::HeadOn),
+    keeps_clear: true,
+    no_turn_to: Some(Side::Port),
+    no_heading_to: Some(Side::Port),
+    port_to_port: true,
+    closed_side: ClosedSide::Starboard,
+    ..NONE
+};
+
+/// Rule 15: keeps out of the way of a crossing ship.
+const RULE_15: RoleDuties = RoleDuties {
+    rule: Some(15),
+    paragraph: Some("15"),
+    situation: Some(Situation::Crossing),
+    keeps_clear: true,
+    crossing_ahead_counts: true,
+    ..NONE
+};
+
+/// Rule 19(d): the sides follow from the bearing.
 const RULE_19: RoleDuties = RoleDuties {
     rule: Some(19),
+    situation: Some(Situation::NotInSight),
     keeps_clear: true,
+    alteration_monitor: Some("R5"),
     ..NONE
 };
 
@@ -95,58 +164,64 @@ impl Role {
     /// The duties of this role.
     pub const fn duties(self) -> RoleDuties {
         match self {
-            Self::HeadOn | Self::PortToPort => RoleDuties {
-                rule: Some(14),
-                keeps_clear: true,
-                no_turn_to: Some(Side::Port),
-                no_heading_to: Some(Side::Port),
-                port_to_port: true,
-                closed_side: ClosedSide::Starboard,
-                ..NONE
+            Self::HeadOn => RoleDuties {
+                first_turn_to: Some(Side::Starboard),
+                alteration_monitor: Some("R4"),
+                ..RULE_14
             },
+            Self::PortToPort => RULE_14,
             Self::GiveWay => RoleDuties {
-                rule: Some(15),
-                keeps_clear: true,
+                first_turn_to: Some(Side::Starboard),
                 no_turn_to: Some(Side::Port),
                 crossing_ahead: CrossingAhead::Forbidden,
                 closed_side: ClosedSide::Ahead,
-                ..NONE
+                alteration_monitor: Some("R3"),
+                ..RULE_15
             },
-            Self::BothGiveWay => RoleDuties {
-                rule: Some(15),
-                keeps_clear: true,
-                ..NONE
-            },
+            Self::BothGiveWay => RULE_15,
             Self::Overtaking => RoleDuties {
                 rule: Some(13),
+                paragraph: Some("13"),
+                situation: Some(Situation::Overtaking),
                 keeps_clear: true,
+                may_speed_up: true,
                 crossing_ahead: CrossingAhead::Far,
+                crossing_ahead_counts: true,
                 closed_side: ClosedSide::AcrossWake,
+                alteration_monitor: Some("R5"),
                 ..NONE
             },
             Self::Overtaken => RoleDuties {
                 rule: Some(13),
+                situation: Some(Situation::Overtaking),
                 stands_on: true,
+                may_act: MayAct::BeforeClosestApproach,
                 ..NONE
             },
             Self::StandOn => RoleDuties {
                 rule: Some(17),
+                paragraph: Some("17(c)"),
+                situation: Some(Situation::Crossing),
                 stands_on: true,
                 no_turn_to: Some(Side::Port),
                 no_heading_to: Some(Side::Port),
                 ..NONE
             },
             Self::Rule19Forward => RoleDuties {
+                paragraph: Some("19(d)(i)"),
+                first_turn_to: Some(Side::Starboard),
                 no_turn_to: Some(Side::Port),
                 no_heading_to: Some(Side::Port),
                 ..RULE_19
             },
             Self::Rule19Starboard => RoleDuties {
+                paragraph: Some("19(d)(ii)"),
                 no_turn_to: Some(Side::Starboard),
                 no_heading_to: Some(Side::Starboard),
                 ..RULE_19
             },
             Self::Rule19Port => RoleDuties {
+                paragraph: Some("19(d)(ii)"),
                 no_turn_to: Some(Side::Port),
                 no_heading_to: Some(Side::Port),
                 ..RULE_19
@@ -240,6 +315,23 @@ impl Duty {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_are_complete() {
+        for (word, role) in Role::with_rule() {
+            let d = role.duties();
+            assert!(d.situation.is_some(), "{word}");
+            assert_ne!(d.keeps_clear, d.stands_on, "{word}");
+            let forbids = d.no_heading_to.is_some() || d.port_to_port || d.crossing_ahead_counts;
+            assert!(d.paragraph.is_some() || !forbids, "{word}");
+            // own ship does not begin with a turn that it must not make
+            assert!(
+                d.first_turn_to
+                    .is_none_or(|side| d.no_turn_to != Some(side)),
+                "{word}"
+            );
+        }
+    }
 
     #[test]
     fn the_strictest_role_decides() {

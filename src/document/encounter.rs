@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::plan::finite;
-use crate::colregs::Role;
 use crate::colregs::compliance::{ComplianceReport, Measure, MonitorVerdict};
+use crate::colregs::{Role, Situation};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
 use crate::target::ShipTrack;
@@ -105,7 +105,7 @@ pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
-    let conduct = run.judged_conduct();
+    let conduct = run.judged_compliance();
     (run.scenario.targets.iter().zip(&run.targets).enumerate())
         .map(|(index, (target, outcome))| {
             let passage = passages.and_then(|passages| passages.get(index));
@@ -113,10 +113,10 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
             let encounter = &outcome.sets.encounter;
             let crossing = passage
                 .zip(trajectory)
-                .filter(|_| is_crossing(encounter.role.name()));
+                .filter(|_| is_crossing(encounter.role.word()));
             EncounterDocument {
                 target: target.name.clone(),
-                role: encounter.role.name().to_owned(),
+                role: encounter.role.word().to_owned(),
                 dcpa_m: passage.and_then(|p| finite(p.dcpa)),
                 tcpa_s: passage.and_then(|p| finite(p.tcpa)),
                 undisturbed_dcpa_m: finite(encounter.undisturbed_dcpa),
@@ -137,8 +137,8 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
 
 /// True for the names of the roles in a crossing.
 pub(crate) fn is_crossing(role: &str) -> bool {
-    let crossing = [Role::GiveWay, Role::StandOn, Role::BothGiveWay];
-    crossing.iter().any(|known| known.name() == role)
+    let known = Role::with_rule().find(|(word, _)| *word == role);
+    known.is_some_and(|(_, role)| role.duties().situation == Some(Situation::Crossing))
 }
 
 /// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.
@@ -169,7 +169,7 @@ impl ConductDocument {
     /// Converts a compliance report; angles are in degrees.
     pub(crate) fn of(conduct: &ComplianceReport) -> Self {
         let roles = conduct.roles.iter().map(|interval| RoleDocument {
-            role: interval.role.name().to_owned(),
+            role: interval.role.word().to_owned(),
             from_s: interval.from,
             until_s: interval.until,
         });

@@ -56,8 +56,7 @@ pub struct KnownRoleDocument {
 impl KnownRoleDocument {
     /// The role, with times that count from `elapsed` seconds later; `None` for an unknown name.
     pub(crate) fn risk(&self, elapsed: f64) -> Option<Risk> {
-        let mut roles = Role::DUTIES.into_iter();
-        let role = roles.find(|role| role.name() == self.role)?;
+        let (_, role) = Role::with_rule().find(|(word, _)| *word == self.role)?;
         let (time, own) = steady(&self.own_ship, elapsed);
         Some(Risk {
             role,
@@ -103,7 +102,7 @@ impl MemoryDocument {
                 .map(|(target, known)| TargetMemoryDocument {
                     name: target.name.clone(),
                     role: known.role.as_ref().map(|risk| KnownRoleDocument {
-                        role: risk.role.name().to_owned(),
+                        role: risk.role.word().to_owned(),
                         own_ship: state_document(risk.time, &risk.own),
                         target: state_document(risk.time, &risk.target),
                     }),

@@ -2,19 +2,17 @@
 
 use super::{Relaxation, Run, TargetSets};
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
-use crate::colregs::{Duty, Encountered, Role, SteadyShip, Thresholds};
+use crate::colregs::{Duty, Encountered, SteadyShip, Thresholds};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::parallel;
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
-/// The first turn by Rules 14, 15 and 19(d)(i): to starboard where own ship meets head-on, gives
-/// way, or does not see a ship forward of its beam.
+/// Side of the first turn, from the first target whose role names one.
 pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
-    let roles = [Role::HeadOn, Role::GiveWay, Role::Rule19Forward];
-    let alters = |s: &TargetSets| roles.contains(&s.encounter.role);
-    sets.iter().any(alters).then_some(Side::Starboard)
+    let mut roles = sets.iter().map(|s| s.encounter.role);
+    roles.find_map(|role| role.duties().first_turn_to)
 }
 
 /// Removes the domains of give-way targets where own ship stands on and gives way to none.
@@ -82,12 +80,12 @@ fn asking<'a>(
 
 /// Number of rules and monitors that a trajectory violates by the planner's limits.
 pub(super) fn breaks(scenario: &Scenario, trajectory: &Trajectory) -> usize {
-    let reports = conduct(scenario, Some(trajectory), &scenario.limits);
+    let reports = compliance(scenario, Some(trajectory), &scenario.limits);
     reports.iter().flatten().map(|r| r.broken().count()).sum()
 }
 
 /// Compliance of a trajectory toward each target, together with the motion before it.
-fn conduct(
+fn compliance(
     scenario: &Scenario,
     trajectory: Option<&Trajectory>,
     thresholds: &Thresholds,
@@ -110,17 +108,17 @@ impl Run {
     ///
     /// `None` without a plan, and for a target that is not a tracked ship. Uses the planned
     /// trajectory and the nominal track alone. O(targets × seconds), less for distant targets.
-    pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
+    pub fn compliance(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
         let plan = self.planned.outcome.plan();
-        conduct(
+        compliance(
             &self.scenario,
             plan.map(|plan| &plan.trajectory),
             thresholds,
         )
     }
 
-    /// [`Run::conduct`] by the scenario's thresholds.
-    pub fn judged_conduct(&self) -> Vec<Option<ComplianceReport>> {
-        self.conduct(self.scenario.judged_by())
+    /// [`Run::compliance`] by the scenario's thresholds.
+    pub fn judged_compliance(&self) -> Vec<Option<ComplianceReport>> {
+        self.compliance(self.scenario.judged_by())
     }
 }

@@ -1,7 +1,7 @@
 //! The obstacles of every target, grown by own ship's footprint.
 
 use super::rules::without_domains_of_give_way_targets;
-use crate::colregs::{self, Encounter, Role, Shapes, TargetMemory};
+use crate::colregs::{self, Encounter, Role, ShipDomain, TargetMemory};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::parallel;
@@ -22,7 +22,7 @@ pub struct TargetSets {
     /// Metres from the hard set to the farthest point of the full domain.
     pub shape_reach: f64,
     /// The domain to be reduced; `None` where the set with domain equals the hard one.
-    shapes: Option<Shapes>,
+    shapes: Option<ShipDomain>,
 }
 
 /// A target's obstacle with a reduced ship domain.
@@ -117,7 +117,7 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
     };
     match &target.motion {
         Motion::Ship(ship) => {
-            let shapes = colregs::shapes(own, ship, encounter.risk.as_ref(), horizon);
+            let shapes = colregs::ship_domain(own, ship, encounter.risk.as_ref(), horizon);
             let sets = Uncertainty {
                 initial: shapes.hard.clone().into(),
                 velocities: ship.outer_velocity_sets(ship.turn_rate, horizon),

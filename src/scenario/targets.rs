@@ -99,7 +99,7 @@ fn role(
         Some(field) => Some(field.number(limits::COURSE).map(heading_from_course_deg)?),
         None => None,
     };
-    let role = field.choice(&Role::DUTIES.map(|role| (role.name(), role)))?;
+    let role = field.choice(&Role::with_rule().collect::<Vec<_>>())?;
     let Some(ship) = ship else {
         return field.refuse("nothing: only a tracked ship has a role");
     };

@@ -57,7 +57,7 @@ pub fn lint(
             };
             LintTargetDocument {
                 name: target.name.clone(),
-                role: sets.encounter.role.name().to_owned(),
+                role: sets.encounter.role.word().to_owned(),
                 undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
                 undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
                 to_set_m: finite(to_set),

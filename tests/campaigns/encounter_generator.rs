@@ -131,7 +131,7 @@ impl EncounterKind {
 
     /// Name of the role.
     pub fn name(self) -> &'static str {
-        self.role().name()
+        self.role().word()
     }
 
     /// Relative bearings (clockwise, radians) at which the target is first seen.

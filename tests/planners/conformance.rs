@@ -146,7 +146,7 @@ fn table_of_motions() -> String {
             let track = ShipTrack::exact(target.pose, target.speed, HULL);
             let samples = EncounterSamples::along(&own, HULL, SPEED, &track);
             let report = ComplianceReport::judge(&samples, Thresholds::standard());
-            assert_eq!(report.roles[0].role.name(), *role);
+            assert_eq!(report.roles[0].role.word(), *role);
             let mut broken: Vec<&str> = report.broken().collect();
             broken.dedup();
             let broken = broken.join(", ");

@@ -22,7 +22,7 @@ fn no_rule_is_broken_where_none_need_be() {
         let title = &run.scenario.title;
         assert!(run.planned.outcome.plan().is_some(), "{title}");
         assert!(run.relaxations.is_empty(), "{title}");
-        for report in run.judged_conduct().iter().flatten() {
+        for report in run.judged_compliance().iter().flatten() {
             let broken: Vec<_> = report.broken().collect();
             assert!(broken.is_empty(), "{title}: {broken:?}");
         }
@@ -60,7 +60,7 @@ fn in_restricted_visibility_own_ship_turns_away() {
             first.is_none_or(|rate| (rate < 0.0) == starboard),
             "{from:?}"
         );
-        for report in run.judged_conduct().iter().flatten() {
+        for report in run.judged_compliance().iter().flatten() {
             assert_eq!(report.roles[0].role, role);
             assert!(report.complies(), "{from:?} {report:?}");
         }
@@ -71,7 +71,7 @@ fn in_restricted_visibility_own_ship_turns_away() {
 fn a_ship_does_not_slow_down_just_ahead_of_one_that_it_has_overtaken() {
     let run = run(include_str!("../faults/rules-hampered.toml"));
     assert!(run.planned.outcome.plan().is_some());
-    let reports = run.judged_conduct();
+    let reports = run.judged_compliance();
     let mut roles = reports.iter().flatten().flat_map(|report| &report.roles);
     assert!(roles.all(|r| r.role != Role::Overtaken), "{reports:?}");
 }

@@ -3,7 +3,9 @@
 
 use super::role_intervals::RoleInterval;
 use super::samples::{EncounterSample, EncounterSamples};
-use crate::colregs::{APPARENT_SPEED, APPARENT_TIME, Role, SteadyShip, Thresholds, role_within};
+use crate::colregs::{
+    APPARENT_SPEED, APPARENT_TIME, MayAct, Role, SteadyShip, Thresholds, role_within,
+};
 use crate::frame::{Pose, wrap};
 
 /// Verdict of a monitor.
@@ -126,17 +128,12 @@ impl Trace<'_> {
     /// `G(role begins and persists -> F[react + 2 manoeuvre](not past until turn >= m.turn))`,
     /// the turn to starboard, or to either side. Where a lower speed may replace the turn, it is
     /// held for [`APPARENT_TIME`].
-    fn alters(
-        &self,
-        monitor: &'static str,
-        wanted: impl Fn(Role) -> bool,
-        either_side: bool,
-        may_slow: bool,
-    ) -> MonitorResult {
+    fn alters(&self, monitor: &'static str, either_side: bool, may_slow: bool) -> MonitorResult {
         let m = &self.t.monitor;
         let mut worst: Option<(f64, f64)> = None;
         let mut open = false;
-        for (_, samples) in self.wanted(wanted) {
+        let asks = |role: Role| role.duties().alteration_monitor == Some(monitor);
+        for (_, samples) in self.wanted(asks) {
             let first = samples[0].at_speed(self.ordered_speed);
             let until = first.time + self.factor * m.response();
             let before_passing = |s: &&EncounterSample| s.time <= until && !s.is_past(&first.own);
@@ -200,11 +197,12 @@ impl Trace<'_> {
     /// True from stage 3 on and in extremis: a stand-on ship may act, Rule 17(a)(ii) and (b).
     fn may_act(&self, role: Role, first: &EncounterSample, sample: &EncounterSample) -> bool {
         let limits = &self.t.score;
-        let stage_3 = if role == Role::Overtaken {
-            let left = first.ahead().time - (sample.time - first.time);
-            left <= limits.overtaken_lengths * self.length / self.ordered_speed
-        } else {
-            sample.range() <= limits.stage_3_lengths * self.length
+        let stage_3 = match role.duties().may_act {
+            MayAct::BeforeClosestApproach => {
+                let left = first.ahead().time - (sample.time - first.time);
+                left <= limits.overtaken_lengths * self.length / self.ordered_speed
+            }
+            MayAct::WithinRange => sample.range() <= limits.stage_3_lengths * self.length,
         };
         stage_3
             || sample.time >= self.excused_from
@@ -307,14 +305,9 @@ pub fn monitors(
     [
         trace.apart(),
         trace.leaves_extremis(),
-        trace.alters("R3", |r| r == Role::GiveWay, false, true),
-        trace.alters("R4", |r| r == Role::HeadOn, false, false),
-        trace.alters(
-            "R5",
-            |r| r == Role::Overtaking || r.duties().rule == Some(19),
-            true,
-            true,
-        ),
+        trace.alters("R3", false, true),
+        trace.alters("R4", false, false),
+        trace.alters("R5", true, true),
         trace.holds(),
     ]
 }

@@ -37,11 +37,12 @@ fn past_and_clear(
         && sample.apart >= t.risk.release_lengths * length
 }
 
-/// Roles of own ship toward the target, in order of time. A role begins with the first of
-/// `evaluations` consecutive samples at risk (at once at the very first sample); the last of them
-/// decides which role. It lasts until
-/// the first of as many at which the target is past and clear. Neither own ship's manoeuvre nor a
-/// later change of bearing ends or changes it. A role that is known from before begins when it did.
+/// Roles of own ship toward the target, in order of time.
+///
+/// A role begins with the first of `evaluations` consecutive samples at risk, or at once at the very
+/// first sample. The last of them decides which role. It lasts until the first of as many samples at
+/// which the target is past and clear. Neither own ship's manoeuvre nor a later change of bearing
+/// ends or changes it. A role that is known from before begins when it did.
 pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> {
     let length = encounter.length();
     let mut intervals: Vec<RoleInterval> = Vec::new();
@@ -88,7 +89,7 @@ pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> 
                     interval.until = since;
                 }
             } else if let Some(role) = role_within(&sample.own, &sample.target, &t.sectors)
-                .filter(|r| !matches!(r, Role::None | Role::Static))
+                .filter(|role| role.rule().is_some())
             {
                 active = Some(sample.own);
                 intervals.push(RoleInterval {

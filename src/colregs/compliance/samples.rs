@@ -1,6 +1,6 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
-use crate::colregs::encounter::state_at;
+use crate::colregs::encounter::{NO_RELATIVE_SPEED, state_at};
 use crate::colregs::{Risk, SteadyShip, TargetMemory};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
@@ -12,9 +12,6 @@ const STEP_S: f64 = 1.0;
 
 /// Most steps; a longer trajectory has longer steps.
 const MOST_SAMPLES: u32 = 5_000;
-
-/// m/s. Below this relative speed two ships keep their distance.
-const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// Both ships at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,7 +10,7 @@ use super::samples::{
     EncounterSample, EncounterSamples, alterations, speed_changed, speed_changes,
 };
 use super::{Manoeuvre, RuleViolation};
-use crate::colregs::{APPARENT_SPEED, Role, Thresholds};
+use crate::colregs::{APPARENT_SPEED, MayAct, Role, Situation, Thresholds};
 use crate::frame::{Side, deg_from_radians, wrap};
 
 /// Scores of own ship toward one target; 1 is best. `None` if the rule does not apply.
@@ -357,12 +357,12 @@ impl Act<'_> {
     fn may_act_from(&self) -> f64 {
         let s = &self.t.score;
         let first = self.first();
-        let stage_3 = |sample: &EncounterSample| match self.role {
-            Role::Overtaken => {
+        let stage_3 = |sample: &EncounterSample| match self.role.duties().may_act {
+            MayAct::BeforeClosestApproach => {
                 self.undisturbed_tcpa(first) - (sample.time - first.time)
                     <= s.overtaken_lengths * self.length / self.ordered_speed
             }
-            _ => sample.range() <= s.stage_3_lengths * self.length,
+            MayAct::WithinRange => sample.range() <= s.stage_3_lengths * self.length,
         };
         let extremis = self.t.monitor.manoeuvre * self.t.time_factor(self.own_length);
         let mut may =
@@ -373,88 +373,65 @@ impl Act<'_> {
 
     /// Rule violations in order of time.
     fn violations(&self) -> Vec<RuleViolation> {
-        let (s, closest) = (&self.t.score, self.closest());
+        let (s, closest, duties) = (&self.t.score, self.closest(), self.role.duties());
         let mut found = Vec::new();
         let mut violation = |rule: &'static str, time: f64, what: String| {
             found.push(RuleViolation { rule, time, what });
         };
-        let port_turn =
-            |rule: &'static str, violation: &mut dyn FnMut(&'static str, f64, String)| {
-                let turned = self.turned_to(s.steady, Side::Port);
-                if let Some(sample) = turned.filter(|sample| sample.time < self.until) {
-                    violation(
-                        rule,
-                        sample.time,
-                        "heads to port of its first course before the other has passed".to_owned(),
-                    );
-                }
-            };
-        let passing = self.onset().is_some() || !(closest.apart > s.least_lengths * self.length);
-        match self.role {
-            Role::HeadOn | Role::PortToPort => {
-                port_turn("14(a)", &mut violation);
-                // negated on purpose: what is not known to be to port is not
-                if passing && !(closest.bearing() < 0.0 && closest.aspect() < 0.0) {
-                    let what = "does not pass on the port side of the other".to_owned();
-                    violation("14(a)", closest.time, what);
-                }
+        if duties.stands_on {
+            let freed = self.may_act_from();
+            let must_hold = |sample: &&EncounterSample| sample.time < freed;
+            if let Some(sample) = self.turned(s.hold).filter(must_hold) {
+                let hold = deg_from_radians(s.hold);
+                let what = format!("does not hold its course within {hold:.0} deg");
+                violation("17(a)(i)", sample.time, what);
             }
-            Role::GiveWay | Role::BothGiveWay => {
-                if let Some(time) = self.crosses_ahead() {
-                    violation("15", time, "crosses ahead of the other".to_owned());
-                    port_turn("15", &mut violation);
-                }
+            let changed = speed_changed(self.samples, self.ordered_speed, s.steady_speed);
+            if let Some(time) = changed.filter(|time| *time < freed) {
+                let share = 100.0 * s.steady_speed;
+                let what = format!("does not hold its speed within {share:.0} %");
+                violation("17(a)(i)", time, what);
             }
-            Role::Overtaking => {
-                if let Some(time) = self.crosses_ahead() {
-                    violation(
-                        "13",
-                        time,
-                        "crosses ahead of the ship it overtakes".to_owned(),
-                    );
-                }
-            }
-            Role::StandOn | Role::Overtaken => {
-                let freed = self.may_act_from();
-                let must_hold = |sample: &&EncounterSample| sample.time < freed;
-                if let Some(sample) = self.turned(s.hold).filter(must_hold) {
-                    let hold = deg_from_radians(s.hold);
-                    let what = format!("does not hold its course within {hold:.0} deg");
-                    violation("17(a)(i)", sample.time, what);
-                }
-                let faster_or_slower =
-                    speed_changed(self.samples, self.ordered_speed, s.steady_speed);
-                if let Some(sample) = (self.samples.iter())
-                    .find(|sample| Some(sample.time) == faster_or_slower)
-                    .filter(must_hold)
-                {
-                    let what = format!(
-                        "does not hold its speed within {:.0} %",
-                        100.0 * s.steady_speed
-                    );
-                    violation("17(a)(i)", sample.time, what);
-                }
-                if self.role == Role::StandOn {
-                    port_turn("17(c)", &mut violation);
-                }
-                // negated on purpose: a NaN is a collision
-                if !(closest.apart > 0.0) {
-                    let what = "holds on into a collision".to_owned();
-                    violation("17(b)", closest.time, what);
-                }
-            }
-            Role::Rule19Forward => port_turn("19(d)(i)", &mut violation),
-            Role::Rule19Starboard | Role::Rule19Port => {
-                let to = self.role.duties().no_turn_to;
-                let toward = to.and_then(|side| self.turned_to(s.steady, side));
-                if let Some(sample) = toward.filter(|sample| sample.time < self.until) {
-                    let what = "turns toward a ship abeam or abaft the beam".to_owned();
-                    violation("19(d)(ii)", sample.time, what);
-                }
-            }
-            Role::None | Role::Static => {}
         }
-        if self.role.duties().keeps_clear {
+        if let Some(rule) = duties.paragraph {
+            let crossed = (duties.crossing_ahead_counts)
+                .then(|| self.crosses_ahead())
+                .flatten();
+            if let Some(time) = crossed {
+                let what = match duties.situation {
+                    Some(Situation::Overtaking) => "crosses ahead of the ship it overtakes",
+                    _ => "crosses ahead of the other",
+                };
+                violation(rule, time, what.to_owned());
+            }
+            // a crossing ship's turn to port is forbidden only where it leads ahead of the other
+            let port = (crossed.is_some() && duties.situation == Some(Situation::Crossing))
+                .then_some(Side::Port);
+            let turned = (duties.no_heading_to.or(port))
+                .and_then(|side| self.turned_to(s.steady, side))
+                .filter(|sample| sample.time < self.until);
+            if let Some(sample) = turned {
+                let what = match rule {
+                    "19(d)(ii)" => "turns toward a ship abeam or abaft the beam",
+                    _ => "heads to port of its first course before the other has passed",
+                };
+                violation(rule, sample.time, what.to_owned());
+            }
+            let passing =
+                self.onset().is_some() || !(closest.apart > s.least_lengths * self.length);
+            // negated on purpose: what is not known to be to port is not
+            let to_port = closest.bearing() < 0.0 && closest.aspect() < 0.0;
+            if duties.port_to_port && passing && !to_port {
+                let what = "does not pass on the port side of the other".to_owned();
+                violation(rule, closest.time, what);
+            }
+        }
+        // negated on purpose: a NaN is a collision
+        if duties.stands_on && !(closest.apart > 0.0) {
+            let what = "holds on into a collision".to_owned();
+            violation("17(b)", closest.time, what);
+        }
+        if duties.keeps_clear {
             if let Some(time) = self.succession() {
                 let what = "makes a succession of small alterations".to_owned();
                 violation("8(b)", time, what);

@@ -131,9 +131,9 @@ fn the_design_inequality_holds_whatever_the_hull() {
             Role::Overtaking => {}
             other => panic!("{other:?} has no bad side"),
         }
-        let shape = shapes(&own, &target, Some(&risk), HORIZON).with_domain;
+        let domain = ship_domain(&own, &target, Some(&risk), HORIZON).with_domain;
         let centre = target.pose.position;
-        let reach = |n: Vector| shape.support(n) - n.dot(&centre);
+        let reach = |n: Vector| domain.support(n) - n.dot(&centre);
         let asymmetry = reach(bad) - reach(-bad);
         let d_risk = risk_distance(&own, &target);
         assert!(asymmetry >= 2.0 * d_risk);
@@ -144,7 +144,7 @@ fn the_design_inequality_holds_whatever_the_hull() {
 }
 
 #[test]
-fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
+fn hull_in_hard_in_domain_and_a_start_outside_stays_outside() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);
     let (mut drawn_back, mut bare) = (0, 0);
     for _ in 0..3000 {
@@ -152,7 +152,7 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         let mut target = random_track(&mut rng);
         target.pose.position *= 0.4;
         let risk = risk_with(&own, &target);
-        let found = shapes(&own, &target, Some(&risk), HORIZON);
+        let found = ship_domain(&own, &target, Some(&risk), HORIZON);
         let inside = |inner: &ConvexPolygon, outer: &ConvexPolygon| {
             let mut corners = inner.vertices().iter();
             corners.all(|p| outer.signed_distance(*p) < 1e-7)
@@ -160,7 +160,7 @@ fn hull_in_hard_in_shaped_and_a_start_outside_stays_outside() {
         assert!(inside(&target.hull.polygon(&target.pose), &found.hard));
         assert!(inside(&found.hard, &found.with_domain), "{target:?}");
         let away = own_at(Vector::new(1e5, 0.0), own.safety_margin);
-        let whole = shapes(&away, &target, Some(&risk), HORIZON);
+        let whole = ship_domain(&away, &target, Some(&risk), HORIZON);
         assert!(inside(&found.with_domain, &whole.with_domain) && whole.reduced == 0.0);
         let start = own.pose.position;
         let from_hard = found.hard.signed_distance(start);
@@ -196,8 +196,8 @@ fn the_sweep_is_given_up_before_the_base() {
     let mut risk = risk_with(&own, &target);
     risk.role = Role::HeadOn;
     risk.own.pose.heading = -FRAC_PI_2;
-    let found = shapes(&own, &target, Some(&risk), HORIZON);
-    let base = shapes(&own, &target, None, HORIZON);
+    let found = ship_domain(&own, &target, Some(&risk), HORIZON);
+    let base = ship_domain(&own, &target, None, HORIZON);
     assert!(found.reduced > 10.0 && base.reduced == 0.0);
     for p in base.with_domain.vertices() {
         assert!(found.with_domain.signed_distance(*p) < 1e-7);
@@ -206,13 +206,13 @@ fn the_sweep_is_given_up_before_the_base() {
 }
 
 #[test]
-fn shapes_have_the_reach_they_are_named_for() {
+fn domains_have_the_reach_they_are_named_for() {
     let own = own_at(Vector::new(5000.0, 0.0), 20.0);
     let around = own.hull.half_diagonal() + 20.0 + 6.0;
     let reaches = |domain| {
         let mut target = track(Vector::zeros(), 0.0, 5.0);
         (target.domain, target.course_spread) = (domain, 0.0);
-        let found = shapes(&own, &target, None, HORIZON);
+        let found = ship_domain(&own, &target, None, HORIZON);
         let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
         let reach = |set: &ConvexPolygon| {
             ways.map(|(x, y)| (set.support(Vector::new(x, y)) - around).round() as i32)
@@ -228,6 +228,6 @@ fn shapes_have_the_reach_they_are_named_for() {
     // starboard is starboard
     let mut target = track(Vector::zeros(), FRAC_PI_2, 5.0);
     target.domain = DomainKind::Paper;
-    let set = shapes(&own, &target, None, HORIZON).with_domain;
+    let set = ship_domain(&own, &target, None, HORIZON).with_domain;
     assert!(set.support(Vector::new(1.0, 0.0)) > set.support(Vector::new(-1.0, 0.0)));
 }

@@ -148,7 +148,7 @@ impl FollowedPlan {
 
 impl AssumedTarget {
     fn new(own: &OwnShip, ship: ShipTrack, horizon: f64) -> Self {
-        let hard = colregs::shapes(own, &ship, None, horizon).hard;
+        let hard = colregs::ship_domain(own, &ship, None, horizon).hard;
         let velocities = ship.outer_velocity_sets(ship.turn_rate, horizon);
         Self {
             hard: Uncertainty::new(hard, velocities),

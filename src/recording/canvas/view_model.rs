@@ -32,7 +32,7 @@ impl<'a> ViewModel<'a> {
             run,
             motion,
             canvas: Canvas::new(&run.scenario, sets, &[motion], end, palette),
-            conduct: run.judged_conduct(),
+            conduct: run.judged_compliance(),
         }
     }
 }

@@ -94,7 +94,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         let mut roles = Lane::default();
         // the recording begins with the plan
         for state in conduct.roles.iter().filter(|state| state.until >= 0.0) {
-            let text = format!("{name}: {}", state.role.name());
+            let text = format!("{name}: {}", state.role.word());
             roles.add(state.from.max(0.0), text, style::target(index));
             roles.end(state.until);
         }

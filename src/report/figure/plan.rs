@@ -121,7 +121,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let targets = targets.map(|((target, obstacle), outcome)| Charted {
         key: match outcome.sets.encounter.role {
             Role::None => format!("{}: set and nominal track", target.name),
-            role => format!("{}, {}: set and nominal track", target.name, role.name()),
+            role => format!("{}, {}: set and nominal track", target.name, role.word()),
         },
         hull: target.ship().map(|ship| ship.hull),
         track: sampled

@@ -1,5 +1,5 @@
-//! Requirements of the collision regulations on a manoeuvre beyond its first alteration, toward targets on
-//! their nominal tracks.
+//! Requirements of the collision regulations on a manoeuvre after its first alteration, toward
+//! targets on their nominal tracks.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
 use crate::colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
@@ -20,9 +20,12 @@ const PASSED_S: f64 = 3.0;
 /// Greatest time between two samples for the closest approach, seconds.
 const NEAREST_S: f64 = 1.0;
 
-/// True when a motion passes every target as the rules ask: not ahead of it, port to port, without
-/// a course to port, without a succession of small turns. `off_route` is the part that begins with
-/// the turn off the route; it is empty where own ship only slows down.
+/// True when a motion passes every target as its role requires ([`Role::duties`]).
+///
+/// It checks crossing ahead, the passing side, forbidden courses and small turns. `off_route` is the
+/// part that begins with the turn off the route. It is empty where own ship only slows down.
+///
+/// [`Role::duties`]: crate::colregs::Role::duties
 pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segment]) -> bool {
     problem.encountered.iter().all(|encountered| {
         let duties = encountered.role.duties();

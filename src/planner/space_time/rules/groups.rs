@@ -27,9 +27,11 @@ enum Together {
     All,
 }
 
-/// The cheapest motion of this family for each conflict of the nominal motion, one after another:
-/// the next manoeuvre begins when own ship is on the route again. Of several targets those are
-/// taken together that leave the fewest rules broken. `None` where no manoeuvre is found.
+/// The cheapest manoeuvre for each conflict of the nominal motion, one after another.
+///
+/// The next manoeuvre begins when own ship is on the route again. Several targets may be passed in
+/// one manoeuvre: the grouping that breaks the fewest rules is taken. `None` where no manoeuvre is
+/// found.
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],

@@ -8,10 +8,11 @@
 //!
 //! A manoeuvre has at most five parameters. For the latest departure that has a clear manoeuvre,
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few
-//! changes of speed by construction. Of a manoeuvre under way only what has not been done is open.
+//! changes of speed by construction. A manoeuvre under way keeps the parameters that are done; the
+//! search chooses the others.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, ON_COURSE, Role, SMALL_TURN,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MayAct, ON_COURSE, SMALL_TURN,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -291,8 +292,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         })
     }
 
-    /// True where own ship starts on the path and could keep the desired speed, but the nominal
-    /// motion does not, because the horizon requires an earlier arrival: that is no hold.
+    /// True where own ship starts on the path and can keep the desired speed, but the nominal motion
+    /// does not keep it, because the horizon requires an earlier arrival. That is no hold.
     fn hurries(&self) -> bool {
         let (own, leg) = (self.problem().own, &self.problem().desired.legs()[0]);
         if self.from > 0.0 {
@@ -330,8 +331,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         None
     }
 
-    /// Latest time of the first alteration that is in ample time for every target, and after which
-    /// a turn can soon be seen, seconds.
+    /// Latest time of the first alteration, seconds. It is in ample time for every target, and a
+    /// turn can soon be seen after it.
     fn ample(&self) -> f64 {
         let (limits, own) = (self.problem().thresholds, self.problem().own);
         let ample = limits.ample_time(own.hull.length);
@@ -358,9 +359,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 .filter_map(|s| contact::first_contact(&p.hulls, s, 0.0));
             let extremis = limits.monitor.manoeuvre * limits.time_factor(own_length);
             let in_extremis = meets.next().map_or(f64::INFINITY, |time| time - extremis);
-            let stage_3 = match e.role {
-                Role::Overtaken => e.tcpa - limits.score.overtaken_lengths * length / e.own.speed,
-                _ => self.comes_within_of(e, limits.score.stage_3_lengths * length),
+            let stage_3 = match e.role.duties().may_act {
+                MayAct::BeforeClosestApproach => {
+                    e.tcpa - limits.score.overtaken_lengths * length / e.own.speed
+                }
+                MayAct::WithinRange => {
+                    self.comes_within_of(e, limits.score.stage_3_lengths * length)
+                }
             };
             stage_3.min(in_extremis)
         });
@@ -426,8 +431,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             return self.ways_on(&begun);
         }
         let ordered = ManoeuvreSpeeds::of(problem);
-        let overtakes = (problem.encountered.iter()).any(|e| e.role == Role::Overtaking);
-        let faster = (overtakes && ordered.fast > ordered.normal).then_some(ordered.fast);
+        let may_speed_up = (problem.encountered.iter()).any(|e| e.role.duties().may_speed_up);
+        let faster = (may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
         let mut all: Vec<FirstAlteration> = Vec::new();
         for speed in std::iter::once(ordered.normal).chain(faster) {
             for side in duty.sides() {
@@ -451,7 +456,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         all
     }
 
-    /// What is still open in a manoeuvre under way: a turn is completed and kept; the parallel
+    /// Choices that a manoeuvre under way still has. A turn is completed and kept. The parallel
     /// course may follow once.
     fn ways_on(&self, begun: &UnderWay) -> Vec<FirstAlteration> {
         let (turn, speed) = (begun.turn, begun.speed);

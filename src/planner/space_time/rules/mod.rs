@@ -1,5 +1,5 @@
-//! Manoeuvres by the collision regulations: the family, its manoeuvres one after another, and what
-//! else a motion has to comply with.
+//! Manoeuvres by the collision regulations: one manoeuvre, several one after another, and the
+//! further requirements on a motion.
 
 mod compliance;
 pub(crate) mod groups;
