@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 use searoom::document::{PLAN_MEBIBYTES, PlanDocument, remember};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
-use searoom::scenario::import::Assumed;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
@@ -124,14 +123,9 @@ impl Previous {
 }
 
 /// Reads, plans and evaluates one scene.
-pub fn attempt(
-    scene: &Scene,
-    shared: &Shared,
-    assumed: &Assumed,
-    previous: Option<&Previous>,
-) -> Attempt {
+pub fn attempt(scene: &Scene, shared: &Shared, previous: Option<&Previous>) -> Attempt {
     let file = &scene.found.file;
-    let work = || match scene.scenario(assumed) {
+    let work = || match scene.scenario() {
         Ok(Made {
             mut scenario,
             mut notes,
