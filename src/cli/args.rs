@@ -19,12 +19,14 @@ use super::output::status::ExitStatus;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
-/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one
-/// that takes a risk or enters a set, or a plan that is rejected, 2 bad input or usage, or a result
-/// that cannot be written, 3 a fault of the program, 130 a simulation ended by Ctrl-C; the highest
-/// of a run wins.
+/// Exit status; the highest of a run wins:
+///   0    every scenario is planned and verified
+///   1    a scenario has no safe plan, or `verify` rejects a plan
+///   2    bad input or usage, or a result that cannot be written
+///   3    a fault of the program
+///   130  a simulation was ended by Ctrl-C
 #[derive(Debug, Parser)]
-#[command(name = "searoom", version, max_term_width = 100)]
+#[command(name = "searoom", version, max_term_width = 100, verbatim_doc_comment)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -36,7 +38,7 @@ pub enum Command {
     Init(InitArgs),
     /// Reads and checks scenario files, plans nothing; reports every fault at once
     Check(CheckArgs),
-    /// Risk, closest approach, velocity obstacle and least alteration, without planning
+    /// Gives risk, closest approach, velocity obstacle and least alteration, without planning
     Assess(AssessArgs),
     /// Plans one scenario, prints the verdict and the costs
     Plan(PlanArgs),
@@ -46,14 +48,13 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Turns files of other formats into scenario files
     Import(ImportArgs),
-    /// Every planner that applies and two baselines on the same scenarios, side by side
+    /// Compares all planners that apply, and two baselines, on the same scenarios
     Compare(CompareArgs),
     /// Shows the contents of a recording
     Inspect(InspectArgs),
-    /// Checks plan documents again from themselves alone, without the planners and their contact
-    /// tests
+    /// Checks plan documents from their own content, without the code of the planners
     Verify(VerifyArgs),
-    /// Prints the completions of a shell, to be read by it
+    /// Prints the completion script of a shell
     Completions(CompletionsArgs),
 }
 
@@ -78,7 +79,7 @@ pub struct AssessArgs {
     /// A scenario file, or a file of another format with one situation
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
-    /// A point at a time: metres, metres, seconds; repeatable
+    /// A point and a time: metres, metres, seconds; repeatable
     #[arg(long, value_name = "EAST,NORTH,T", value_parser = point, allow_hyphen_values = true)]
     pub at: Vec<[f64; 3]>,
     /// Points from a CSV file with the header east_m,north_m,t_s
@@ -90,13 +91,13 @@ pub struct AssessArgs {
     /// Velocities from a CSV file with the header east_mps,north_mps
     #[arg(long, value_name = "FILE.csv")]
     pub velocities: Option<PathBuf>,
-    /// A time, seconds, at which the sets are given; repeatable
+    /// A time in seconds at which to print the sets; repeatable
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     pub section: Vec<f64>,
     /// Use the ship domains instead of the hard sets
     #[arg(long, alias = "shaped")]
     pub domains: bool,
-    /// Draw sections, risk at the times of the sections, and dCPA: a file ending in .svg or .png
+    /// Draw the sections, their risk, and dCPA: a file ending in .svg or .png
     #[arg(long, value_name = "PATH")]
     pub figure: Option<PathBuf>,
     /// Print one JSON document instead of text
@@ -113,17 +114,17 @@ pub struct PlanArgs {
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
-    /// Also find the last time at which a plan clear of every hard set exists (space-time planner)
+    /// Also find the last time at which own ship can still avoid every hard set (space-time planner)
     #[arg(long)]
     pub no_return: bool,
     /// Write the legs: a file ending in .csv, .geojson or .rtz; the last two need an origin
     #[arg(long, value_name = "FILE")]
     pub route: Option<PathBuf>,
-    /// Go on from a plan that own ship follows, as `plan --json` wrote it: with its roles, its
-    /// manoeuvre and its remainder
+    /// The plan that own ship follows now, as `plan --json` wrote it. The new plan keeps its roles
+    /// and its manoeuvre
     #[arg(long, value_name = "PLAN.json")]
     pub previous: Option<PathBuf>,
-    /// Plan without the previous plan where it does not fit
+    /// Ignore the previous plan if it does not fit
     #[arg(long, requires = "previous")]
     pub ignore_previous: bool,
     // the last, because its heading holds for all that follows
@@ -133,8 +134,8 @@ pub struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub struct SuiteArgs {
-    /// Scenario files, files of other formats, or folders that are searched for .toml, .json and
-    /// .xml files (hidden ones are left out)
+    /// Scenario files, files of other formats, or folders. A folder is searched for .toml, .json
+    /// and .xml files, except hidden ones
     #[arg(value_name = "PATH", default_value = "scenarios")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -142,7 +143,7 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
-    /// Plan nothing: report where ships would meet, and faults of the scenarios
+    /// Plan nothing: report where ships would meet, and errors in the scenarios
     #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds", "strict"])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
@@ -162,10 +163,10 @@ pub struct SimulateArgs {
     /// Seed of the random numbers instead of the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Seconds to sail instead of the scenario's
+    /// Seconds to simulate instead of the scenario's
     #[arg(long, value_name = "S", value_parser = duration)]
     pub duration_s: Option<f64>,
-    /// A plan that takes longer than the delay comes too late; the result depends on the machine
+    /// Discard a plan that takes longer than the delay; the result then depends on the machine
     #[arg(long)]
     pub measured_delay: bool,
     /// Write the document of every plan into this folder
@@ -182,7 +183,7 @@ pub struct ImportArgs {
     /// Files of other formats, or folders of them
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Where the scenario files go; the folder is made
+    /// Folder for the scenario files; created if it does not exist
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -202,7 +203,7 @@ pub struct CompareArgs {
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
     pub asked: Asked,
-    /// Risks that may be accepted instead of the scenario's, each 0 to below 1: several are a sweep
+    /// Accepted risks instead of the scenario's, each from 0 to below 1; several give a sweep
     #[arg(long, value_name = "R,R,..", value_parser = max_risk, value_delimiter = ',')]
     pub max_risk: Vec<f64>,
     /// Write the rows as CSV
@@ -222,7 +223,7 @@ pub struct InspectArgs {
     /// Print the plan document in it, as `plan --json` wrote it
     #[arg(long, conflicts_with_all = ["csv", "json"])]
     pub plan: bool,
-    /// Print the rows of an entity as CSV: a column per curve, other components as JSON
+    /// Print the rows of an entity as CSV: one column per curve, other components as JSON
     #[arg(long, value_name = "ENTITY", conflicts_with = "json")]
     pub csv: Option<String>,
     /// Print one JSON document instead of text
@@ -236,7 +237,7 @@ pub struct VerifyArgs {
     /// folders of them
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
-    /// Seconds for each document: what is not proven by then is not verified
+    /// Seconds for each document; a check that takes longer counts as not verified
     #[arg(long, value_name = "S", default_value = "10", value_parser = budget, allow_negative_numbers = true)]
     pub budget_s: Duration,
     /// Print one JSON document instead of text
@@ -246,7 +247,7 @@ pub struct VerifyArgs {
 
 #[derive(Debug, Args)]
 pub struct CompletionsArgs {
-    /// Which shell
+    /// Name of the shell
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: clap_complete::Shell,
 }
@@ -264,8 +265,8 @@ pub struct Asked {
     /// Search instead of the scenario's: a-star, dijkstra, thorough (several targets: slower, cheaper)
     #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
     pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and
-    /// filters)
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (domains
+    /// and rules)
     #[arg(long, value_name = "C", value_parser = |found: &str| word(Compliance::WORDS, found))]
     pub compliance: Option<Compliance>,
     /// Thresholds of rule compliance, without effect on the plan: searoom, dnv-trafficgen,
@@ -297,10 +298,10 @@ pub struct Written {
 pub struct Shared {
     #[command(flatten)]
     pub asked: Asked,
-    /// Risk that the plan may accept instead of the scenario's: 0 to below 1
+    /// Accepted risk instead of the scenario's: from 0 to below 1
     #[arg(long, value_name = "R", value_parser = max_risk)]
     pub max_risk: Option<f64>,
-    /// Exit status 1 also where a plan breaks a rule or gives the rules up
+    /// Exit status 1 also if a plan breaks a rule or was made without the rules
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
@@ -309,7 +310,7 @@ pub struct Shared {
 
 /// Values that files of other formats do not give.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Foreign files (of no effect on scenario files)")]
+#[command(next_help_heading = "Foreign files (no effect on scenario files)")]
 pub struct AssumedArgs {
     /// Half-width of every target's speed, m/s [default: 0.5]
     #[arg(long, value_name = "MPS", value_parser = assumption(Assumption::SpeedSpread))]
@@ -317,18 +318,16 @@ pub struct AssumedArgs {
     /// Half-width of every target's course, degrees [default: 5]
     #[arg(long, value_name = "DEG", value_parser = assumption(Assumption::CourseSpread))]
     pub course_spread_deg: Option<f64>,
-    /// Kept between the hulls, metres [default: own length]
+    /// Distance kept between the hulls, metres [default: own length]
     #[arg(long, value_name = "M", visible_alias = "margin-m", value_parser = assumption(Assumption::SafetyMargin))]
     pub safety_margin_m: Option<f64>,
-    /// Length of ships without one, metres [default: 100 where the format has no place for it,
-    /// otherwise a fault]
+    /// Length of ships without one, metres [default: 100 if the format has none, else required]
     #[arg(long, value_name = "M", value_parser = assumption(Assumption::Length))]
     pub length_m: Option<f64>,
-    /// Beam of ships without one, metres [default: 20 where the format has no place for it,
-    /// otherwise a fault]
+    /// Beam of ships without one, metres [default: 20 if the format has none, else required]
     #[arg(long, value_name = "M", value_parser = assumption(Assumption::Beam))]
     pub beam_m: Option<f64>,
-    /// Import Imazu's cases also in published variants
+    /// Also import the published variants of Imazu's cases
     #[arg(long)]
     pub variants: bool,
 }

@@ -36,9 +36,8 @@ pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> 
 /// Reads all requested files, and returns all errors.
 fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
-    let assumed = args.assumed.assumed();
-    let scenario = open_one(&args.scenario, &assumed, output)
-        .and_then(|scene| scene.scenario(&assumed).map_err(|error| error.to_string()))
+    let scenario = open_one(&args.scenario, &args.assumed, output)
+        .and_then(|scene| scene.scenario().map_err(|error| error.to_string()))
         .map_err(|error| errors.push(error));
     let mut points = args.at.clone();
     if let Some(file) = &args.points {

@@ -8,10 +8,9 @@ use super::output::status::ExitStatus;
 /// Prints one line per valid scenario with its assumptions, and every fault of the others.
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
-    let assumed = args.assumed.assumed();
-    for scene in scenes::open(&args.paths, &assumed, output) {
+    for scene in scenes::open(&args.paths, &args.assumed, output) {
         let failed = match scene {
-            Ok(scene) => match scene.scenario(&assumed) {
+            Ok(scene) => match scene.scenario() {
                 Ok(made) => {
                     status = status.max(output.result(&format!("{}: ok", scene.label())));
                     for note in made.notes {

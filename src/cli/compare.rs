@@ -10,7 +10,6 @@ use searoom::report::figure::comparison_figure;
 use searoom::report::page::HtmlReport;
 use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
 use searoom::scenario::Scenario;
-use searoom::scenario::import::Assumed;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
@@ -40,8 +39,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         .figure
         .as_deref()
         .map_or(Ok(()), prepare_figure)?;
-    let assumed = args.assumed.assumed();
-    let all = scenes::open(&args.paths, &assumed, output);
+    let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
@@ -49,7 +47,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     };
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let asked = all.into_iter().map(|scene| match scene {
-        Ok(scene) => ask(&scene, args, &assumed),
+        Ok(scene) => ask(&scene, args),
         Err(unread) => Compared::refused(unread.file, unread.error),
     });
     let mut compared: Vec<Compared> = asked.collect();
@@ -88,9 +86,9 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     Ok(status.max(written).max(show(args, documents, output)))
 }
 
-fn ask(scene: &Scene, args: &CompareArgs, assumed: &Assumed) -> Compared {
+fn ask(scene: &Scene, args: &CompareArgs) -> Compared {
     let file = scene.found.file.clone();
-    let mut scenario = match guarded(|| scene.scenario(assumed)) {
+    let mut scenario = match guarded(|| scene.scenario()) {
         Ok(Ok(Made { scenario, .. })) => scenario,
         Ok(Err(error)) => return Compared::refused(file, error.to_string()),
         Err(fault) => {

@@ -1,15 +1,12 @@
 //! `searoom import` and `searoom init`: scenario files from other formats, and one to begin with.
 
-use std::fs;
-
-use anyhow::Context;
 use searoom::report::write_atomically;
-use searoom::scenario::import::Assumed;
 
 use super::args::{ImportArgs, InitArgs};
 use super::input::files::refuse_clashes;
 use super::input::scenes::{self, Scene};
 use super::output::Output;
+use super::output::products::make_folder;
 use super::output::status::ExitStatus;
 
 /// Two ships in sight, every line explained.
@@ -29,15 +26,13 @@ pub fn init(args: &InitArgs, output: &Output) -> ExitStatus {
 
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {
-    let assumed = args.assumed.assumed();
-    let scenes = scenes::open(&args.files, &assumed, output);
+    let scenes = scenes::open(&args.files, &args.assumed, output);
     refuse_clashes(&scenes::found(&scenes))?;
-    fs::create_dir_all(&args.out)
-        .with_context(|| format!("{}: the folder cannot be made", args.out.display()))?;
+    make_folder(&args.out)?;
     let mut status = ExitStatus::Good;
     for scene in scenes {
         let reached = match scene {
-            Ok(scene) => one(&scene, args, &assumed, output),
+            Ok(scene) => one(&scene, args, output),
             Err(unread) => output.refuse(&unread.error),
         };
         status = status.max(reached);
@@ -45,8 +40,8 @@ pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> 
     Ok(status)
 }
 
-fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> ExitStatus {
-    let imported = match scene.imported(assumed) {
+fn one(scene: &Scene, args: &ImportArgs, output: &Output) -> ExitStatus {
+    let imported = match scene.imported() {
         None => {
             output.note(&format_args!(
                 "{}: a scenario file already, left out",

@@ -2,7 +2,6 @@
 
 use searoom::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
-use searoom::scenario::import::Assumed;
 use searoom::study::lint::lint;
 
 use super::args::SuiteArgs;
@@ -13,17 +12,12 @@ use super::output::status::ExitStatus;
 use super::runner::guarded;
 
 /// Checks every scene; good unless one is unreadable.
-pub fn suite(
-    scenes: Vec<Result<Scene, Unread>>,
-    args: &SuiteArgs,
-    assumed: &Assumed,
-    output: &Output,
-) -> ExitStatus {
+pub fn suite(scenes: Vec<Result<Scene, Unread>>, args: &SuiteArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     for scene in scenes {
         let checked = match scene {
-            Ok(scene) => guarded(|| check(&scene, assumed)).unwrap_or_else(|fault| {
+            Ok(scene) => guarded(|| check(&scene)).unwrap_or_else(|fault| {
                 status = status.max(ExitStatus::InternalFault);
                 Err(unread(&scene, fault))
             }),
@@ -48,8 +42,8 @@ fn unread(scene: &Scene, error: String) -> Unread {
     }
 }
 
-fn check(scene: &Scene, assumed: &Assumed) -> Result<LintScenarioDocument, Unread> {
-    let made = scene.scenario(assumed);
+fn check(scene: &Scene) -> Result<LintScenarioDocument, Unread> {
+    let made = scene.scenario();
     let made = made.map_err(|error| unread(scene, error.to_string()))?;
     let file = scene.found.file.display().to_string();
     Ok(lint(file, &made.scenario, &scene.declared(), made.notes))

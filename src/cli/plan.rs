@@ -21,59 +21,57 @@ use super::runner::{Attempt, Previous, attempt};
 
 /// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
-    let assumed = args.assumed.assumed();
-    let scene = scenes::open_one(&args.scenario, &assumed, output).map_err(anyhow::Error::msg)?;
+    let scene = scenes::open_one(&args.scenario, &args.assumed, output);
+    let scene = scene.map_err(anyhow::Error::msg)?;
     let found = std::slice::from_ref(&scene.found);
     let products = Products::prepare(found, args.shared.written.wanted())?;
     let route = args.route.as_deref().map(Route::at).transpose()?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
-    Ok(
-        match attempt(&scene, &args.shared, &assumed, previous.as_ref()) {
-            Attempt::Run(run, notes) => {
-                for note in notes {
-                    output.note(&note);
-                }
-                let no_return = args.no_return.then(|| run.no_return()).flatten();
-                if args.no_return && no_return.is_none() {
-                    output.note(&no_return_reason(&run));
-                }
-                let document = PlanDocument {
-                    time_of_no_return_s: no_return.map(NoReturn::time),
-                    ..PlanDocument::of(&run)
-                };
-                let shown = output.show(args.shared.written.json, &document, || {
-                    let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
-                    let text = plan_document_text(&document);
-                    let legs = legs_text(&document);
-                    format!("{text}{}\n{legs}", line.unwrap_or_default())
-                });
-                let written = output.written(write(&products, &scene.found, &run, &document));
-                let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
-                let routed = match routed {
-                    Ok(()) => ExitStatus::Good,
-                    Err(error) => {
-                        output.error(&format_args!("{error:#}"));
-                        match error.downcast_ref() {
-                            Some(RouteError::NoPlan | RouteError::NotSafe) => ExitStatus::NoPlan,
-                            _ => ExitStatus::BadInput,
-                        }
-                    }
-                };
-                products.announce(written, output);
-                if let (ExitStatus::Good, Some(file)) = (routed, &args.route) {
-                    output.wrote(file);
-                }
-                shown
-                    .max(written)
-                    .max(routed)
-                    .max(args.shared.status(&run, &document))
+    Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
+        Attempt::Run(run, notes) => {
+            for note in notes {
+                output.note(&note);
             }
-            Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
-            Attempt::Fault(fault) => output.fault(&fault),
-        },
-    )
+            let no_return = args.no_return.then(|| run.no_return()).flatten();
+            if args.no_return && no_return.is_none() {
+                output.note(&no_return_reason(&run));
+            }
+            let document = PlanDocument {
+                time_of_no_return_s: no_return.map(NoReturn::time),
+                ..PlanDocument::of(&run)
+            };
+            let shown = output.show(args.shared.written.json, &document, || {
+                let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
+                let text = plan_document_text(&document);
+                let legs = legs_text(&document);
+                format!("{text}{}\n{legs}", line.unwrap_or_default())
+            });
+            let written = output.written(write(&products, &scene.found, &run, &document));
+            let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
+            let routed = match routed {
+                Ok(()) => ExitStatus::Good,
+                Err(error) => {
+                    output.error(&format_args!("{error:#}"));
+                    match error.downcast_ref() {
+                        Some(RouteError::NoPlan | RouteError::NotSafe) => ExitStatus::NoPlan,
+                        _ => ExitStatus::BadInput,
+                    }
+                }
+            };
+            products.announce(written, output);
+            if let (ExitStatus::Good, Some(file)) = (routed, &args.route) {
+                output.wrote(file);
+            }
+            shown
+                .max(written)
+                .max(routed)
+                .max(args.shared.status(&run, &document))
+        }
+        Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
+        Attempt::Fault(fault) => output.fault(&fault),
+    })
 }
 
 /// A route that is asked for.

@@ -11,7 +11,6 @@ use searoom::document::{PLAN_MEBIBYTES, PlanDocument};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::replanning::remember;
-use searoom::scenario::import::Assumed;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
@@ -125,14 +124,9 @@ impl Previous {
 }
 
 /// Reads, plans and evaluates one scene.
-pub fn attempt(
-    scene: &Scene,
-    shared: &Shared,
-    assumed: &Assumed,
-    previous: Option<&Previous>,
-) -> Attempt {
+pub fn attempt(scene: &Scene, shared: &Shared, previous: Option<&Previous>) -> Attempt {
     let file = &scene.found.file;
-    let work = || match scene.scenario(assumed) {
+    let work = || match scene.scenario() {
         Ok(Made {
             mut scenario,
             mut notes,

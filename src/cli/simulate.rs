@@ -9,12 +9,12 @@ use searoom::document::{
 };
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
-use searoom::scenario::{Fault, Scenario, ScenarioError};
+use searoom::scenario::{Fault, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
 use super::input::files::shown;
-use super::input::scenes::{self, Scene};
+use super::input::scenes::{self, Made, Scene};
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
@@ -23,8 +23,7 @@ use super::runner::guarded;
 /// Sails every file, one after another; a broken one does not stop the others.
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let interrupted = catch_interrupt(output);
-    let assumed = args.assumed.assumed();
-    let scenes = scenes::open(&args.paths, &assumed, output);
+    let scenes = scenes::open(&args.paths, &args.assumed, output);
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.written.wanted()
@@ -37,15 +36,24 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let several = scenes.len() > 1;
     let mut all_written = ExitStatus::Good;
     for scene in scenes {
-        let sailed = match &scene {
-            Ok(scene) => {
-                guarded(|| sail(scene, args, &interrupted, &products, &mut report, output))
-            }
-            Err(unread) => Ok(Err(anyhow::anyhow!("{}", unread.error))),
-        };
-        let file = match &scene {
-            Ok(scene) => &scene.found.file,
-            Err(unread) => &unread.file,
+        let (file, sailed) = match &scene {
+            Ok(scene) => (
+                &scene.found.file,
+                guarded(|| match scene.scenario() {
+                    Ok(made) => sail(
+                        scene,
+                        made,
+                        args,
+                        &interrupted,
+                        &products,
+                        &mut report,
+                        output,
+                    )
+                    .map_err(|error| (NOT_APPLICABLE, format!("{error:#}"))),
+                    Err(error) => Err((UNREADABLE, error.to_string())),
+                }),
+            ),
+            Err(unread) => (&unread.file, Ok(Err((UNREADABLE, unread.error.clone())))),
         };
         status = status.max(match sailed {
             Ok(Ok((document, written))) => {
@@ -63,13 +71,8 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 all_written = all_written.max(written);
                 shown.max(written).max(reached)
             }
-            Ok(Err(error)) => {
+            Ok(Err((outcome, error))) => {
                 failed += 1;
-                let outcome = match &scene {
-                    Ok(scene) if scene.scenario(&assumed).is_ok() => NOT_APPLICABLE,
-                    _ => UNREADABLE,
-                };
-                let error = format!("{error:#}");
                 report_failure(&mut report, file, outcome, &error);
                 output.refuse(&error)
             }
@@ -126,6 +129,7 @@ fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
 
 fn sail(
     scene: &Scene,
+    made: Made,
     args: &SimulateArgs,
     interrupted: &AtomicBool,
     products: &Products,
@@ -133,11 +137,13 @@ fn sail(
     output: &Output,
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
-    let made = scene.scenario(&args.assumed.assumed())?;
     for note in &made.notes {
         output.note(note);
     }
-    let scenario = changed(made.scenario, args);
+    let mut scenario = made.scenario;
+    let settings = &mut scenario.simulation;
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    settings.duration = args.duration_s.or(settings.duration);
     let refused = |fault: Fault| ScenarioError::faults(file, vec![fault]);
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
@@ -159,14 +165,6 @@ fn sail(
         report.add_simulation(&subject, &scenario, &document);
     }
     Ok((document, output.written(written)))
-}
-
-/// The scenario with the options of the command line.
-fn changed(mut scenario: Scenario, args: &SimulateArgs) -> Scenario {
-    let settings = &mut scenario.simulation;
-    settings.seed = args.seed.unwrap_or(settings.seed);
-    settings.duration = args.duration_s.or(settings.duration);
-    scenario
 }
 
 fn write_plans(folder: &Path, stem: &str, simulation: &Simulation) -> anyhow::Result<()> {

@@ -7,7 +7,6 @@ use searoom::document::{
 };
 use searoom::report::page::HtmlReport;
 use searoom::report::{counted, printable, suite_table};
-use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
 use super::input::files::shown;
@@ -57,10 +56,9 @@ impl Tally {
 
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
-    let assumed = args.assumed.assumed();
-    let all = scenes::open(&args.paths, &assumed, output);
+    let all = scenes::open(&args.paths, &args.assumed, output);
     if args.lint {
-        return Ok(lint::suite(all, args, &assumed, output));
+        return Ok(lint::suite(all, args, output));
     }
     let wanted = Wanted {
         plans: args.plans.as_deref(),
@@ -73,11 +71,9 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         match entry {
             Ok(scene) => {
                 bar.set_message(printable(&scene.label()));
-                one(&scene, args, &assumed, &products, &mut tally);
+                one(&scene, args, &products, &mut tally);
             }
-            Err(unread) => {
-                tally.failed(&unread.file, UNREADABLE, unread.error);
-            }
+            Err(unread) => tally.failed(&unread.file, UNREADABLE, unread.error),
         }
         bar.inc(1);
     }
@@ -113,9 +109,9 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     Ok(tally.status.max(written).max(shown))
 }
 
-fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
+fn one(scene: &Scene, args: &SuiteArgs, products: &Products, tally: &mut Tally) {
     let file = scene.found.file.as_path();
-    match attempt(scene, &args.shared, assumed, None) {
+    match attempt(scene, &args.shared, None) {
         Attempt::Run(run, notes) => {
             let plan = PlanDocument::of(&run);
             let name = file.display().to_string();

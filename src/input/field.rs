@@ -138,19 +138,15 @@ impl<'a> Field<'a> {
 
     /// Notes a fault here.
     pub(crate) fn fault(&self, found: impl Display, allowed: impl Display) {
-        self.faults.note(Fault {
-            line: self.node.line,
-            ..Fault::new(self.path.as_str(), found, allowed)
-        });
+        let fault = Fault::new(self.path.as_str(), found, allowed);
+        self.faults.note(fault.at_line(self.node.line));
     }
 
     /// Notes a fault at a key of this table.
     pub(crate) fn fault_at(&self, key: &str, found: impl Display, allowed: impl Display) {
         let node = self.node.get(key).unwrap_or(self.node);
-        self.faults.note(Fault {
-            line: node.line,
-            ..Fault::new(self.path_of(key), found, allowed)
-        });
+        let fault = Fault::new(self.path_of(key), found, allowed);
+        self.faults.note(fault.at_line(node.line));
     }
 
     /// Notes a fault here, without which there would be a value.
@@ -383,7 +379,7 @@ pub(crate) fn every<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> 
 }
 
 /// A text in quotation marks, cut after 40 characters.
-pub(crate) fn abbreviated(text: &str) -> String {
+pub fn abbreviated(text: &str) -> String {
     const SHOWN: usize = 40;
     let short: String = text.chars().take(SHOWN).collect();
     let more = if text.chars().count() > SHOWN {

@@ -7,7 +7,8 @@ mod field;
 mod table;
 mod value;
 
-pub(crate) use field::{Field, Range, abbreviated, every};
+pub use field::abbreviated;
+pub(crate) use field::{Field, Range, every};
 pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 
@@ -40,6 +41,15 @@ impl Fault {
             found: found.to_string(),
             allowed: allowed.to_string(),
             line: None,
+        }
+    }
+
+    /// This fault at a line of the file, where one is known.
+    #[must_use]
+    pub fn at_line(self, line: impl Into<Option<usize>>) -> Self {
+        Self {
+            line: line.into(),
+            ..self
         }
     }
 }
@@ -144,14 +154,11 @@ pub fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, Inpu
         file: file.to_owned(),
         source,
     };
-    let whole = |found: String, allowed: String| {
-        InputError::faults(file, vec![Fault::new("", found, allowed)])
-    };
+    let whole = |fault: Fault| InputError::faults(file, vec![fault]);
     let too_large = || {
-        whole(
-            format!("more than {mebibytes} MiB"),
-            format!("{kind} of at most {mebibytes} MiB"),
-        )
+        let found = format_args!("more than {mebibytes} MiB");
+        let allowed = format_args!("{kind} of at most {mebibytes} MiB");
+        whole(Fault::new("", found, allowed))
     };
     let most = mebibytes * MEBIBYTE;
     // opening a pipe would block, a device may have no end
@@ -172,8 +179,8 @@ pub fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, Inpu
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let found = format!("bytes that are not text at byte {at}");
-        whole(found, "UTF-8 text".to_owned())
+        let found = format_args!("bytes that are not text at byte {at}");
+        whole(Fault::new("", found, "UTF-8 text"))
     })
 }
 
@@ -196,10 +203,7 @@ mod tests {
     fn a_file_of_nothing_but_faults_is_not_listed_to_its_end() {
         let noted = Faults::default();
         for line in 1..=2000 {
-            noted.note(Fault {
-                line: Some(line),
-                ..Fault::new("speed_mps", "-1", "at least 0")
-            });
+            noted.note(Fault::new("speed_mps", "-1", "at least 0").at_line(line));
         }
         let faults = noted.take();
         assert_eq!(faults.len(), 1001);

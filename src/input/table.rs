@@ -75,12 +75,8 @@ impl<'a> Table<'a> {
 
     /// The value of a key without which the others cannot be read: it is a fault at once.
     pub(crate) fn require_first(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
-        let field = self.take(key);
-        if field.is_none() {
-            let allowed = format_args!("{allowed}; it is required");
-            self.field.fault_at(key, "nothing", allowed);
-        }
-        field
+        self.has(key);
+        self.field.require(key, allowed)
     }
 
     /// The table at a key that must be there.
@@ -106,6 +102,11 @@ impl<'a> Table<'a> {
         read: impl FnOnce(&Field<'a>) -> Option<T>,
     ) -> Option<T> {
         self.take(key).map_or(Some(default), |field| read(&field))
+    }
+
+    /// A number that may be absent; the outer `None` is a fault.
+    pub(crate) fn optional_number(&mut self, key: &str, range: Range) -> Option<Option<f64>> {
+        self.read_or(key, None, |field| field.number(range).map(Some))
     }
 
     /// A number, or `default` where the key is absent; `None` for a fault.

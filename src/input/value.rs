@@ -111,10 +111,7 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
         Some(there) => format!("{}, in {}", first.message(), abbreviated(there.trim())),
         None => first.message().to_owned(),
     };
-    faults.note(Fault {
-        line,
-        ..Fault::new("", found, allowed)
-    });
+    faults.note(Fault::new("", found, allowed).at_line(line));
     None
 }
 
@@ -151,9 +148,9 @@ pub(crate) fn from_json(text: &str) -> Result<Node, Fault> {
     let value = JsonNode.deserialize(&mut reader);
     value
         .and_then(|value| reader.end().map(|()| value))
-        .map_err(|error| Fault {
-            line: (error.line() > 0).then_some(error.line()),
-            ..Fault::new("", error, "JSON without errors")
+        .map_err(|error| {
+            let line = (error.line() > 0).then_some(error.line());
+            Fault::new("", error, "JSON without errors").at_line(line)
         })
 }
 

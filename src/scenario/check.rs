@@ -32,9 +32,9 @@ pub(super) fn parse(text: &str, folder: &Path, faults: &Faults) -> Option<Scenar
     let root: Node = from_toml(text, faults)?;
     let table = Field::root(&root, faults).table("a table")?;
     let scenario = scenario(table, folder)?;
-    for mut fault in scenario.unfit() {
-        fault.line = root.line_at(&fault.path);
-        faults.note(fault);
+    for fault in scenario.unfit() {
+        let line = root.line_at(&fault.path);
+        faults.note(fault.at_line(line));
     }
     Some(scenario)
 }
@@ -78,13 +78,8 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     }
     plane.finish(&mut root);
     root.finish();
-    let (
-        Mission {
-            desired,
-            alternatives,
-        },
-        own_ship,
-    ) = (mission?, own_ship?);
+    let (mission, own_ship) = (mission?, own_ship?);
+    let desired = mission.desired;
     let (targets, known): (Vec<Target>, Vec<TargetMemory>) = targets?.into_iter().unzip();
     let known_any = known.iter().any(|known| known.role.is_some());
     let mean_speed = desired.length() / desired.duration();
@@ -103,7 +98,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
         desired,
-        alternatives,
+        alternatives: mission.alternatives,
         targets,
         planner: kind,
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),

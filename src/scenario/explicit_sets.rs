@@ -10,8 +10,8 @@ use crate::target::{TimedVelocitySet, Uncertainty};
 /// Allowed values of the keys of a tracked ship beside explicit sets.
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
-/// Keys of a tracked ship, speeds aside.
-const SHIP_KEYS: [&str; 9] = [
+/// Keys of a tracked ship.
+const SHIP_KEYS: [&str; 13] = [
     "position",
     "course_deg",
     "length_m",
@@ -21,6 +21,10 @@ const SHIP_KEYS: [&str; 9] = [
     "starboard_turn_deg",
     "turn_rate_deg_per_s",
     "domain",
+    "speed_mps",
+    "speed_kn",
+    "speed_spread_mps",
+    "speed_spread_kn",
 ];
 
 /// The keys of an explicit set.
@@ -63,14 +67,6 @@ const VELOCITY: SetKeys = SetKeys {
 /// The sets of a target that has at least one of the keys of explicit sets.
 pub(super) fn sets(table: &mut Table) -> Option<Uncertainty> {
     for key in SHIP_KEYS {
-        table.forbid(key, BESIDE_SETS);
-    }
-    for key in [
-        "speed_mps",
-        "speed_kn",
-        "speed_spread_mps",
-        "speed_spread_kn",
-    ] {
         table.forbid(key, BESIDE_SETS);
     }
     let initial = table

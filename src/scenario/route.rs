@@ -139,6 +139,7 @@ fn in_mps(element: &Xml, attribute: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::rows;
 
     /// As a navigation system writes it; changes are `old => new`, and what the fault names.
     const ROUTE: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -170,48 +171,27 @@ mod tests {
         assert_eq!(route.speeds, knots);
     }
 
+    /// A part of the route, its replacement, and the line and the text of the fault.
+    const MISTAKES: &str = r#"
+        lat="59.02" | lat="95" | 7 | waypoint[3]/position: found
+        lon="10.50" | | 6 | no attribute lon
+        speed="6" | speed="-6" | 13 | scheduleElement: found "-6"
+        Max="10" | Max="fast" | 7 | waypoint[3]/leg: found "fast"
+        etd="2026-05-01T08:00:00Z" | stay="00:10:00" | 12 | a stay of "00:10:00"
+        etd="2026-05-01T08:00:00Z" | stay="long" | 12 | a stay of "long"
+        </waypoints> | | 18 | expected 'waypoints' tag
+        waypoints> | points> | 2 | route: found no waypoints
+        id="9" | id="3" | 8 | the id of a waypoint before
+        lat="59.00" | lat=" 99 " | 6 | position: found
+        route | track | 2 | the element "track"
+    "#;
+
     #[test]
     fn faults_name_the_element_and_its_line() {
-        for (old, new, line, named) in [
-            (
-                "lat=\"59.02\"",
-                "lat=\"95\"",
-                7,
-                "waypoint[3]/position: found",
-            ),
-            ("lon=\"10.50\"", "", 6, "no attribute lon"),
-            (
-                "speed=\"6\"",
-                "speed=\"-6\"",
-                13,
-                "scheduleElement: found \"-6\"",
-            ),
-            (
-                "Max=\"10\"",
-                "Max=\"fast\"",
-                7,
-                "waypoint[3]/leg: found \"fast\"",
-            ),
-            (
-                "etd=\"2026-05-01T08:00:00Z\"",
-                "stay=\"00:10:00\"",
-                12,
-                "a stay of \"00:10:00\"",
-            ),
-            (
-                "etd=\"2026-05-01T08:00:00Z\"",
-                "stay=\"long\"",
-                12,
-                "a stay of \"long\"",
-            ),
-            ("</waypoints>", "", 18, "expected 'waypoints' tag"),
-            ("waypoints>", "points>", 2, "route: found no waypoints"),
-            ("id=\"9\"", "id=\"3\"", 8, "the id of a waypoint before"),
-            ("lat=\"59.00\"", "lat=\" 99 \"", 6, "position: found"),
-            ("route", "track", 2, "the element \"track\""),
-        ] {
+        for [old, new, line, named] in rows(MISTAKES) {
+            assert!(ROUTE.contains(old), "{old}");
             let faults = Route::parse(&ROUTE.replace(old, new)).expect_err(new);
-            assert_eq!(faults[0].line, Some(line), "{new}: {faults:?}");
+            assert_eq!(faults[0].line, line.parse().ok(), "{new}: {faults:?}");
             assert!(faults[0].to_string().contains(named), "{}", faults[0]);
         }
         let (all, rest) = ROUTE

@@ -294,7 +294,6 @@ const DETECTION: Range = Range::between(0.01, 1.0);
 const PROBABILITY: Range = Range::between(0.0, 1.0);
 const FACTOR: Range = Range::between(0.0, 10.0);
 const TURN_DEG: Range = Range::within(180.0);
-const TRACK_POINTS: usize = 20_000;
 const SILENT_TIMES: usize = 1000;
 
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
@@ -318,9 +317,7 @@ pub(super) fn simulation(
         field.choice(&[("period", false), ("events", true)])
     });
     let delay = table.number_or("delay_s", DELAY, standard.delay);
-    let duration = table.read_or("duration_s", None, |field| {
-        field.number(limits::DURATION).map(Some)
-    });
+    let duration = table.optional_number("duration_s", limits::DURATION);
     let seed = table.read_or("seed", standard.seed, |field| {
         field.whole_number(SEED).map(|seed| seed as u64)
     });
@@ -434,20 +431,20 @@ fn sensor(field: &Field) -> Option<Sensor> {
         let class = table.choice("class", &[("a", true), ("b", false)]);
         let class_a = class.unwrap_or(true);
         kind = SensorKind::Ais { class_a };
-        interval = table.read_or("interval_s", None, |field| {
-            field.number(TIME_CONSTANT).map(Some)
-        });
+        interval = table.optional_number("interval_s", TIME_CONSTANT);
     } else {
         interval = table.number_or("interval_s", TIME_CONSTANT, 3.0).map(Some);
     }
     let standard = match kind {
-        SensorKind::Radar => (20.0, 0.0, 0.0),
-        _ => (10.0, 2.0, 0.3),
-    };
-    let standard = Noise {
-        position: standard.0,
-        course: radians_from_deg(standard.1),
-        speed: standard.2,
+        SensorKind::Radar => Noise {
+            position: 20.0,
+            ..Noise::NONE
+        },
+        _ => Noise {
+            position: 10.0,
+            course: radians_from_deg(2.0),
+            speed: 0.3,
+        },
     };
     let found = noise(&mut table, standard);
     let assumed = match table.take("assumed") {
@@ -548,7 +545,7 @@ fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
         }),
         ("track", |table, plane| {
             let field = table.require_first("points", "a list of tables with t_s and position")?;
-            let points = field.list(1..=TRACK_POINTS, "tables with t_s and position")?;
+            let points = field.list(1..=limits::TRACK_POINTS, "tables with t_s and position")?;
             track(&points, plane).map(Behaviour::Track)
         }),
         ("gives-way", |table, _| {

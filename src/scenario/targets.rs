@@ -43,14 +43,14 @@ pub(super) fn targets(
                 "a name that no other target has",
             );
         }
-        let known = known(&mut table, plane);
-        let ship = match known.as_ref().map(|known| &known.motion) {
-            Some(Motion::Ship(ship)) => Some(ship),
+        let motion = motion(&mut table, plane);
+        let ship = match &motion {
+            Some((Motion::Ship(ship), _)) => Some(ship),
             _ => None,
         };
         let role = role(&mut table, time, own, ship);
         let simulated = match ship {
-            None if known.is_some() => {
+            None if motion.is_some() => {
                 for key in ["behaviour", "not_reported"] {
                     table.forbid(key, "nothing: only a tracked ship has one");
                 }
@@ -59,12 +59,12 @@ pub(super) fn targets(
             _ => simulated(&mut table, plane),
         };
         table.finish();
-        let found = text.zip(known).zip(role).zip(simulated);
-        targets.push(found.map(|(((name, known), role), simulated)| {
+        let found = text.zip(motion).zip(role).zip(simulated);
+        targets.push(found.map(|(((name, motion), role), simulated)| {
             let target = Target {
                 name: name.to_owned(),
-                motion: known.motion,
-                representation: known.representation,
+                motion: motion.0,
+                representation: motion.1,
             };
             let memory = TargetMemory {
                 role,
@@ -95,16 +95,13 @@ fn role(
     let since = table
         .take(MORE[0])
         .map_or(time, |field| field.number(limits::until(time?)));
-    let course = match table.take(MORE[1]) {
-        Some(field) => Some(field.number(limits::COURSE).map(heading_from_course_deg)?),
-        None => None,
-    };
+    let course = table.optional_number(MORE[1], limits::COURSE)?;
     let role = field.choice(&Role::with_rule().collect::<Vec<_>>())?;
     let Some(ship) = ship else {
         return field.refuse("nothing: only a tracked ship has a role");
     };
     let (own, since) = (own?, since? - time?);
-    let heading = course.unwrap_or(own.pose.heading);
+    let heading = course.map_or(own.pose.heading, heading_from_course_deg);
     let at = |pose: Pose, speed: f64| {
         SteadyShip::new(
             Pose::new(pose.position + pose.ahead() * (speed * since), pose.heading),
@@ -119,27 +116,19 @@ fn role(
     }))
 }
 
-/// Motion and representation of a target.
-struct Known {
-    motion: Motion,
-    representation: Representation,
-}
-
-fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
+/// Motion of a target, and the representation of its obstacle.
+fn motion(table: &mut Table, plane: &Plane) -> Option<(Motion, Representation)> {
     let asked = table.take("representation");
-    let representation = asked.as_ref();
-    let representation = representation.map(|field| field.choice(Representation::WORDS));
+    let representation = (asked.as_ref()).map_or(Some(Representation::Polytope), |field| {
+        field.choice(Representation::WORDS)
+    });
     let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| table.has(key));
     let motion = if explicit.contains(&true) {
         explicit_sets::sets(table).map(Motion::Sets)
     } else {
         ship(table, plane).map(Motion::Ship)
     };
-    let representation = match representation {
-        Some(chosen) => chosen?,
-        None => Representation::Polytope,
-    };
-    let motion = motion?;
+    let (motion, representation) = (motion?, representation?);
     let refused = match (&motion, representation) {
         (Motion::Sets(sets), Representation::Polytope) if sets.initial.as_ellipse().is_some() => {
             "\"ellipsoid\", or nothing: the sets are ellipses"
@@ -158,10 +147,7 @@ fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
     if let Some(field) = asked.filter(|_| !refused.is_empty()) {
         return field.refuse(refused);
     }
-    Some(Known {
-        motion,
-        representation,
-    })
+    Some((motion, representation))
 }
 
 fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {

@@ -8,6 +8,9 @@ use anyhow::{Context, bail};
 
 use super::super::output::Output;
 
+/// Replacement of "/" in output names.
+pub const SEPARATOR: &str = "__";
+
 /// Requested file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
@@ -130,7 +133,7 @@ fn stem(relative: &Path) -> String {
         .components()
         .map(|part| part.as_os_str().to_string_lossy().into_owned())
         .collect();
-    parts.join("__")
+    parts.join(SEPARATOR)
 }
 
 /// Collects files of a kind, depth first in order of names. Hidden entries are skipped. Links to

@@ -1,9 +1,8 @@
 //! Points and velocities from the command line and from CSV files.
 
-use std::fmt::Display;
 use std::path::Path;
 
-use searoom::input::read_text;
+use searoom::input::{abbreviated, read_text};
 use searoom::report::counted;
 use searoom::scenario::{Fault, ScenarioError};
 
@@ -39,7 +38,7 @@ impl Column {
             Ok(number) if number >= self.low && number <= self.high => Ok(number),
             // shortest form: 1e308 has 309 digits
             Ok(number) => Err(format!("{number:?}").trim_end_matches(".0").to_owned()),
-            Err(_) => Err(format!("the text {}", quoted(text))),
+            Err(_) => Err(format!("the text {}", abbreviated(text))),
         }
     }
 }
@@ -115,12 +114,12 @@ fn rows<const N: usize>(
         };
         if record.len() > N {
             let found = counted(record.len(), "value");
-            faults.push(fault(Some(line), "", found, format_args!("{N}: {names}")));
+            faults.push(Fault::new("", found, format_args!("{N}: {names}")).at_line(line));
             continue;
         }
         if rows.len() == ROWS {
             let found = format_args!("more than {ROWS} rows");
-            faults.push(fault(Some(line), "", found, format_args!("at most {ROWS}")));
+            faults.push(Fault::new("", found, format_args!("at most {ROWS}")).at_line(line));
             return rows;
         }
         let mut row = [0.0; N];
@@ -131,16 +130,18 @@ fn rows<const N: usize>(
             };
             match read {
                 Ok(value) => *number = value,
-                Err(found) => faults.push(fault(Some(line), column.name, found, column.allowed())),
+                Err(found) => {
+                    faults.push(Fault::new(column.name, found, column.allowed()).at_line(line));
+                }
             }
         }
         rows.push(row);
     }
     let wanted = format!("a header line {names} and at least one row");
     if order.is_none() {
-        faults.push(fault(Some(1), "", "an empty file", &wanted));
+        faults.push(Fault::new("", "an empty file", &wanted).at_line(1));
     } else if rows.is_empty() && faults.is_empty() {
-        faults.push(fault(None, "", "no rows", &wanted));
+        faults.push(Fault::new("", "no rows", &wanted));
     }
     rows
 }
@@ -156,22 +157,20 @@ fn columns_of<const N: usize>(
     let before = faults.len();
     for (i, name) in found.iter().enumerate() {
         if !columns.iter().any(|c| c.name == *name) {
-            let what = format_args!("an unknown column {}", quoted(name));
-            faults.push(fault(Some(line), "", what, &names));
+            let what = format_args!("an unknown column {}", abbreviated(name));
+            faults.push(Fault::new("", what, &names).at_line(line));
         } else if found.iter().take(i).any(|earlier| earlier == name) {
-            faults.push(fault(Some(line), name, "the column twice", "once"));
+            faults.push(Fault::new(name, "the column twice", "once").at_line(line));
         }
     }
     let mut order = [0; N];
     for (at, column) in order.iter_mut().zip(columns) {
         match found.iter().position(|name| name == column.name) {
             Some(place) => *at = place,
-            None => faults.push(fault(
-                Some(line),
-                column.name,
-                "no such column",
-                format_args!("a header line {names}"),
-            )),
+            None => {
+                let allowed = format_args!("a header line {names}");
+                faults.push(Fault::new(column.name, "no such column", allowed).at_line(line));
+            }
         }
     }
     (faults.len() == before).then_some(order)
@@ -179,20 +178,6 @@ fn columns_of<const N: usize>(
 
 fn header<const N: usize>(columns: &[Column; N]) -> String {
     columns.map(|c| c.name).join(",")
-}
-
-/// Quotes at most 40 characters of a text.
-fn quoted(text: &str) -> String {
-    let short: String = text.chars().take(40).collect();
-    let more = if text.chars().count() > 40 { "…" } else { "" };
-    format!("{short:?}{more}")
-}
-
-fn fault(line: Option<usize>, path: &str, found: impl Display, allowed: impl Display) -> Fault {
-    Fault {
-        line,
-        ..Fault::new(path, found, allowed)
-    }
 }
 
 #[cfg(test)]

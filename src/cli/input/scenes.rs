@@ -2,19 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
+use searoom::input::read_text;
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
-use searoom::scenario::{Scenario, ScenarioError};
+use searoom::scenario::{FILE_MEBIBYTES, Fault, Scenario, ScenarioError};
 
+use super::super::args::AssumedArgs;
 use super::super::output::Output;
-use super::files::{self, Found, Unread};
+use super::files::{self, Found, SEPARATOR, Unread};
 
-/// Scenario that is not yet fully read.
+/// Scenario whose text is read but not yet checked.
 #[derive(Debug)]
 pub struct Scene {
     /// File and output name.
     pub found: Found,
-    /// Situation of an imported file; `None` for a scenario file.
-    situation: Option<Situation>,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    /// Text of a scenario file.
+    Text(String),
+    /// Situation of an imported file, with assumptions for the values missing from it.
+    Situation(Box<Situation>, Assumed),
 }
 
 /// Scenario with notes.
@@ -26,37 +35,51 @@ pub struct Made {
 }
 
 impl Scene {
-    /// Builds the scenario, with assumptions for values missing from an imported file.
-    pub fn scenario(&self, assumed: &Assumed) -> Result<Made, ScenarioError> {
-        match self.imported(assumed) {
-            Some(imported) => imported.map(|imported| Made {
-                scenario: imported.scenario,
-                notes: imported.notes,
+    /// Builds the scenario.
+    pub fn scenario(&self) -> Result<Made, ScenarioError> {
+        let made = match &self.source {
+            Source::Situation(situation, assumed) => situation.scenario(assumed).map(|i| Made {
+                scenario: i.scenario,
+                notes: i.notes,
             }),
-            None => Scenario::read(&self.found.file).map(|scenario| Made {
-                scenario,
-                notes: Vec::new(),
-            }),
-        }
+            Source::Text(text) => {
+                let folder = self.found.file.parent().unwrap_or(Path::new(""));
+                Scenario::parse_beside(text, folder).map(|scenario| Made {
+                    scenario,
+                    notes: Vec::new(),
+                })
+            }
+        };
+        made.map_err(|faults| self.refused(faults))
+    }
+
+    fn refused(&self, faults: Vec<Fault>) -> ScenarioError {
+        ScenarioError::faults(&self.found.file, faults)
     }
 
     /// Builds the scenario of an imported file with its text; `None` for a scenario file.
-    pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
-        let imported = self.situation.as_ref()?.scenario(assumed);
-        Some(imported.map_err(|faults| ScenarioError::faults(&self.found.file, faults)))
+    pub fn imported(&self) -> Option<Result<Imported, ScenarioError>> {
+        let Source::Situation(situation, assumed) = &self.source else {
+            return None;
+        };
+        Some(situation.scenario(assumed).map_err(|f| self.refused(f)))
     }
 
     /// Further facts that an imported file declares about its situation.
     pub fn declared(&self) -> Declared {
-        let situation = self.situation.as_ref();
-        situation.map_or_else(Declared::default, |situation| situation.declared.clone())
+        match &self.source {
+            Source::Situation(situation, _) => situation.declared.clone(),
+            Source::Text(_) => Declared::default(),
+        }
     }
 
     /// Name of the file, with the situation if the file may contain several.
     pub fn label(&self) -> String {
         let file = self.found.file.display();
-        match &self.situation {
-            Some(situation) if situation.id.is_some() => format!("{file}: {}", situation.name),
+        match &self.source {
+            Source::Situation(situation, _) if situation.id.is_some() => {
+                format!("{file}: {}", situation.name)
+            }
             _ => file.to_string(),
         }
     }
@@ -64,11 +87,16 @@ impl Scene {
 
 /// Opens the files at `paths` and lists their scenes in order. Documents and maps in a folder are
 /// skipped with a note.
-pub fn open(paths: &[PathBuf], assumed: &Assumed, output: &Output) -> Vec<Result<Scene, Unread>> {
+pub fn open(
+    paths: &[PathBuf],
+    assumed: &AssumedArgs,
+    output: &Output,
+) -> Vec<Result<Scene, Unread>> {
+    let assumed = assumed.assumed();
     let mut scenes = Vec::new();
     for entry in files::find(paths, &files::SCENARIOS, output) {
         match entry {
-            Ok(found) => of_file(&found, assumed, output, &mut scenes),
+            Ok(found) => of_file(&found, &assumed, output, &mut scenes),
             Err(unread) => scenes.push(Err(unread)),
         }
     }
@@ -91,20 +119,24 @@ fn of_file(
         file: file.clone(),
         error,
     };
-    match Contents::read(file, assumed) {
+    let text = match read_text(file, FILE_MEBIBYTES, "a scenario file") {
+        Ok(text) => text,
+        Err(error) => return scenes.push(Err(unread(error.to_string()))),
+    };
+    let wrong = |faults| Err(unread(ScenarioError::faults(file, faults).to_string()));
+    match Contents::parse(&text, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),
-            situation: None,
+            source: Source::Text(text),
         })),
         Ok(Contents::Situations(situations)) => {
             for situation in situations {
-                scenes.push(match situation {
-                    Ok(situation) => Ok(Scene {
+                scenes.push(situation.map_or_else(wrong, |situation| {
+                    Ok(Scene {
                         found: named(found, &situation),
-                        situation: Some(situation),
-                    }),
-                    Err(faults) => Err(unread(ScenarioError::faults(file, faults).to_string())),
-                });
+                        source: Source::Situation(Box::new(situation), assumed.clone()),
+                    })
+                }));
             }
         }
         Ok(Contents::Other(what)) if found.in_folder => {
@@ -114,12 +146,12 @@ fn of_file(
             let error = format!("{}: {what}; no scenario in it", file.display());
             scenes.push(Err(unread(error)));
         }
-        Err(error) => scenes.push(Err(unread(error.to_string()))),
+        Err(faults) => scenes.push(wrong(faults)),
     }
 }
 
 /// Opens a file for a command that takes one scenario. The error includes the file name.
-pub fn open_one(file: &Path, assumed: &Assumed, output: &Output) -> Result<Scene, String> {
+pub fn open_one(file: &Path, assumed: &AssumedArgs, output: &Output) -> Result<Scene, String> {
     let name = file.display();
     if file.is_dir() {
         return Err(format!(
@@ -160,6 +192,3 @@ fn named(found: &Found, situation: &Situation) -> Found {
         ..found.clone()
     }
 }
-
-/// Replacement of "/" in output names.
-const SEPARATOR: &str = "__";

@@ -272,10 +272,10 @@ impl Place {
                 "" => String::new(),
                 endings => format!("a file ends in {endings}, "),
             };
-            bail!("{option}: {shown}: {file}a folder that is to be made ends in '/'");
+            bail!("{option}: {shown}: {file}a new folder ends in '/'");
         }
         if !is_file || path.is_dir() {
-            make(path)?;
+            make_folder(path)?;
             return Ok(Self::Folder(path.to_owned()));
         }
         if scenarios > 1 {
@@ -306,12 +306,12 @@ fn is_another_file(path: &Path) -> bool {
 
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {
     match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => make(folder),
+        Some(folder) if !folder.as_os_str().is_empty() => make_folder(folder),
         _ => Ok(()),
     }
 }
 
-fn make(folder: &Path) -> anyhow::Result<()> {
+pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(folder)
         .with_context(|| format!("{}: the folder cannot be made", folder.display()))
 }

@@ -34,25 +34,18 @@ impl Situation {
             taken: None,
         };
         writing.situation(self);
-        let Writing {
-            text,
-            mut notes,
-            faults,
-            sizeless,
-            taken,
-            ..
-        } = writing;
-        if !faults.is_empty() {
-            return Err(faults);
+        if !writing.faults.is_empty() {
+            return Err(writing.faults);
         }
-        if let Some(Hull { length, beam }) = taken {
-            let whose = sizeless.join(", ");
+        let mut notes = writing.notes;
+        if let Some(Hull { length, beam }) = writing.taken {
+            let whose = writing.sizeless.join(", ");
             notes.push(format!(
                 "{whose}: no size in the file, {length} × {beam} m taken"
             ));
         }
         let heading: String = notes.iter().map(|note| format!("# {note}\n")).collect();
-        let text = format!("{heading}{text}");
+        let text = heading + &writing.text;
         Ok(Imported {
             scenario: Scenario::parse(&text)?,
             text,
@@ -73,20 +66,14 @@ struct Writing<'a> {
 }
 
 impl Writing<'_> {
-    fn add(&mut self, text: &str) {
-        self.text += text;
-    }
-
     fn situation(&mut self, situation: &Situation) {
         let own = &situation.own;
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
         let name = quoted(&situation.name);
-        self.add(&format!("title = {name}\nhorizon_s = {horizon:?}\n"));
+        self.text += &format!("title = {name}\nhorizon_s = {horizon:?}\n");
         if let Some(earth) = situation.earth {
             let Geographic { lat_deg, lon_deg } = earth.origin();
-            self.add(&format!(
-                "origin = {{ lat_deg = {lat_deg:?}, lon_deg = {lon_deg:?} }}\n"
-            ));
+            self.text += &format!("origin = {{ lat_deg = {lat_deg:?}, lon_deg = {lon_deg:?} }}\n");
         }
         let Some(hull) = self.hull("own ship", &own.hull) else {
             return;
@@ -110,11 +97,11 @@ impl Writing<'_> {
                     let margin = if *ground { 0.0 } else { margin };
                     let disc = outer_disc(clearance(margin), 0.0);
                     let set = vertices(&shape.minkowski_sum(&disc));
-                    self.add(&format!(
+                    self.text += &format!(
                         "\n[[targets]]\nname = {}\ninitial_set = {{ vertices_m = {set} }}\n\
                          velocity_set = {{ vertices_mps = [[0.0, 0.0]] }}\n",
                         quoted(name)
-                    ));
+                    );
                 }
             }
         }
@@ -122,13 +109,13 @@ impl Writing<'_> {
 
     fn own_ship(&mut self, own: &Own, hull: Hull) {
         let Hull { length, beam } = hull;
-        self.add(&format!(
+        self.text += &format!(
             "\n[own_ship]\n{}length_m = {length:?}\nbeam_m = {beam:?}\n\
              turning_radius_m = {:?}\nsafety_margin_m = {:?}\n",
             under_way(&own.pose, own.speed),
             TURNING_LENGTHS * length,
             self.assumed.safety_margin(length),
-        ));
+        );
         // at rest the speeds of the legs are own speeds
         let moving = [own.speed];
         let given = if own.speed == 0.0 {
@@ -140,13 +127,13 @@ impl Writing<'_> {
             .iter()
             .flat_map(|v| ASSUMED_SPEEDS.map(|fraction| fraction * v));
         let speeds: Vec<f64> = fractions.collect();
-        self.add(&format!("speeds_mps = {speeds:?}\n"));
+        self.text += &format!("speeds_mps = {speeds:?}\n");
         let route = own.route.iter();
         let route: String = route.map(|p| format!("    {},\n", position(*p))).collect();
-        self.add(&format!(
+        self.text += &format!(
             "\n[mission]\nwaypoints = [\n{route}]\nleg_speeds_mps = {:?}\n",
             own.leg_speeds
-        ));
+        );
     }
 
     /// The given or assumed hull; a fault if there is none.
@@ -175,24 +162,23 @@ impl Writing<'_> {
             speed: self.assumed.speed_spread,
             course: self.assumed.course_spread,
         };
-        self.add(&format!("\n[[targets]]\nname = {}\n", quoted(name)));
+        self.text += &format!("\n[[targets]]\nname = {}\n", quoted(name));
         if let Some(steady) = track.steady(&spread) {
             let Hull { length, beam } = hull;
             let course_spread =
                 deg_from_radians(steady.spread.course).min(limits::COURSE_SPREAD.high);
-            self.add(&format!(
+            self.text += &format!(
                 "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
                  course_spread_deg = {course_spread:?}\n",
                 under_way(&steady.pose, steady.speed),
                 steady.spread.speed
-            ));
+            );
         } else {
             // explicit sets have no hull: the initial set contains both hulls and the margin
             let around = outer_disc(hull.half_diagonal() + clearance, 0.0);
             let initial = vertices(&around.translated(track.start));
-            self.add(&format!(
-                "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = [\n"
-            ));
+            self.text +=
+                &format!("initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = [\n");
             let sets = track.outer_velocity_sets(&spread, horizon, limits::VELOCITY_SETS);
             for (until, velocities) in sets {
                 let until = match until {
@@ -200,9 +186,9 @@ impl Writing<'_> {
                     until => format!("until_s = {until:?}, "),
                 };
                 let velocities = vertices(&velocities);
-                self.add(&format!("    {{ {until}vertices_mps = {velocities} }},\n"));
+                self.text += &format!("    {{ {until}vertices_mps = {velocities} }},\n");
             }
-            self.add("]\n");
+            self.text += "]\n";
             self.notes.push(format!(
                 "{name}: a track with changes, as velocity sets one after another; \
                  margin and hulls on any heading are in its set"

@@ -79,22 +79,12 @@ pub(super) enum Other {
 impl Other {
     /// This one moved by a vector, metres.
     pub(super) fn translated(&self, shift: Vector) -> Self {
-        match self.clone() {
-            Self::Ship { name, hull, track } => Self::Ship {
-                name,
-                hull,
-                track: track.translated(shift),
-            },
-            Self::Fixed {
-                name,
-                shape,
-                ground,
-            } => Self::Fixed {
-                name,
-                shape: shape.translated(shift),
-                ground,
-            },
+        let mut moved = self.clone();
+        match &mut moved {
+            Self::Ship { track, .. } => track.start += shift,
+            Self::Fixed { shape, .. } => *shape = shape.translated(shift),
         }
+        moved
     }
 }
 

@@ -231,14 +231,6 @@ impl Track {
         })
     }
 
-    /// This track moved by a vector, metres.
-    pub(super) fn translated(self, shift: Vector) -> Self {
-        Self {
-            start: self.start + shift,
-            ..self
-        }
-    }
-
     /// This track, on which the ship appears at `time` seconds.
     pub(super) fn appearing(self, time: f64) -> Self {
         Self {

@@ -52,10 +52,7 @@ fn crowded(text: &str) -> Option<usize> {
 pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
     if let Some(line) = crowded(text) {
         let found = format_args!("an element of more than {ATTRIBUTES} attributes");
-        return Err(Fault {
-            line: Some(line),
-            ..Fault::new("", found, format_args!("at most {ATTRIBUTES}"))
-        });
+        return Err(Fault::new("", found, format_args!("at most {ATTRIBUTES}")).at_line(line));
     }
     let options = ParsingOptions {
         allow_dtd: false,
@@ -64,10 +61,8 @@ pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
     };
     let allowed =
         format_args!("XML without errors, without a document type, of at most {NODES} nodes");
-    Document::parse_with_options(text, options).map_err(|error| Fault {
-        line: Some(error.pos().row as usize),
-        ..Fault::new("", &error, allowed)
-    })
+    Document::parse_with_options(text, options)
+        .map_err(|error| Fault::new("", &error, allowed).at_line(error.pos().row as usize))
 }
 
 /// Letters of an id in a message.
@@ -111,10 +106,8 @@ impl<'a> Xml<'a> {
     /// Notes a fault at this place.
     pub(in crate::scenario) fn fault(&self, found: impl Display, allowed: impl Display) {
         let at = self.node.document().text_pos_at(self.node.range().start);
-        self.faults.note(Fault {
-            line: Some(at.row as usize),
-            ..Fault::new(self.path.as_str(), found, allowed)
-        });
+        let fault = Fault::new(self.path.as_str(), found, allowed);
+        self.faults.note(fault.at_line(at.row as usize));
     }
 
     /// Notes a fault at this place, without which there would be a value.

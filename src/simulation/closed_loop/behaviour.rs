@@ -3,6 +3,7 @@
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+use super::INSTANT;
 use super::stream::{Purpose, stream};
 use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of, wrap};
@@ -15,9 +16,6 @@ const PURSUIT_CHOICES: i32 = 4;
 
 /// m/s. A slower ship keeps its heading.
 const NO_WAY: f64 = 1e-6;
-
-/// Seconds, against rounding of the times of changes.
-const INSTANT: f64 = 1e-9;
 
 /// The true motion of a target. Course and speed are constant within a step.
 #[derive(Debug, Clone)]
@@ -59,22 +57,22 @@ impl TrueTarget {
         let is_due = time >= self.next_change - INSTANT;
         match &self.behaviour {
             Behaviour::Constant | Behaviour::Mutual => {}
-            Behaviour::Random { every, factor } if is_due => {
+            Behaviour::Random { every, factor } | Behaviour::Extremes { every, factor }
+                if is_due =>
+            {
                 self.next_change = time + every;
-                let mut within = |spread: f64| factor * spread * self.rng.random_range(-1.0..=1.0);
-                self.now.pose.heading =
-                    self.file.middle_course() + within(self.file.course_half_width());
-                self.now.speed = (speed + within(self.file.speed_spread)).max(0.0);
-            }
-            Behaviour::Extremes { every, factor } if is_due => {
-                self.next_change = time + every;
-                let mut extreme = |spread: f64| {
-                    let sign = if self.rng.random_bool(0.5) { 1.0 } else { -1.0 };
-                    sign * factor * spread
+                let extreme = matches!(self.behaviour, Behaviour::Extremes { .. });
+                let mut off = |spread: f64| {
+                    let part = match extreme {
+                        true if self.rng.random_bool(0.5) => 1.0,
+                        true => -1.0,
+                        false => self.rng.random_range(-1.0..=1.0),
+                    };
+                    factor * spread * part
                 };
                 self.now.pose.heading =
-                    self.file.middle_course() + extreme(self.file.course_half_width());
-                self.now.speed = (speed + extreme(self.file.speed_spread)).max(0.0);
+                    self.file.middle_course() + off(self.file.course_half_width());
+                self.now.speed = (speed + off(self.file.speed_spread)).max(0.0);
             }
             Behaviour::Pursuit { every } if is_due => {
                 self.next_change = time + every;

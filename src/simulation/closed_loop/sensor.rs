@@ -4,6 +4,7 @@ use nalgebra::Matrix2;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+use super::INSTANT;
 use super::stream::{Purpose, normal, stream};
 use crate::colregs::SteadyShip;
 use crate::frame::{Vector, direction, knots_from_mps, radians_from_deg, wrap};
@@ -52,13 +53,13 @@ impl TargetSensor {
 
     /// Measures the target where a report is due at `time`, seconds; returns those that arrive.
     pub fn reports(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
-        if time >= self.next - 1e-9 {
+        if time >= self.next - INSTANT {
             self.next = time + self.interval(time, target);
             if let Some(report) = self.measure(time, target) {
                 self.coming.push(report);
             }
         }
-        let arrived = self.coming.partition_point(|r| r.arrives <= time + 1e-9);
+        let arrived = self.coming.partition_point(|r| r.arrives <= time + INSTANT);
         self.coming.drain(..arrived).collect()
     }
 

@@ -135,6 +135,21 @@ pub(super) struct Estimate {
     pub speed_std: f64,
 }
 
+impl Estimate {
+    /// The true state, with the uncertainty of the position in the file.
+    fn exact(time: f64, ship: &SteadyShip, file: &ShipTrack) -> Self {
+        Self {
+            time,
+            position: ship.pose.position,
+            position_std: file.position_std,
+            heading: ship.pose.heading,
+            speed: ship.speed,
+            heading_std: 0.0,
+            speed_std: 0.0,
+        }
+    }
+}
+
 /// The middle and the half-widths of the velocities that plans are made for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AssumedVelocities {
@@ -211,15 +226,7 @@ pub(super) struct Track {
 impl Track {
     /// A target as the file has it, before any report.
     pub fn new(file: &ShipTrack, sensor: &Sensor) -> Self {
-        let estimate = Estimate {
-            time: 0.0,
-            position: file.pose.position,
-            position_std: file.position_std,
-            heading: file.pose.heading,
-            speed: file.speed,
-            heading_std: 0.0,
-            speed_std: 0.0,
-        };
+        let estimate = Estimate::exact(0.0, &SteadyShip::new(file.pose, file.speed), file);
         Self {
             velocities: AssumedVelocities::at(&estimate, file),
             file: file.clone(),
@@ -233,15 +240,7 @@ impl Track {
 
     /// Takes in the true state: the sensor is exact.
     pub fn set_exact(&mut self, time: f64, ship: &SteadyShip) {
-        self.estimate = Estimate {
-            time,
-            position: ship.pose.position,
-            position_std: self.file.position_std,
-            heading: ship.pose.heading,
-            speed: ship.speed,
-            heading_std: 0.0,
-            speed_std: 0.0,
-        };
+        self.estimate = Estimate::exact(time, ship, &self.file);
         self.settle();
     }
 

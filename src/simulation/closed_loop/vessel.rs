@@ -120,26 +120,19 @@ impl Vessel {
         };
         match self.model {
             VesselModel::Kinematic | VesselModel::FirstOrder { .. } => {
-                let (course_time, speed_time) = match self.model {
-                    VesselModel::FirstOrder {
-                        course_time,
-                        speed_time,
-                    } => (course_time, speed_time),
-                    _ => (0.0, 0.0),
-                };
+                let course_time = self.lag(state.speed);
                 let fastest = state.speed / self.turning_radius;
                 // a quarter of the bandwidth of the turn rate, which does not overshoot
                 let wanted = order.turn_rate + off / (4.0 * course_time).max(1.0);
                 let wanted = wanted.clamp(-fastest, fastest);
                 state.turn_rate = approach(state.turn_rate, wanted, course_time);
-                state.speed = approach(state.speed, order.speed, speed_time);
             }
             VesselModel::Nomoto {
                 gain,
                 time,
                 rudder,
                 rudder_rate,
-                speed_time,
+                ..
             } => {
                 let way = state.speed.max(STEERAGE_WAY);
                 let (gain, time) = (gain * way / self.length, time * self.length / way);
@@ -153,9 +146,9 @@ impl Vessel {
                 let moved = (wanted - state.rudder).clamp(-rudder_rate * dt, rudder_rate * dt);
                 state.rudder += moved;
                 state.turn_rate = approach(state.turn_rate, gain * state.rudder, time);
-                state.speed = approach(state.speed, order.speed, speed_time);
             }
         }
+        state.speed = approach(state.speed, order.speed, self.speed_lag());
     }
 }
 

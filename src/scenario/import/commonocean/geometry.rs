@@ -40,18 +40,13 @@ pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
 }
 
 fn one(entry: &Xml) -> Option<Shape> {
-    let center = match entry.take("center") {
-        Some(center) => point(&center)?,
-        None => Vector::zeros(),
-    };
+    let center = (entry.take("center")).map_or(Some(Vector::zeros()), |center| point(&center))?;
     let outline = match entry.name() {
         "rectangle" => {
             let length = entry.required_number("length", SIZE.in_unit("m"));
             let width = entry.required_number("width", SIZE.in_unit("m"));
-            let angle = match entry.take("orientation") {
-                Some(angle) => angle.number(ANGLE.in_unit("rad"))?,
-                None => 0.0,
-            };
+            let angle = entry.take("orientation");
+            let angle = angle.map_or(Some(0.0), |angle| angle.number(ANGLE.in_unit("rad")))?;
             let hull = Hull::new(length?, width?);
             hull.polygon(&Pose::new(center, angle))
         }
@@ -106,16 +101,12 @@ pub(super) fn state(entry: &Xml) -> Option<State> {
         .require("position", "a point")
         .and_then(|place| place.require("point", "x, y in metres"))
         .and_then(|place| point(&place));
-    let orientation = match entry.take("orientation") {
-        Some(angle) => angle.exact(HEADING.in_unit("rad")),
-        None => Some(0.0),
-    };
+    let orientation = entry.take("orientation");
+    let orientation = orientation.map_or(Some(0.0), |angle| angle.exact(HEADING.in_unit("rad")));
     let steps = STEPS.in_unit("steps");
     let time = entry.require("time", steps).and_then(|t| t.exact(steps));
-    let velocity = match entry.take("velocity") {
-        Some(velocity) => velocity.exact(VELOCITY.in_unit("m/s")).map(Some),
-        None => Some(None),
-    };
+    let velocity = entry.take("velocity");
+    let velocity = velocity.map_or(Some(None), |v| v.exact(VELOCITY.in_unit("m/s")).map(Some));
     Some(State {
         position: position?,
         orientation: orientation?,

@@ -9,7 +9,7 @@ use roxmltree::Document;
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
 use super::track::{RouteLeg, RoutePoint, Track};
 use super::xml::Xml;
-use crate::frame::{Vector, wrap};
+use crate::frame::{Pose, Vector, wrap};
 use crate::input::{Fault, Faults, Range, abbreviated};
 use crate::scenario::limits;
 use crate::text::is_line;
@@ -98,43 +98,24 @@ pub(super) fn situations(
     let situation = |(entry, own): (&Xml, Option<Own>)| {
         let id = several.then(|| format!("{name}-{}", entry.attribute("id").unwrap_or_default()));
         let own = own.ok_or_else(Vec::new)?;
-        Ok(about(
-            own,
-            &others,
-            id.clone().unwrap_or_else(|| name.to_owned()),
+        // relative to own ship's start: coordinates may be those of a global grid
+        let origin = own.pose.position;
+        let moved = |other: &Other| other.translated(-origin);
+        Ok(Situation {
+            name: id.clone().unwrap_or_else(|| name.to_owned()),
             id,
-            &notes,
-        ))
+            own: Own {
+                pose: Pose::new(Vector::zeros(), own.pose.heading),
+                route: own.route.iter().map(|p| p - origin).collect(),
+                ..own
+            },
+            others: others.iter().map(moved).collect(),
+            earth: None,
+            declared: Declared::default(),
+            notes: notes.clone(),
+        })
     };
     Ok(problems.iter().zip(owns).map(situation).collect())
-}
-
-/// The situation of one own ship, relative to its start: coordinates may be those of a global grid.
-fn about(
-    own: Own,
-    others: &[Other],
-    name: String,
-    id: Option<String>,
-    notes: &[String],
-) -> Situation {
-    let origin = own.pose.position;
-    let own = Own {
-        pose: crate::frame::Pose::new(Vector::zeros(), own.pose.heading),
-        route: own.route.iter().map(|p| p - origin).collect(),
-        ..own
-    };
-    Situation {
-        name,
-        id,
-        own,
-        others: others
-            .iter()
-            .map(|other| other.translated(-origin))
-            .collect(),
-        earth: None,
-        declared: Declared::default(),
-        notes: notes.to_vec(),
-    }
 }
 
 /// Notes unused elements.

@@ -82,9 +82,7 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
         });
     };
     unused(&field, &STATIC_KEYS, notes);
-    let name = field.optional("name", |name| {
-        name.line_of_text().map(|text| text.trim().to_owned())
-    });
+    let name = field.optional("name", Field::line_of_text);
     let hull = match field.get("dimensions") {
         Some(dimensions) => hull(&dimensions, notes),
         None => Some(missing()),
@@ -97,7 +95,7 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
     }
     let delay = field.optional_number("initDelay", DELAY.in_unit("s"))?;
     Some(Static {
-        name: name?,
+        name: name?.map(|name| name.trim().to_owned()),
         hull: hull?,
         delay: delay.unwrap_or(0.0),
     })
