@@ -1,6 +1,6 @@
 //! A convex set of the plane: a polygon or an ellipse.
 
-use super::{ConvexPolygon, Ellipse};
+use super::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use crate::frame::Vector;
 
 /// A closed convex set: of positions in metres, or of velocities in m/s.
@@ -26,6 +26,14 @@ impl ConvexSet {
         match self {
             Self::Polygon(polygon) => polygon.clone(),
             Self::Ellipse(ellipse) => ellipse.outer_polygon(sides),
+        }
+    }
+
+    /// An ellipse that contains the set: the smallest one around a polygon.
+    pub fn outer_ellipse(&self) -> Ellipse {
+        match self {
+            Self::Polygon(polygon) => outer_enclosing_ellipse(polygon),
+            Self::Ellipse(ellipse) => *ellipse,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Motions that enter hard sets, and when they have left them.
 
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::obstacle::{ConvexObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::NominalTarget;
 use crate::target::{Motion, Target};
 use crate::tolerance::TOUCH_M;
@@ -104,14 +104,11 @@ pub(super) fn left_for_good(
 
 /// Upper bound of the speed of any point of a set, m/s; infinite where unknown.
 fn greatest_speed(set: &Obstacle) -> f64 {
-    match set {
-        Obstacle::Polytope(o) => o.velocity().reach(),
-        Obstacle::Slabs(o) => {
-            let speeds = o.slabs().iter().map(|slab| greatest_speed(slab.obstacle()));
-            speeds.fold(0.0, f64::max)
-        }
-        Obstacle::Ellipsoid(_) => f64::INFINITY,
-    }
+    let speeds = set.slabs().iter().map(|slab| match slab.obstacle() {
+        ConvexObstacle::Polytope(o) => o.velocity().reach(),
+        ConvexObstacle::Ellipsoid(_) => f64::INFINITY,
+    });
+    speeds.fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::rules::without_domains_of_give_way_targets;
 use crate::colregs::{self, Encounter, Role, Shapes, TargetMemory};
-use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::parallel;
 use crate::scenario::Scenario;
@@ -171,14 +171,8 @@ fn obstacle(target: &Target, sets: Uncertainty) -> Obstacle {
 
 /// The obstacle with another set at t = 0, metres.
 fn with_initial(known: &Obstacle, initial: ConvexPolygon) -> Obstacle {
-    match known {
-        Obstacle::Slabs(o) => o.with_initial(initial).into(),
-        Obstacle::Polytope(o) => {
-            PolytopeObstacle::new(o.name(), initial, o.velocity().clone()).into()
-        }
-        Obstacle::Ellipsoid(o) => {
-            let initial = outer_enclosing_ellipse(&initial);
-            EllipsoidObstacle::new(o.name(), initial, *o.velocity()).into()
-        }
+    match known.sets().initial {
+        ConvexSet::Polygon(_) => known.with_initial(initial),
+        ConvexSet::Ellipse(_) => known.with_initial(outer_enclosing_ellipse(&initial)),
     }
 }

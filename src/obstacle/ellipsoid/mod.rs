@@ -113,11 +113,6 @@ impl EllipsoidObstacle {
         )
     }
 
-    /// True when both sets are points or lie on parallel segments.
-    pub fn is_flat(&self) -> bool {
-        self.flat.is_some()
-    }
-
     /// True when both sets are points or lie on parallel segments, to
     /// [`tolerance::THIN_ELLIPSE`].
     pub(crate) fn is_thin(&self) -> bool {
@@ -125,7 +120,7 @@ impl EllipsoidObstacle {
         is_thinner(self.determinant, self.roots, thin)
     }
 
-    /// The exact polytope of a flat set.
+    /// The exact polytope where both sets are points or lie on parallel segments.
     pub fn flat(&self) -> Option<&PolytopeObstacle> {
         self.flat.as_ref()
     }
@@ -140,16 +135,6 @@ impl EllipsoidObstacle {
         &self.velocity
     }
 
-    /// The polytope of the two circumscribed 16-gons: it contains the sum `O_0 ⊕ t V`, but not all
-    /// of this set. For graphs and figures.
-    pub fn sum_outer_polytope(&self) -> PolytopeObstacle {
-        PolytopeObstacle::new(
-            self.name.clone(),
-            self.initial.outer_polygon(DISC_SIDES),
-            self.velocity.outer_polygon(DISC_SIDES),
-        )
-    }
-
     /// The largest ratio of [`SpaceTimeObstacle::support`] to the support of the exact sum `O_0 ⊕ t
     /// V`, both about the centre, over all directions and times up to `horizon`. O(1).
     ///
@@ -161,7 +146,7 @@ impl EllipsoidObstacle {
     /// the generalised eigenvalues.
     pub fn largest_ratio_to_sum(&self, horizon: f64) -> f64 {
         let [still, growing] = self.roots;
-        if self.is_flat() || still == 0.0 || growing == 0.0 {
+        if self.flat.is_some() || still == 0.0 || growing == 0.0 {
             return 1.0;
         }
         let delay = still / growing;

@@ -3,7 +3,7 @@
 use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
-use crate::planner::space_time::piece::{Body, Piece, Window};
+use crate::planner::space_time::piece::{Piece, Window};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
@@ -32,10 +32,7 @@ pub(crate) struct Proxy<'a> {
 
 impl<'a> Proxy<'a> {
     pub(crate) fn new(part: &'a Piece) -> Self {
-        let (body, ellipsoid) = match &part.body {
-            Body::Polytope(polytope) => (polytope, None),
-            Body::Ellipsoid(e) => (&e.around, Some(&e.exact)),
-        };
+        let (body, ellipsoid) = (&part.body, part.ellipsoid.as_ref());
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
         let (radius, growth) = match ellipsoid {
             // the root of the trace of the outer section is the sum of the roots of the two sets
@@ -345,7 +342,8 @@ mod tests {
             let piece = Piece {
                 obstacle: 0,
                 window,
-                body: Body::Polytope(body),
+                body,
+                ellipsoid: None,
             };
             let proxy = Proxy::new(&piece);
             let horizon = 900.0;

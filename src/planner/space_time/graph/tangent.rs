@@ -364,7 +364,7 @@ mod tests {
     use crate::frame::Pose;
     use crate::geometry::fixtures::random_vector;
     use crate::geometry::{ConvexPolygon, outer_disc};
-    use crate::planner::space_time::piece::{Body, Piece};
+    use crate::planner::space_time::piece::Piece;
     use rand::{Rng, SeedableRng};
 
     /// Compares with the interceptions of every corner one by one.
@@ -387,7 +387,8 @@ mod tests {
             let piece = Piece {
                 obstacle: 0,
                 window: None,
-                body: Body::Polytope(body.clone()),
+                body: body.clone(),
+                ellipsoid: None,
             };
             let tangent_edges =
                 TangentEdges::new(&Proxy::new(&piece), &body, speeds.into_iter(), |_| true);
