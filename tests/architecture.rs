@@ -24,13 +24,13 @@ trajectory: frame tolerance geometry
 vessel: frame tolerance geometry trajectory
 map: frame geometry tolerance input
 target: frame geometry tolerance vessel
-colregs: frame tolerance geometry trajectory target vessel input text
+colregs: frame tolerance numerics geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory map
 planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
 evaluation: parallel frame tolerance geometry map vessel target trajectory colregs
 verification: document frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
-pipeline: parallel frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
+pipeline: parallel frame tolerance numerics search geometry trajectory vessel map target colregs obstacle planner evaluation scenario simulation
 simulation: frame tolerance search geometry trajectory vessel map target colregs obstacle planner evaluation scenario pipeline document
 study: document frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline
 document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation verification scenario pipeline study text

@@ -86,7 +86,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
     }
 }
 
-pub(super) fn initial_set(set: &ConvexSet) -> InitialSetDocument {
+pub(crate) fn initial_set(set: &ConvexSet) -> InitialSetDocument {
     match set {
         ConvexSet::Polygon(set) => InitialSetDocument::Polygon {
             vertices_m: vertices(set),

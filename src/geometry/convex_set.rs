@@ -64,11 +64,7 @@ impl ConvexSet {
     /// `c + factor (x - c)` for every `x` of the set, with its centre `c`.
     pub fn scaled_about_center(&self, factor: f64) -> Self {
         match self {
-            Self::Polygon(polygon) => {
-                let center = polygon.centroid();
-                let about = polygon.translated(-center).scaled(factor);
-                Self::Polygon(about.translated(center))
-            }
+            Self::Polygon(polygon) => Self::Polygon(polygon.scaled_about_center(factor)),
             Self::Ellipse(ellipse) => Self::Ellipse(ellipse.scaled_about_center(factor)),
         }
     }

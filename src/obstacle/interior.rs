@@ -68,11 +68,7 @@ fn outer_grown(initial: &ConvexPolygon) -> Option<ConvexPolygon> {
 fn outer_widened(initial: &Ellipse) -> Option<Ellipse> {
     let [_, b] = initial.semi_axes();
     (b.norm() < HALF_WIDTH_M).then(|| {
-        let axes = [
-            Vector::new(HALF_WIDTH_M, 0.0),
-            Vector::new(0.0, HALF_WIDTH_M),
-        ];
-        let disc = Ellipse::from_axes(Vector::zeros(), axes);
+        let disc = Ellipse::disc(Vector::zeros(), HALF_WIDTH_M);
         EllipsoidObstacle::new("", *initial, disc).outer_section(1.0)
     })
 }

@@ -3,7 +3,6 @@
 
 use super::{HalfSpace, Obstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -48,16 +47,6 @@ pub fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
     } else {
         whole.to_vec()
     }
-}
-
-/// `v + alpha (V - v)` about the centroid `v`, paper eq. (22).
-pub(super) fn scaled_velocities(velocity: &ConvexPolygon, alpha: f64) -> ConvexPolygon {
-    if alpha == 1.0 {
-        return velocity.clone();
-    }
-    let center = velocity.centroid();
-    let scale = |v: &Vector| center + (v - center) * alpha;
-    ConvexPolygon::from_ccw(velocity.vertices().iter().map(scale).collect())
 }
 
 /// Dependence of one face on alpha.

@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, SignedDistance};
 use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
-use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection};
 use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
 use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
-use crate::target::{TimedVelocitySet, Uncertainty};
+use crate::target::{Representation, TimedVelocitySet, Uncertainty};
 use crate::tolerance::{self, ELLIPSE_SIDES};
 use crate::trajectory::{Segment, Trajectory};
 
@@ -333,11 +333,11 @@ impl Obstacle {
         }
     }
 
-    /// Kind of the sections: `"polytope"` or `"ellipsoid"`.
-    pub fn representation(&self) -> &'static str {
+    /// Kind of the sections.
+    pub fn representation(&self) -> Representation {
         match self.sets().initial {
-            ConvexSet::Polygon(_) => "polytope",
-            ConvexSet::Ellipse(_) => "ellipsoid",
+            ConvexSet::Polygon(_) => Representation::Polytope,
+            ConvexSet::Ellipse(_) => Representation::Ellipsoid,
         }
     }
 
@@ -576,10 +576,7 @@ impl SpaceTimeObstacle for Obstacle {
         }
         let mut sets = self.sets().clone();
         for set in &mut sets.velocities {
-            set.velocities = match &set.velocities {
-                ConvexSet::Polygon(set) => scaled_velocities(set, alpha).into(),
-                set => set.scaled_about_center(alpha),
-            };
+            set.velocities = set.velocities.scaled_about_center(alpha);
         }
         Self::from_sequence(self.shared.name.clone(), sets)
     }

@@ -1,6 +1,7 @@
 //! Motions that enter hard sets, and when they have left them.
 
 use crate::geometry::ConvexPolygon;
+use crate::numerics::bisected;
 use crate::obstacle::{ConvexObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::NominalTarget;
 use crate::target::{Motion, Target};
@@ -86,15 +87,7 @@ pub(super) fn left_for_good(
         if next >= end {
             return Some(end);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (last + next);
-            if inside(middle) {
-                last = middle;
-            } else {
-                next = middle;
-            }
-        }
-        from = next;
+        [_, from] = bisected([last, next], HALVINGS, inside);
         match contact(from) {
             Some(again) => met = again,
             None => return Some(from),
@@ -121,12 +114,7 @@ mod tests {
     /// Leaving a large set takes half an hour: found, or nothing is claimed when the time is up.
     #[test]
     fn out_of_time_nothing_is_claimed_of_a_set() {
-        let around = |size: f64| {
-            Ellipse::from_axes(
-                Vector::zeros(),
-                [Vector::new(size, 0.0), Vector::new(0.0, size)],
-            )
-        };
+        let around = |size: f64| Ellipse::disc(Vector::zeros(), size);
         let set = EllipsoidObstacle::new("storm", around(9000.0), around(1e-3)).into();
         let way = Segment {
             start: Pose::new(Vector::zeros(), 0.0),

@@ -9,6 +9,7 @@ use searoom::obstacle::SpaceTimeObstacle;
 use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
+use searoom::target::Representation;
 use searoom::trajectory::Segment;
 
 use super::generators::{
@@ -356,7 +357,7 @@ fn what_remains_of_a_set_goes_on_from_its_section() {
             for n in directions(24) {
                 let was = o.support(n, time + later).value;
                 let is = rest.support(n, later).value;
-                let equal = later == 0.0 || o.representation() == "polytope";
+                let equal = later == 0.0 || o.representation() == Representation::Polytope;
                 assert!(
                     is > was - 1e-6 && (!equal || is < was + 1e-6),
                     "{later} {was} {is}"

@@ -125,6 +125,12 @@ impl Ellipse {
         }
     }
 
+    /// The disc of a radius.
+    pub fn disc(center: Vector, radius: f64) -> Self {
+        let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
+        Self { center, axes }
+    }
+
     /// `{p + F z : |z| <= 1}` for the two columns of `F`.
     ///
     /// One Jacobi rotation makes them orthogonal and preserves the digits of a small semi-axis.
@@ -155,6 +161,11 @@ impl Ellipse {
     pub fn shape(&self) -> Matrix2<f64> {
         let [a, b] = self.axes;
         a * a.transpose() + b * b.transpose()
+    }
+
+    /// `sqrt(trace Q)`: an upper bound of the distance of a point of the set from the centre.
+    pub fn root_of_trace(&self) -> f64 {
+        self.axes[0].norm().hypot(self.axes[1].norm())
     }
 
     /// The area, `pi a b`.

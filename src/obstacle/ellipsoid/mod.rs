@@ -66,11 +66,7 @@ impl EllipsoidObstacle {
     /// From the positions at t = 0, metres, and the velocities, m/s. O(1).
     pub fn new(name: impl Into<String>, initial: Ellipse, velocity: Ellipse) -> Self {
         let name = name.into();
-        let root = |e: &Ellipse| {
-            let [a, b] = e.semi_axes();
-            a.norm().hypot(b.norm())
-        };
-        let roots = [root(&initial), root(&velocity)];
+        let roots = [initial.root_of_trace(), velocity.root_of_trace()];
         let scaled = |e: &Ellipse, root: f64| {
             e.semi_axes().map(|a| {
                 if root > 0.0 {

@@ -8,7 +8,6 @@ use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::obstacle::closest_approach::{ClosestApproach, from_edge, polytope_approach};
 use crate::obstacle::risk::{
     FaceSpread, Line, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
-    scaled_velocities,
 };
 use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::trajectory::Segment;
@@ -321,7 +320,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
     }
 
     fn at_risk(&self, risk: f64) -> Self {
-        let velocity = scaled_velocities(&self.shared.velocity, level_of(risk));
+        let velocity = self.shared.velocity.scaled_about_center(level_of(risk));
         Self::new(
             self.shared.name.clone(),
             self.shared.initial.clone(),

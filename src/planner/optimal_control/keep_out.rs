@@ -73,8 +73,7 @@ impl KeepOut {
 
 /// Ellipse with each semi-axis at least [`LEAST_SEMI_AXIS`].
 fn outer_widened(ellipse: &Ellipse) -> Ellipse {
-    let [a, b] = ellipse.semi_axes();
-    let (long, short) = if a.norm() >= b.norm() { (a, b) } else { (b, a) };
+    let [long, short] = ellipse.semi_axes();
     if short.norm() >= LEAST_SEMI_AXIS {
         return *ellipse;
     }

@@ -6,6 +6,7 @@
 //! A motion that is clear of the pieces is clear of the obstacle.
 
 use crate::geometry::{DISC_SIDES, Ellipse};
+use crate::obstacle::contact::Interval;
 use crate::obstacle::{ConvexObstacle, EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
@@ -18,19 +19,12 @@ pub(crate) struct Piece {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// Time window; `None` for ever.
-    pub window: Option<Window>,
+    pub window: Option<Interval>,
     /// The polytope, or two 16-gons around the sets of the ellipsoid, enlarged by its excess over
     /// their sum.
     pub body: PolytopeObstacle,
     /// The ellipsoid, where it is one.
     pub ellipsoid: Option<EllipsoidObstacle>,
-}
-
-/// Time window, seconds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Window {
-    pub start: f64,
-    pub end: f64,
 }
 
 /// Convex pieces of all obstacles until the horizon, in their order.
@@ -51,7 +45,7 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
             };
             Piece {
                 obstacle,
-                window: several.then_some(Window {
+                window: several.then_some(Interval {
                     start: slab.start(),
                     end: slab.end(),
                 }),

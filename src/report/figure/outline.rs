@@ -122,9 +122,10 @@ pub fn outer_velocities_within(
     limit: f64,
 ) -> Vec<ConvexPolygon> {
     let Approaching { position, horizon } = *approach;
+    let disc = Ellipse::disc(Vector::zeros(), distance);
     let wider = |set: &ConvexPolygon| {
         if distance > 0.0 {
-            set.minkowski_sum(&disc(distance).outer_polygon(ELLIPSE_SIDES))
+            set.minkowski_sum(&disc.outer_polygon(ELLIPSE_SIDES))
         } else {
             set.clone()
         }
@@ -135,7 +136,7 @@ pub fn outer_velocities_within(
             let wide = match &target.sets().initial {
                 ConvexSet::Polygon(initial) => target.with_initial(wider(initial)),
                 ConvexSet::Ellipse(initial) => {
-                    let wide = EllipsoidObstacle::new("", *initial, disc(distance));
+                    let wide = EllipsoidObstacle::new("", *initial, disc);
                     target.with_initial(wide.outer_section(1.0))
                 }
             };
@@ -152,11 +153,6 @@ pub struct Approaching {
     pub position: Vector,
     /// Time in seconds.
     pub horizon: f64,
-}
-
-fn disc(radius: f64) -> Ellipse {
-    let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
-    Ellipse::from_axes(Vector::zeros(), axes)
 }
 
 #[cfg(test)]

@@ -3,11 +3,10 @@
 use super::{OwnSituation, least_alteration};
 use crate::document::{
     AlterationDocument, ApproachDocument, AssessmentDocument, HeldDocument, HoldCourseDocument,
-    InitialSetDocument, PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument,
-    VelocityDocument,
+    PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
+    initial_set,
 };
 use crate::frame::{Vector, deg_from_radians};
-use crate::geometry::ConvexSet;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// Position at a time.
@@ -45,11 +44,11 @@ pub fn assess(
     let degrees = |turn: Option<f64>| turn.map(deg_from_radians);
     let targets = obstacles.iter().map(|target| TargetSectionsDocument {
         name: target.name().to_owned(),
-        representation: target.representation().to_owned(),
+        representation: target.representation().word().to_owned(),
         sections: (query.sections.iter())
             .map(|&t_s| SectionDocument {
                 t_s,
-                set: section(&target.section(t_s)),
+                set: initial_set(&target.section(t_s)),
             })
             .collect(),
     });
@@ -110,21 +109,5 @@ fn approach(situation: &OwnSituation, target: &Obstacle, velocity: Vector) -> Ap
         dcpa_m: nearest.distance,
         tcpa_s: nearest.time,
         in_velocity_obstacle: target.in_velocity_obstacle(from, velocity, horizon),
-    }
-}
-
-fn section(set: &ConvexSet) -> InitialSetDocument {
-    let pair = |p: &Vector| [p.x, p.y];
-    match set {
-        ConvexSet::Polygon(polygon) => InitialSetDocument::Polygon {
-            vertices_m: polygon.vertices().iter().map(pair).collect(),
-        },
-        ConvexSet::Ellipse(ellipse) => {
-            let q = ellipse.shape();
-            InitialSetDocument::Ellipse {
-                center_m: pair(&ellipse.center()),
-                shape_m2: [[q[(0, 0)], q[(0, 1)]], [q[(1, 0)], q[(1, 1)]]],
-            }
-        }
     }
 }

@@ -10,10 +10,10 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Side, Vector, direction, heading_of, to_port};
+use crate::obstacle::contact::Interval;
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 use crate::planner::space_time::graph::intercept::{Interception, Interceptor, Limits};
-use crate::planner::space_time::piece::Window;
 use crate::planner::space_time::proxy::Proxy;
 
 /// Metres. A distance this small has no sign.
@@ -78,7 +78,7 @@ struct SpeedSectors {
 #[derive(Debug)]
 pub(crate) struct TangentEdges {
     obstacle: usize,
-    window: Option<Window>,
+    window: Option<Interval>,
     corners: Vec<Corner>,
     sectors_by_speed: Vec<SpeedSectors>,
 }
