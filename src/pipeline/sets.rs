@@ -154,15 +154,11 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
 /// target's representation asks for one.
 fn obstacle(target: &Target, sets: Uncertainty) -> Obstacle {
     // should the ends not increase: one polytope with all velocities contains the slabs
-    let whole = |sets: &Uncertainty| {
+    let found = Obstacle::new(target.name.clone(), sets.clone()).unwrap_or_else(|_| {
         let initial = sets.initial.outer_polygon(DISC_SIDES);
         let velocity = sets.outer_velocities_after(f64::NEG_INFINITY);
-        PolytopeObstacle::new(target.name.clone(), initial, velocity)
-    };
-    let found = match Obstacle::new(target.name.clone(), sets.clone()) {
-        Ok(obstacle) => obstacle,
-        Err(_) => whole(&sets).into(),
-    };
+        PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
+    });
     match (target.representation, found.as_polytope()) {
         (Representation::Ellipsoid, Some(polytope)) => EllipsoidObstacle::outer_of(polytope).into(),
         _ => found,

@@ -105,7 +105,7 @@ impl Uncertainty {
     }
 
     /// Each velocity set before `time` with its duration, seconds; NaN for a NaN.
-    pub(crate) fn durations(&self, time: f64) -> impl Iterator<Item = (f64, &ConvexSet)> {
+    fn durations(&self, time: f64) -> impl Iterator<Item = (f64, &ConvexSet)> {
         let starts = std::iter::once(0.0).chain(self.velocities.iter().map(|set| set.until));
         starts
             .zip(&self.velocities)

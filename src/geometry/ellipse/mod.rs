@@ -183,19 +183,6 @@ impl Ellipse {
         n.dot(&self.axes[0]).hypot(n.dot(&self.axes[1]))
     }
 
-    /// A boundary point farthest along the unit vector `n`; the centre where the ellipse has no
-    /// width.
-    pub fn boundary_point(&self, n: Vector) -> Vector {
-        let [a, b] = self.axes;
-        let (along, across) = (n.dot(&a), n.dot(&b));
-        let reach = along.hypot(across);
-        if reach > 0.0 {
-            self.center + (a * along + b * across) / reach
-        } else {
-            self.center
-        }
-    }
-
     /// True when `p` is in the closed set. NaN is inside. O(1).
     pub fn contains(&self, p: Vector) -> bool {
         let y = p - self.center;

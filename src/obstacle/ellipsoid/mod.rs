@@ -11,8 +11,9 @@ use crate::geometry::{
     DISC_SIDES, Ellipse, SignedDistance, distance_in_frame, outer_enclosing_ellipse,
 };
 use crate::obstacle::closest_approach::{ClosestApproach, searched_approach, usable_horizon};
+use crate::obstacle::contact::Line;
 use crate::obstacle::contact::advancement::advanced_contact;
-use crate::obstacle::risk::{Line, PeakRisk, level_of, peak_by_bisection};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection};
 use crate::obstacle::{PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::tolerance;
 use crate::trajectory::Segment;
