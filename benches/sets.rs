@@ -8,7 +8,7 @@ use nalgebra::Matrix2;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use searoom::obstacle::contact::line_contact;
-use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
@@ -232,7 +232,7 @@ fn slabs(criterion: &mut Criterion) {
     });
     let initial = polygon(8, 20.0, Vector::zeros(), 0.1);
     let sets = Uncertainty::new(initial, timed.collect());
-    let o = SlabObstacle::new("slabs", sets).expect("increasing");
+    let o = Obstacle::new("slabs", sets).expect("increasing");
     let x = Vector::new(60.0, 36.0);
     assert!(o.contains(x, 60.0) && o.risk(x, 60.0) > 0.0);
     criterion.bench_function("slabs, 10 of 8 + 8/membership", |b| {

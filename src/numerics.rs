@@ -67,6 +67,25 @@ fn golden_ratio() -> f64 {
     0.5 * (5.0_f64.sqrt() - 1.0)
 }
 
+/// Bisects `steps` times between a place where a condition holds and one where it does not.
+///
+/// Returns the last place of each kind, in that order.
+pub(crate) fn bisected(
+    [mut holds, mut fails]: [f64; 2],
+    steps: usize,
+    condition: impl Fn(f64) -> bool,
+) -> [f64; 2] {
+    for _ in 0..steps {
+        let middle = 0.5 * (holds + fails);
+        if condition(middle) {
+            holds = middle;
+        } else {
+            fails = middle;
+        }
+    }
+    [holds, fails]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +99,12 @@ mod tests {
                 assert!((sum - 1.0 / f64::from(power + 1)).abs() < 1e-15, "{power}");
             }
         }
+    }
+
+    #[test]
+    fn bisection_finds_where_a_condition_ends() {
+        let [holds, fails] = bisected([4.0, 1.0], 50, |x| x * x > 2.0);
+        assert!(holds * holds > 2.0 && fails * fails <= 2.0 && holds - fails < 1e-14);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! sets, roles, and the plan that own ship follows.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
-use crate::colregs::{Risk, Role, Situation, SteadyShip, TargetMemory, Thresholds};
+use crate::colregs::{Risk, Situation, SteadyShip, TargetMemory, Thresholds};
 use crate::document::{MemoryDocument, PlanDocument, segment, steady};
 use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};

@@ -114,7 +114,7 @@ impl ShipTrack {
     }
 
     /// The position, with the heading in the middle of the possible ones.
-    pub fn middle_pose(&self) -> Pose {
+    fn middle_pose(&self) -> Pose {
         Pose::new(self.pose.position, self.middle_course())
     }
 

@@ -42,6 +42,9 @@ pub const DUPLICATE: f64 = 1e-11;
 /// Relative. A set narrower than this fraction of its extent is a segment.
 pub const THIN: f64 = 1e-12;
 
+/// Sides of the polygon around an ellipse where polygons are asked for: at most 0.12 % too large.
+pub const ELLIPSE_SIDES: usize = 64;
+
 /// Radians. A vertex at which the boundary turns by less is removed.
 pub const COLLINEAR_RAD: f64 = 1e-9;
 

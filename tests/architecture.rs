@@ -24,13 +24,13 @@ trajectory: frame tolerance geometry
 vessel: frame tolerance geometry
 map: frame geometry tolerance input
 target: frame geometry tolerance vessel
-colregs: frame tolerance geometry trajectory target vessel input text
+colregs: frame tolerance numerics geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory
 planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
 evaluation: parallel frame tolerance geometry vessel target trajectory
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
-pipeline: parallel frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario
+pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning
 study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
 document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text

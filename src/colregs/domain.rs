@@ -5,6 +5,7 @@ use super::encounter::{Risk, offset_from_wake, risk_distance};
 use super::rules::ClosedSide;
 use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::numerics::bisected;
 use crate::target::{DomainKind, ShipTrack};
 use crate::tolerance;
 use crate::vessel::OwnShip;
@@ -249,16 +250,8 @@ fn hull_or_origin(points: &[Vector]) -> ConvexPolygon {
 /// Largest fraction in `[0, 1]` that satisfies a monotonic condition, by bisection; 0 if none does.
 fn largest(holds: impl Fn(f64) -> bool) -> f64 {
     const STEPS: usize = 40;
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..STEPS {
-        let middle = 0.5 * (low + high);
-        if holds(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    let [largest, _] = bisected([0.0, 1.0], STEPS, holds);
+    largest
 }
 
 /// Relative excess of the sweep over the design inequality, for a planner that does not find the

@@ -396,22 +396,14 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
     let left = horizon - from;
-    let entry = |set: &Obstacle, times: [f64; 2]| {
-        let sets = set.sets();
-        ObstacleDocument {
+    let slabs = set.slabs().iter();
+    slabs
+        .filter(|slab| slab.start() < left || slab.start() == 0.0)
+        .map(|slab| ObstacleDocument {
             name: set.name().to_owned(),
-            valid_s: times.map(|time| from + time),
-            initial_set: (&sets.initial).into(),
-            velocity_set: (&sets.velocities[0].velocities).into(),
-        }
-    };
-    match set {
-        Obstacle::Polytope(_) | Obstacle::Ellipsoid(_) => vec![entry(set, [0.0, left])],
-        Obstacle::Slabs(o) => o
-            .slabs()
-            .iter()
-            .filter(|slab| slab.start() < left || slab.start() == 0.0)
-            .map(|slab| entry(slab.obstacle(), [slab.start(), slab.end().min(left)]))
-            .collect(),
-    }
+            valid_s: [slab.start(), slab.end().min(left)].map(|time| from + time),
+            initial_set: (&slab.obstacle().initial()).into(),
+            velocity_set: (&slab.obstacle().velocity()).into(),
+        })
+        .collect()
 }

@@ -36,22 +36,45 @@ pub enum VelocitySetDocument {
 /// All keys of a set. An untagged enum is read from these so that an error names the wrong key.
 #[derive(Deserialize)]
 struct SetKeys {
-    #[serde(alias = "vertices_mps")]
     vertices_m: Option<Vec<[f64; 2]>>,
-    #[serde(alias = "center_mps")]
     center_m: Option<[f64; 2]>,
-    #[serde(alias = "shape_m2_per_s2")]
     shape_m2: Option<[[f64; 2]; 2]>,
+    vertices_mps: Option<Vec<[f64; 2]>>,
+    center_mps: Option<[f64; 2]>,
+    shape_m2_per_s2: Option<[[f64; 2]; 2]>,
 }
 
-const NEITHER: &str =
-    "found neither vertices alone nor centre and shape alone; allowed: one of the two";
+/// The keys of one unit: those of positions, or those of velocities.
+type Keys = (
+    Option<Vec<[f64; 2]>>,
+    Option<[f64; 2]>,
+    Option<[[f64; 2]; 2]>,
+);
+
+impl SetKeys {
+    fn of_positions(self) -> Keys {
+        match (self.vertices_mps, self.center_mps, self.shape_m2_per_s2) {
+            (None, None, None) => (self.vertices_m, self.center_m, self.shape_m2),
+            _ => (None, None, None),
+        }
+    }
+
+    fn of_velocities(self) -> Keys {
+        match (self.vertices_m, self.center_m, self.shape_m2) {
+            (None, None, None) => (self.vertices_mps, self.center_mps, self.shape_m2_per_s2),
+            _ => (None, None, None),
+        }
+    }
+}
+
+const NEITHER: &str = "found neither vertices alone nor centre and shape alone, in metres or in \
+                       metres per second as the set asks; allowed: one of the two";
 
 impl TryFrom<SetKeys> for InitialSetDocument {
     type Error = &'static str;
 
     fn try_from(keys: SetKeys) -> Result<Self, Self::Error> {
-        match (keys.vertices_m, keys.center_m, keys.shape_m2) {
+        match keys.of_positions() {
             (Some(vertices_m), None, None) => Ok(Self::Polygon { vertices_m }),
             (None, Some(center_m), Some(shape_m2)) => Ok(Self::Ellipse { center_m, shape_m2 }),
             _ => Err(NEITHER),
@@ -63,14 +86,13 @@ impl TryFrom<SetKeys> for VelocitySetDocument {
     type Error = &'static str;
 
     fn try_from(keys: SetKeys) -> Result<Self, Self::Error> {
-        match InitialSetDocument::try_from(keys)? {
-            InitialSetDocument::Polygon { vertices_m } => Ok(Self::Polygon {
-                vertices_mps: vertices_m,
+        match keys.of_velocities() {
+            (Some(vertices_mps), None, None) => Ok(Self::Polygon { vertices_mps }),
+            (None, Some(center_mps), Some(shape_m2_per_s2)) => Ok(Self::Ellipse {
+                center_mps,
+                shape_m2_per_s2,
             }),
-            InitialSetDocument::Ellipse { center_m, shape_m2 } => Ok(Self::Ellipse {
-                center_mps: center_m,
-                shape_m2_per_s2: shape_m2,
-            }),
+            _ => Err(NEITHER),
         }
     }
 }

@@ -330,6 +330,16 @@ impl ConvexPolygon {
         Self::from_ccw(self.vertices.iter().map(|p| p * factor).collect())
     }
 
+    /// `c + factor (x - c)` for every `x` of the set, with its centroid `c`; `factor >= 0`.
+    pub fn scaled_about_center(&self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self.clone();
+        }
+        let center = self.centroid();
+        let scale = |p: &Vector| center + (p - center) * factor;
+        Self::from_ccw(self.vertices.iter().map(scale).collect())
+    }
+
     /// The set reflected through the origin, `-P`.
     pub fn negated(&self) -> Self {
         Self::from_ccw(self.vertices.iter().map(|p| -p).collect())

@@ -1,6 +1,6 @@
 //! A convex set of the plane: a polygon or an ellipse.
 
-use super::{ConvexPolygon, Ellipse};
+use super::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use crate::frame::Vector;
 
 /// A closed convex set: of positions in metres, or of velocities in m/s.
@@ -26,6 +26,14 @@ impl ConvexSet {
         match self {
             Self::Polygon(polygon) => polygon.clone(),
             Self::Ellipse(ellipse) => ellipse.outer_polygon(sides),
+        }
+    }
+
+    /// An ellipse that contains the set: the smallest one around a polygon.
+    pub fn outer_ellipse(&self) -> Ellipse {
+        match self {
+            Self::Polygon(polygon) => outer_enclosing_ellipse(polygon),
+            Self::Ellipse(ellipse) => *ellipse,
         }
     }
 
@@ -56,11 +64,7 @@ impl ConvexSet {
     /// `c + factor (x - c)` for every `x` of the set, with its centre `c`.
     pub fn scaled_about_center(&self, factor: f64) -> Self {
         match self {
-            Self::Polygon(polygon) => {
-                let center = polygon.centroid();
-                let about = polygon.translated(-center).scaled(factor);
-                Self::Polygon(about.translated(center))
-            }
+            Self::Polygon(polygon) => Self::Polygon(polygon.scaled_about_center(factor)),
             Self::Ellipse(ellipse) => Self::Ellipse(ellipse.scaled_about_center(factor)),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::ConvexPolygon;
 use crate::frame::Vector;
-use crate::numerics::GoldenSection;
+use crate::numerics::{GoldenSection, bisected};
 
 /// A part of a path, as parameters from 0 at its start to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,18 +34,10 @@ pub fn stretch_near(set: &ConvexPolygon, [a, b]: [Vector; 2], distance: f64) -> 
     let places = [search.left, search.right].into_iter().chain(ends);
     let (inside, _) = places.into_iter().find(|(_, gap)| *gap <= 0.0)?;
     let [from, to] = ends.map(|(end, gap_there)| {
-        let (mut within, mut beyond) = (inside, end);
         if gap_there <= 0.0 {
             return end;
         }
-        for _ in 0..STEPS {
-            let middle = 0.5 * (within + beyond);
-            if gap(middle) <= 0.0 {
-                within = middle;
-            } else {
-                beyond = middle;
-            }
-        }
+        let [within, _] = bisected([inside, end], STEPS, |share| gap(share) <= 0.0);
         within
     });
     Some(Stretch { from, to })

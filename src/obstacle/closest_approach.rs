@@ -1,6 +1,6 @@
 //! Closest point of approach to an obstacle: paper eq. (26), docs/theory.md section 5.
 
-use super::contact::clip;
+use super::contact::{Line, clip};
 use super::{MovingVertex, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::{Vector, cross};
 use crate::tolerance;
@@ -92,7 +92,7 @@ pub(super) fn polytope_approach(
     let Some(horizon) = usable_horizon(position, velocity, horizon) else {
         return ClosestApproach::contact(0.0);
     };
-    if let Some(inside) = clip(obstacle, position, velocity, 0.0, horizon, 0.0) {
+    if let Some(inside) = clip(obstacle, &Line::ahead(position, velocity, horizon), 0.0) {
         return ClosestApproach::contact(inside.start);
     }
     let mut best = Nearest {

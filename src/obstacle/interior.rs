@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use super::{ConvexObstacle, EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
@@ -12,24 +12,18 @@ impl Obstacle {
     /// An outer set that is at least a millimetre wide at every time: the set itself, or the set
     /// grown by half a millimetre. A motion that is clear of it to rounding does not touch the set.
     pub(crate) fn outer_with_interior(&self) -> Self {
-        match self {
-            Self::Polytope(o) => widened(o).into(),
-            Self::Slabs(o) => {
-                let grown = match &o.sets().initial {
-                    ConvexSet::Polygon(initial) => outer_grown(initial).map(ConvexSet::from),
-                    ConvexSet::Ellipse(initial) => outer_widened(initial).map(ConvexSet::from),
-                };
-                match grown {
-                    Some(grown) => o.with_initial(grown).into(),
-                    None => o.clone().into(),
-                }
-            }
-            Self::Ellipsoid(o) => match o.flat() {
-                Some(flat) => widened(flat).into(),
-                None if o.is_thin() => widened_needle(o).into(),
-                None => widened_ellipsoid(o).into(),
-            },
+        // the ellipse around a needle and a disc is very much wider than polygons around both
+        if let Some(needle) = self.as_ellipsoid().filter(|o| o.is_thin()) {
+            let [initial, velocity] =
+                [needle.initial(), needle.velocity()].map(|e| e.outer_polygon(DISC_SIDES));
+            let grown = outer_grown(&initial).unwrap_or(initial);
+            return PolytopeObstacle::new(needle.name(), grown, velocity).into();
         }
+        let grown = match &self.sets().initial {
+            ConvexSet::Polygon(initial) => outer_grown(initial).map(ConvexSet::from),
+            ConvexSet::Ellipse(initial) => outer_widened(initial).map(ConvexSet::from),
+        };
+        grown.map_or_else(|| self.clone(), |grown| self.with_initial(grown))
     }
 
     /// [`Obstacle::outer_with_interior`] of a set whose sections are points or segments for some
@@ -46,11 +40,12 @@ impl Obstacle {
         let flat = |initial: &ConvexPolygon, velocity: &ConvexPolygon| {
             initial.minkowski_sum(velocity).vertices().len() < 3
         };
-        match self {
-            Self::Polytope(o) => flat(o.initial(), o.velocity()),
-            // sections do not become flat again
-            Self::Slabs(o) => o.slabs()[0].obstacle().is_flat_for_a_while(),
-            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
+        // sections do not become flat again
+        match self.slabs()[0].obstacle() {
+            ConvexObstacle::Polytope(o) => flat(o.initial(), o.velocity()),
+            ConvexObstacle::Ellipsoid(o) => {
+                o.flat().is_some_and(|o| flat(o.initial(), o.velocity()))
+            }
         }
     }
 }
@@ -69,36 +64,11 @@ fn outer_grown(initial: &ConvexPolygon) -> Option<ConvexPolygon> {
     narrow.then(|| initial.minkowski_sum(&outer_disc(HALF_WIDTH_M, 0.0)))
 }
 
-fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
-    match outer_grown(obstacle.initial()) {
-        Some(grown) => PolytopeObstacle::new(obstacle.name(), grown, obstacle.velocity().clone()),
-        None => obstacle.clone(),
-    }
-}
-
-/// Polygons around both ellipses: the ellipse around a needle and a disc is very much wider.
-fn widened_needle(obstacle: &EllipsoidObstacle) -> PolytopeObstacle {
-    let polygon = |e: &Ellipse| e.outer_polygon(DISC_SIDES);
-    let grown = polygon(obstacle.initial()).minkowski_sum(&outer_disc(HALF_WIDTH_M, 0.0));
-    PolytopeObstacle::new(obstacle.name(), grown, polygon(obstacle.velocity()))
-}
-
-fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
-    match outer_widened(obstacle.initial()) {
-        Some(grown) => EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity()),
-        None => obstacle.clone(),
-    }
-}
-
 /// [`outer_grown`] for an ellipse.
 fn outer_widened(initial: &Ellipse) -> Option<Ellipse> {
     let [_, b] = initial.semi_axes();
     (b.norm() < HALF_WIDTH_M).then(|| {
-        let axes = [
-            Vector::new(HALF_WIDTH_M, 0.0),
-            Vector::new(0.0, HALF_WIDTH_M),
-        ];
-        let disc = Ellipse::from_axes(Vector::zeros(), axes);
+        let disc = Ellipse::disc(Vector::zeros(), HALF_WIDTH_M);
         EllipsoidObstacle::new("", *initial, disc).outer_section(1.0)
     })
 }

@@ -1,9 +1,9 @@
 //! Space-time obstacles: sets that contain every position a target may reach, at every time.
 //!
-//! [`PolytopeObstacle`] is exact for its sets. [`EllipsoidObstacle`] is an outer set.
-//! [`SlabObstacle`] is a sequence of these: its velocity set changes with time. All three implement
-//! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`LandObstacle`] is land: many static convex
-//! sets.
+//! [`PolytopeObstacle`] is exact for its sets. [`EllipsoidObstacle`] is an outer set. Both are
+//! convex in space-time. An [`Obstacle`] is one of these, or a sequence where the velocity set
+//! changes with time. All three implement [`SpaceTimeObstacle`]. [`LandObstacle`] is land: many
+//! static convex sets.
 
 mod closest_approach;
 pub mod contact;
@@ -12,7 +12,6 @@ mod interior;
 mod land;
 mod polytope;
 mod projection;
-mod representation;
 mod risk;
 mod slabs;
 mod space_time_obstacle;
@@ -25,8 +24,7 @@ pub use land::{LAND, LandObstacle};
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{PathTime, Track, along_path};
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
-pub use representation::Obstacle;
 pub use risk::{PeakRisk, level_sets};
-pub use slabs::{Slab, SlabError, SlabObstacle};
+pub use slabs::{ConvexObstacle, Obstacle, Slab, SlabError};
 pub use space_time_obstacle::{SpaceTimeObstacle, Support};
 pub use velocity_obstacle::{HalfPlane, VelocityObstacle};

@@ -1,11 +1,10 @@
 //! Risk: the factor by which a target's velocities must shrink until a point is out of reach, paper
 //! eqs. (22)-(25), docs/theory.md section 4.
 
+use super::contact::Line;
 use super::{HalfSpace, Obstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
 use crate::tolerance;
-use crate::trajectory::Segment;
 
 /// The largest risk along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,16 +47,6 @@ pub fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
     } else {
         whole.to_vec()
     }
-}
-
-/// `v + alpha (V - v)` about the centroid `v`, paper eq. (22).
-pub(super) fn scaled_velocities(velocity: &ConvexPolygon, alpha: f64) -> ConvexPolygon {
-    if alpha == 1.0 {
-        return velocity.clone();
-    }
-    let center = velocity.centroid();
-    let scale = |v: &Vector| center + (v - center) * alpha;
-    ConvexPolygon::from_ccw(velocity.vertices().iter().map(scale).collect())
 }
 
 /// Dependence of one face on alpha.
@@ -109,38 +98,6 @@ pub(super) fn polytope_alpha(
     }
     // 0 / 0 at the start, within O_0
     if most == 0.0 { 0.0 } else { most / time }
-}
-
-/// A straight motion: `origin` is own ship's position at t = 0, extrapolated from `[start, end]`.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
-    pub origin: Vector,
-    pub velocity: Vector,
-    pub start: f64,
-    pub end: f64,
-}
-
-impl Line {
-    /// The motion from `origin` at t = 0 to `end` seconds.
-    pub(super) fn ahead(origin: Vector, velocity: Vector, end: f64) -> Self {
-        Self {
-            origin,
-            velocity,
-            start: 0.0,
-            end,
-        }
-    }
-
-    /// The motion of a straight segment, from t = 0 on.
-    pub(super) fn of(segment: &Segment) -> Self {
-        let velocity = segment.start.ahead() * segment.speed;
-        Self {
-            origin: segment.start.position - velocity * segment.start_time,
-            velocity,
-            start: segment.start_time.max(0.0),
-            end: segment.end_time(),
-        }
-    }
 }
 
 /// `a u + b`.

@@ -1,22 +1,17 @@
-//! Obstacles whose velocity set changes with time: a sequence of polytopes or of ellipsoids,
-//! docs/theory.md section 10 (ii).
+//! An obstacle as slabs in time, each convex in space-time: one where the velocity set never
+//! changes, else one per velocity set, docs/theory.md section 10 (ii).
 
 use std::sync::{Arc, OnceLock};
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexSet, Ellipse, SignedDistance};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, SignedDistance};
 use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
-use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection};
 use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
-use crate::obstacle::{
-    EllipsoidObstacle, HalfSpace, Obstacle, PolytopeObstacle, SpaceTimeObstacle, Support,
-};
-use crate::target::Uncertainty;
-use crate::tolerance;
+use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
+use crate::target::{Representation, TimedVelocitySet, Uncertainty};
+use crate::tolerance::{self, ELLIPSE_SIDES};
 use crate::trajectory::{Segment, Trajectory};
-
-/// Sides of the polygon around an ellipse beside polygons.
-const SIDES: usize = 64;
 
 /// Why velocity sets do not form a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -38,12 +33,71 @@ pub enum SlabError {
     },
 }
 
+/// An obstacle that is convex in space-time: its velocity set never changes.
+///
+/// It is an enum and not a trait object because planners match on the kind, and documents write
+/// each kind with its own keys.
+#[derive(Debug, Clone)]
+pub enum ConvexObstacle {
+    /// Exact, paper eqs. (2)-(9).
+    Polytope(PolytopeObstacle),
+    /// Outer set, paper eqs. (12)-(19). Boxed because it is several times larger than the other.
+    Ellipsoid(Box<EllipsoidObstacle>),
+}
+
+impl ConvexObstacle {
+    /// From two sets: an ellipsoid where both are ellipses, else a polytope around them.
+    fn outer_of(name: &str, initial: &ConvexSet, velocity: &ConvexSet) -> Self {
+        match (initial, velocity) {
+            (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
+                let ellipsoid = EllipsoidObstacle::new(name, *initial, *velocity);
+                Self::Ellipsoid(Box::new(ellipsoid))
+            }
+            (initial, velocity) => {
+                let [initial, velocity] =
+                    [initial, velocity].map(|set| set.outer_polygon(ELLIPSE_SIDES));
+                Self::Polytope(PolytopeObstacle::new(name, initial, velocity))
+            }
+        }
+    }
+
+    /// The set at the start of its clock, metres.
+    pub fn initial(&self) -> ConvexSet {
+        match self {
+            Self::Polytope(o) => o.initial().clone().into(),
+            Self::Ellipsoid(o) => (*o.initial()).into(),
+        }
+    }
+
+    /// The velocity set, m/s.
+    pub fn velocity(&self) -> ConvexSet {
+        match self {
+            Self::Polytope(o) => o.velocity().clone().into(),
+            Self::Ellipsoid(o) => (*o.velocity()).into(),
+        }
+    }
+
+    fn section(&self, time: f64) -> ConvexSet {
+        match self {
+            Self::Polytope(o) => o.section(time).into(),
+            Self::Ellipsoid(o) => o.outer_section(time).into(),
+        }
+    }
+
+    fn set(&self) -> &dyn SpaceTimeObstacle {
+        match self {
+            Self::Polytope(o) => o,
+            Self::Ellipsoid(o) => o.as_ref(),
+        }
+    }
+}
+
 /// A time interval with one velocity set.
 #[derive(Debug, Clone)]
 pub struct Slab {
     start: f64,
     end: f64,
-    obstacle: Obstacle,
+    obstacle: ConvexObstacle,
     /// Faces of a polytope, computed when alpha is first asked for.
     faces: OnceLock<Vec<SlabFace>>,
     /// Displacement of the target until the slab's start with the central velocities, metres.
@@ -63,9 +117,9 @@ impl Slab {
         self.end
     }
 
-    /// The convex body of this slab, a polytope or an ellipsoid: its initial set is the section at
-    /// the slab's start, its clock starts there.
-    pub fn obstacle(&self) -> &Obstacle {
+    /// The convex body of this slab: its initial set is the section at the slab's start, its clock
+    /// starts there.
+    pub fn obstacle(&self) -> &ConvexObstacle {
         &self.obstacle
     }
 
@@ -74,15 +128,15 @@ impl Slab {
     /// their sum. `None` where that is unbounded, for an ellipse that is a segment.
     pub fn outer_polytope(&self, duration: f64) -> Option<PolytopeObstacle> {
         match &self.obstacle {
-            Obstacle::Polytope(o) => Some(o.clone()),
-            Obstacle::Ellipsoid(o) => {
+            ConvexObstacle::Polytope(o) => Some(o.clone()),
+            ConvexObstacle::Ellipsoid(o) => {
                 let growth = o.largest_ratio_to_sum(duration);
-                let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(SIDES);
+                let around =
+                    |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(ELLIPSE_SIDES);
                 let polytope =
                     || PolytopeObstacle::new("", around(o.initial()), around(o.velocity()));
                 growth.is_finite().then(polytope)
             }
-            Obstacle::Slabs(_) => None,
         }
     }
 }
@@ -106,7 +160,7 @@ struct SlabFace {
 /// from it. Sections and slabs are convex. The whole is not where the sets grow, so every query
 /// goes slab by slab. A slab of polygons has the faces of `O_0` and of all sets so far.
 #[derive(Debug, Clone)]
-pub struct SlabObstacle {
+pub struct Obstacle {
     shared: Arc<Shared>,
 }
 
@@ -118,15 +172,47 @@ struct Shared {
     slabs: Vec<Slab>,
 }
 
-impl PartialEq for SlabObstacle {
+impl From<ConvexObstacle> for Obstacle {
+    fn from(obstacle: ConvexObstacle) -> Self {
+        let name = obstacle.set().name().to_owned();
+        let sets = Uncertainty::constant(obstacle.initial(), obstacle.velocity());
+        let slab = Slab {
+            start: 0.0,
+            end: f64::INFINITY,
+            obstacle,
+            faces: OnceLock::new(),
+            nominal: Vector::zeros(),
+            displacement: None,
+        };
+        let slabs = vec![slab];
+        Self {
+            shared: Arc::new(Shared { name, sets, slabs }),
+        }
+    }
+}
+
+impl From<PolytopeObstacle> for Obstacle {
+    fn from(obstacle: PolytopeObstacle) -> Self {
+        ConvexObstacle::Polytope(obstacle).into()
+    }
+}
+
+impl From<EllipsoidObstacle> for Obstacle {
+    fn from(obstacle: EllipsoidObstacle) -> Self {
+        ConvexObstacle::Ellipsoid(Box::new(obstacle)).into()
+    }
+}
+
+impl PartialEq for Obstacle {
     fn eq(&self, other: &Self) -> bool {
         // everything else follows from these
         self.name() == other.name() && self.sets() == other.sets()
     }
 }
 
-impl SlabObstacle {
-    /// From the sets of a target. The last velocity set has no end, whatever its `until`.
+impl Obstacle {
+    /// From the sets of a target: all ellipses, or all polygons, else polygons around the ellipses.
+    /// The last velocity set has no end, whatever its `until`.
     pub fn new(name: impl Into<String>, sets: Uncertainty) -> Result<Self, SlabError> {
         let Some((_, changes)) = sets.velocities.split_last() else {
             return Err(SlabError::Empty);
@@ -154,9 +240,9 @@ impl SlabObstacle {
         let round =
             is_round(&sets.initial) && sets.velocities.iter().all(|v| is_round(&v.velocities));
         if !round {
-            sets.initial = sets.initial.outer_polygon(SIDES).into();
+            sets.initial = sets.initial.outer_polygon(ELLIPSE_SIDES).into();
             for set in &mut sets.velocities {
-                set.velocities = set.velocities.outer_polygon(SIDES).into();
+                set.velocities = set.velocities.outer_polygon(ELLIPSE_SIDES).into();
             }
         }
         let mut slabs: Vec<Slab> = Vec::with_capacity(sets.velocities.len());
@@ -165,7 +251,7 @@ impl SlabObstacle {
         let mut section = sets.initial.clone();
         for set in &sets.velocities {
             let end = set.until;
-            let obstacle = body(&name, &section, &set.velocities);
+            let obstacle = ConvexObstacle::outer_of(&name, &section, &set.velocities);
             let center = set.velocities.center();
             let moved = displacement
                 .map(|displacement| displacement_after(displacement, &set.velocities, end - start));
@@ -223,10 +309,77 @@ impl SlabObstacle {
         &self.shared.slabs
     }
 
+    /// The only slab's body, where the velocity set never changes.
+    fn as_convex(&self) -> Option<&ConvexObstacle> {
+        match self.slabs() {
+            [slab] => Some(&slab.obstacle),
+            _ => None,
+        }
+    }
+
+    /// The polytope, if it is one.
+    pub fn as_polytope(&self) -> Option<&PolytopeObstacle> {
+        match self.as_convex() {
+            Some(ConvexObstacle::Polytope(o)) => Some(o),
+            _ => None,
+        }
+    }
+
+    /// The ellipsoid, if it is one.
+    pub fn as_ellipsoid(&self) -> Option<&EllipsoidObstacle> {
+        match self.as_convex() {
+            Some(ConvexObstacle::Ellipsoid(o)) => Some(o),
+            _ => None,
+        }
+    }
+
+    /// Kind of the sections.
+    pub fn representation(&self) -> Representation {
+        match self.sets().initial {
+            ConvexSet::Polygon(_) => Representation::Polytope,
+            ConvexSet::Ellipse(_) => Representation::Ellipsoid,
+        }
+    }
+
     /// The section `O_t` for `t >= 0`. O(faces).
     pub fn section(&self, time: f64) -> ConvexSet {
         let slab = self.slab_at(time);
         slab.obstacle.section(time - slab.start)
+    }
+
+    /// Polygon that contains the section, metres: exact for polygons, the circumscribed
+    /// 64-gon of an ellipse.
+    pub fn outer_section(&self, time: f64) -> ConvexPolygon {
+        self.section(time).outer_polygon(ELLIPSE_SIDES)
+    }
+
+    /// The obstacle from `time` on, with a clock that starts then.
+    ///
+    /// Exact for polygons; an outer set for ellipses. A time below 0 or NaN counts as
+    /// 0.
+    pub fn remainder(&self, time: f64) -> Self {
+        // negated so that a NaN counts as 0
+        if !(time > 0.0) {
+            return self.clone();
+        }
+        // the last set never ends, so one remains, and the ends increase
+        Self::new(self.name(), self.remaining_sets(time)).unwrap_or_else(|_| self.clone())
+    }
+
+    /// The sets of [`Self::remainder`], for a finite time.
+    pub(crate) fn remaining_sets(&self, time: f64) -> Uncertainty {
+        let sets = self.sets();
+        // negated so that a NaN counts as 0
+        if !(time > 0.0) {
+            return sets.clone();
+        }
+        let later = sets.velocities.iter().filter(|set| set.until > time);
+        let mut later: Vec<TimedVelocitySet> = later
+            .map(|set| TimedVelocitySet::new(set.until - time, set.velocities.clone()))
+            .collect();
+        // two ends may round to one
+        later.dedup_by(|next, set| !(next.until > set.until));
+        Uncertainty::new(self.section(time), later)
     }
 
     /// The largest risk over a chain of segments. Level sets are within the set, so they are
@@ -245,10 +398,12 @@ impl SlabObstacle {
             let parts = during.map(|s| s.between(slab.start, slab.end));
             met.extend(
                 parts
-                    .filter(|part| contact_within(&slab.obstacle, slab.start, part, 0.0).is_some())
+                    .filter(|part| {
+                        contact_within(slab.obstacle.set(), slab.start, part, 0.0).is_some()
+                    })
                     .map(|part| (index, part)),
             );
-            if let (true, Obstacle::Polytope(o)) = (met.len() > before, &slab.obstacle) {
+            if let (true, ConvexObstacle::Polytope(o)) = (met.len() > before, &slab.obstacle) {
                 levels.push((index, o.clone()));
             }
         }
@@ -256,7 +411,7 @@ impl SlabObstacle {
             let alpha = level_of(risk);
             for (index, level) in &mut levels {
                 let slab = &self.slabs()[*index];
-                let Obstacle::Polytope(whole) = &slab.obstacle else {
+                let ConvexObstacle::Polytope(whole) = &slab.obstacle else {
                     continue;
                 };
                 let faces = slab.faces.get_or_init(|| self.faces_of(slab, whole));
@@ -276,7 +431,7 @@ impl SlabObstacle {
                     levels.binary_search_by_key(index, |(slab, _)| *slab),
                 ) {
                     (Some(round), _) => {
-                        contact_within(&round.slabs()[*index].obstacle, start, part, 0.0)
+                        contact_within(round.slabs()[*index].obstacle.set(), start, part, 0.0)
                     }
                     (None, Ok(k)) => contact_within(&levels[k].1, start, part, 0.0),
                     (None, Err(_)) => None,
@@ -308,7 +463,7 @@ impl SlabObstacle {
 
 /// First contact of a part of a segment with the body of a slab that begins at `start`.
 fn contact_within(
-    body: &impl SpaceTimeObstacle,
+    body: &dyn SpaceTimeObstacle,
     start: f64,
     part: &Segment,
     depth: f64,
@@ -322,43 +477,47 @@ fn contact_within(
     contact.map(|t| (t + start).max(part.start_time).min(part.end_time()))
 }
 
-impl SpaceTimeObstacle for SlabObstacle {
+impl SpaceTimeObstacle for Obstacle {
     fn name(&self) -> &str {
         &self.shared.name
     }
 
     fn support(&self, normal: Vector, time: f64) -> Support {
         let slab = self.slab_at(time);
-        slab.obstacle.support(normal, time - slab.start)
+        slab.obstacle.set().support(normal, time - slab.start)
     }
 
     fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance {
         let slab = self.slab_at(time);
-        slab.obstacle.signed_distance(position, time - slab.start)
+        slab.obstacle
+            .set()
+            .signed_distance(position, time - slab.start)
     }
 
     fn contains(&self, position: Vector, time: f64) -> bool {
         let slab = self.slab_at(time);
-        slab.obstacle.contains(position, time - slab.start)
+        slab.obstacle.set().contains(position, time - slab.start)
     }
 
     fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64> {
+        if let Some(convex) = self.as_convex() {
+            return convex.set().first_contact(segment, depth);
+        }
         if !(segment.is_valid() && depth.is_finite()) {
             return Some(segment.start_time);
         }
         self.slabs_within(segment.start_time, segment.end_time())
             .find_map(|(slab, from, to)| {
-                contact_within(
-                    &slab.obstacle,
-                    slab.start,
-                    &segment.between(from, to),
-                    depth,
-                )
+                let part = segment.between(from, to);
+                contact_within(slab.obstacle.set(), slab.start, &part, depth)
             })
     }
 
     /// One alpha for all velocity sets, each about its own centre. O(faces).
     fn alpha(&self, position: Vector, time: f64) -> f64 {
+        if let Some(convex) = self.as_convex() {
+            return convex.set().alpha(position, time);
+        }
         if time < 0.0 {
             return f64::INFINITY;
         }
@@ -367,7 +526,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         let elapsed = time - slab.start;
         let velocities = &self.sets().velocities[index].velocities;
         let obstacle = match (&slab.obstacle, slab.displacement, &self.sets().initial) {
-            (Obstacle::Polytope(obstacle), ..) => obstacle,
+            (ConvexObstacle::Polytope(obstacle), ..) => obstacle,
             // the section is that of one ellipsoid after a second, in which it moves by the displacement
             (_, Some(displacement), ConvexSet::Ellipse(initial)) if time.is_finite() => {
                 let displacement = displacement_after(displacement, velocities, elapsed);
@@ -394,14 +553,17 @@ impl SpaceTimeObstacle for SlabObstacle {
         most
     }
 
-    /// By bisection over exact contacts, to [`tolerance::RISK`].
+    /// For several slabs by bisection over exact contacts, to [`tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
-        self.peak_over(std::slice::from_ref(segment))
+        match self.as_convex() {
+            Some(convex) => convex.set().peak_risk(segment),
+            None => self.peak_over(std::slice::from_ref(segment)),
+        }
     }
 
     /// [`Self::peak_risk`] with each level set built once for all segments.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
-        if trajectory.steered().is_some() {
+        if self.as_convex().is_some() || trajectory.steered().is_some() {
             return largest_risk_of_parts(self, trajectory);
         }
         self.peak_over(trajectory.segments())
@@ -414,10 +576,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         }
         let mut sets = self.sets().clone();
         for set in &mut sets.velocities {
-            set.velocities = match &set.velocities {
-                ConvexSet::Polygon(set) => scaled_velocities(set, alpha).into(),
-                set => set.scaled_about_center(alpha),
-            };
+            set.velocities = set.velocities.scaled_about_center(alpha);
         }
         Self::from_sequence(self.shared.name.clone(), sets)
     }
@@ -435,7 +594,10 @@ impl SpaceTimeObstacle for SlabObstacle {
         let mut best: Option<ClosestApproach> = None;
         for (slab, start, end) in self.slabs_within(0.0, horizon) {
             let at = position + velocity * slab.start;
-            let here = slab.obstacle.closest_approach(at, velocity, end - start);
+            let here = slab
+                .obstacle
+                .set()
+                .closest_approach(at, velocity, end - start);
             let here = ClosestApproach {
                 time: here.time + slab.start,
                 ..here
@@ -454,22 +616,9 @@ impl SpaceTimeObstacle for SlabObstacle {
         };
         self.slabs_within(0.0, horizon).any(|(slab, start, end)| {
             let at = position + velocity * slab.start;
-            slab.obstacle
-                .in_velocity_obstacle(at, velocity, end - start)
+            let convex = slab.obstacle.set();
+            convex.in_velocity_obstacle(at, velocity, end - start)
         })
-    }
-}
-
-/// The convex body of two sets of one kind.
-fn body(name: &str, initial: &ConvexSet, velocity: &ConvexSet) -> Obstacle {
-    match (initial, velocity) {
-        (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
-            EllipsoidObstacle::new(name, *initial, *velocity).into()
-        }
-        (initial, velocity) => {
-            let [initial, velocity] = [initial, velocity].map(|set| set.outer_polygon(SIDES));
-            PolytopeObstacle::new(name, initial, velocity).into()
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 //! section 5.3.
 
 use super::closest_approach::from_zero;
-use super::{HalfSpace, PolytopeObstacle, Slab, SlabObstacle};
+use super::{HalfSpace, Obstacle, PolytopeObstacle, Slab};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::{ConvexPolygon, clipped};
 
@@ -124,7 +124,25 @@ impl VelocityObstacle {
     }
 }
 
-impl SlabObstacle {
+impl Obstacle {
+    /// The velocity obstacle as a union of convex regions.
+    ///
+    /// `None` for ellipsoids that are not flat: their velocity obstacle is one convex region without
+    /// corners, [`super::EllipsoidObstacle::outer_velocities_within`].
+    pub fn velocity_obstacles(
+        &self,
+        position: Vector,
+        horizon: f64,
+    ) -> Option<Vec<VelocityObstacle>> {
+        match self.as_ellipsoid() {
+            Some(ellipsoid) => {
+                let flat = ellipsoid.flat()?;
+                Some(vec![flat.velocity_obstacle(position, horizon)])
+            }
+            None => Some(self.outer_velocity_obstacles(position, horizon)),
+        }
+    }
+
     /// The velocity obstacle within `horizon` seconds as a union of convex regions, one per slab.
     /// O(n log n) in the faces of each slab.
     ///

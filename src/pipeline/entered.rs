@@ -1,7 +1,8 @@
 //! Motions that enter hard sets, and when they have left them.
 
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::numerics::bisected;
+use crate::obstacle::{ConvexObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::NominalTarget;
 use crate::target::{Motion, Target};
 use crate::tolerance::TOUCH_M;
@@ -86,15 +87,7 @@ pub(super) fn left_for_good(
         if next >= end {
             return Some(end);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (last + next);
-            if inside(middle) {
-                last = middle;
-            } else {
-                next = middle;
-            }
-        }
-        from = next;
+        [_, from] = bisected([last, next], HALVINGS, inside);
         match contact(from) {
             Some(again) => met = again,
             None => return Some(from),
@@ -104,14 +97,11 @@ pub(super) fn left_for_good(
 
 /// Upper bound of the speed of any point of a set, m/s; infinite where unknown.
 fn greatest_speed(set: &Obstacle) -> f64 {
-    match set {
-        Obstacle::Polytope(o) => o.velocity().reach(),
-        Obstacle::Slabs(o) => {
-            let speeds = o.slabs().iter().map(|slab| greatest_speed(slab.obstacle()));
-            speeds.fold(0.0, f64::max)
-        }
-        Obstacle::Ellipsoid(_) => f64::INFINITY,
-    }
+    let speeds = set.slabs().iter().map(|slab| match slab.obstacle() {
+        ConvexObstacle::Polytope(o) => o.velocity().reach(),
+        ConvexObstacle::Ellipsoid(_) => f64::INFINITY,
+    });
+    speeds.fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -124,12 +114,7 @@ mod tests {
     /// Leaving a large set takes half an hour: found, or nothing is claimed when the time is up.
     #[test]
     fn out_of_time_nothing_is_claimed_of_a_set() {
-        let around = |size: f64| {
-            Ellipse::from_axes(
-                Vector::zeros(),
-                [Vector::new(size, 0.0), Vector::new(0.0, size)],
-            )
-        };
+        let around = |size: f64| Ellipse::disc(Vector::zeros(), size);
         let set = EllipsoidObstacle::new("storm", around(9000.0), around(1e-3)).into();
         let way = Segment {
             start: Pose::new(Vector::zeros(), 0.0),

@@ -9,6 +9,7 @@ use super::entered;
 use super::remainder::{begins_another, better_remainder};
 use super::rules::{self, encountered, first_turn};
 use super::sets::TargetSets;
+use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
@@ -652,15 +653,7 @@ impl Relaxer<'_> {
             if !sets.has_domain() || clear(1.0) {
                 return 1.0;
             }
-            let (mut retained, mut entered) = (0.0, 1.0);
-            for _ in 0..RETAINED_HALVINGS {
-                let scale = 0.5 * (retained + entered);
-                if clear(scale) {
-                    retained = scale;
-                } else {
-                    entered = scale;
-                }
-            }
+            let [retained, _] = bisected([0.0, 1.0], RETAINED_HALVINGS, clear);
             retained
         })
         .collect()

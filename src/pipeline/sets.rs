@@ -2,7 +2,7 @@
 
 use super::rules::without_domains_of_give_way_targets;
 use crate::colregs::{self, Encounter, Role, ShipDomain, TargetMemory};
-use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_enclosing_ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::parallel;
 use crate::scenario::Scenario;
@@ -154,15 +154,11 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
 /// target's representation asks for one.
 fn obstacle(target: &Target, sets: Uncertainty) -> Obstacle {
     // should the ends not increase: one polytope with all velocities contains the slabs
-    let whole = |sets: &Uncertainty| {
+    let found = Obstacle::new(target.name.clone(), sets.clone()).unwrap_or_else(|_| {
         let initial = sets.initial.outer_polygon(DISC_SIDES);
         let velocity = sets.outer_velocities_after(f64::NEG_INFINITY);
-        PolytopeObstacle::new(target.name.clone(), initial, velocity)
-    };
-    let found = match Obstacle::new(target.name.clone(), sets.clone()) {
-        Ok(obstacle) => obstacle,
-        Err(_) => whole(&sets).into(),
-    };
+        PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
+    });
     match (target.representation, found.as_polytope()) {
         (Representation::Ellipsoid, Some(polytope)) => EllipsoidObstacle::outer_of(polytope).into(),
         _ => found,
@@ -171,14 +167,8 @@ fn obstacle(target: &Target, sets: Uncertainty) -> Obstacle {
 
 /// The obstacle with another set at t = 0, metres.
 fn with_initial(known: &Obstacle, initial: ConvexPolygon) -> Obstacle {
-    match known {
-        Obstacle::Slabs(o) => o.with_initial(initial).into(),
-        Obstacle::Polytope(o) => {
-            PolytopeObstacle::new(o.name(), initial, o.velocity().clone()).into()
-        }
-        Obstacle::Ellipsoid(o) => {
-            let initial = outer_enclosing_ellipse(&initial);
-            EllipsoidObstacle::new(o.name(), initial, *o.velocity()).into()
-        }
+    match known.sets().initial {
+        ConvexSet::Polygon(_) => known.with_initial(initial),
+        ConvexSet::Ellipse(_) => known.with_initial(outer_enclosing_ellipse(&initial)),
     }
 }

@@ -3,9 +3,7 @@
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet};
-
-/// Number of sides of the polygon around an ellipse in figures: at most 0.12 % too large.
-const SET_SIDES: usize = 64;
+use crate::tolerance::ELLIPSE_SIDES;
 
 /// A velocity set that holds until some time, one of a sequence.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,10 +60,10 @@ impl Uncertainty {
     /// A polygon that contains the possible positions at `time >= 0`, metres: the Minkowski sum of
     /// the sets, with the circumscribed 64-gons of ellipses.
     pub fn outer_section(&self, time: f64) -> ConvexPolygon {
-        let initial = self.initial.outer_polygon(SET_SIDES);
+        let initial = self.initial.outer_polygon(ELLIPSE_SIDES);
         self.durations(time)
             .fold(initial, |set, (duration, velocities)| {
-                let velocities = velocities.outer_polygon(SET_SIDES);
+                let velocities = velocities.outer_polygon(ELLIPSE_SIDES);
                 set.minkowski_sum(&velocities.scaled(duration))
             })
     }
@@ -81,26 +79,33 @@ impl Uncertainty {
             .velocities
             .iter()
             .filter(move |set| !(set.until <= start));
-        later.map(|set| (set.until, set.velocities.outer_polygon(SET_SIDES)))
+        later.map(|set| (set.until, set.velocities.outer_polygon(ELLIPSE_SIDES)))
     }
 
     /// A polygon that contains every velocity after `time`, m/s: the convex hull of the sets, with
     /// the circumscribed 64-gons of ellipses.
     pub fn outer_velocities_after(&self, time: f64) -> ConvexPolygon {
-        let later = self.outer_velocities_from(time);
-        let points: Vec<Vector> = later.flat_map(|(_, set)| set.vertices().to_vec()).collect();
+        let later = self.outer_velocities_from(time).map(|(_, set)| set);
+        let later: Vec<ConvexPolygon> = later.collect();
+        if let [only] = &later[..] {
+            return only.clone();
+        }
+        let points: Vec<Vector> = later
+            .iter()
+            .flat_map(|set| set.vertices().to_vec())
+            .collect();
         ConvexPolygon::hull(&points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
     }
 
     /// Upper bound of the speed, m/s; exact for polygons.
     pub fn top_speed(&self) -> f64 {
         let sets = self.velocities.iter();
-        let speeds = sets.map(|set| set.velocities.outer_polygon(SET_SIDES).reach());
+        let speeds = sets.map(|set| set.velocities.outer_polygon(ELLIPSE_SIDES).reach());
         speeds.fold(0.0, f64::max)
     }
 
     /// Each velocity set before `time` with its duration, seconds; NaN for a NaN.
-    pub(crate) fn durations(&self, time: f64) -> impl Iterator<Item = (f64, &ConvexSet)> {
+    fn durations(&self, time: f64) -> impl Iterator<Item = (f64, &ConvexSet)> {
         let starts = std::iter::once(0.0).chain(self.velocities.iter().map(|set| set.until));
         starts
             .zip(&self.velocities)

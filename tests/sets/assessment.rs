@@ -289,7 +289,7 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
                     most.fold(f64::NEG_INFINITY, f64::max)
                 })
                 .fold(f64::INFINITY, f64::min);
-            let meets = Obstacle::from(slabs.clone()).in_velocity_obstacle(position, v, horizon);
+            let meets = slabs.in_velocity_obstacle(position, v, horizon);
             if beyond.abs() > 1e-9 {
                 assert_eq!(meets, beyond < 0.0, "{v:?} {beyond}");
             }

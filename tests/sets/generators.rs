@@ -11,7 +11,7 @@ use proptest::sample::select;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
@@ -102,23 +102,23 @@ pub fn ellipsoid() -> impl Strategy<Value = EllipsoidObstacle> {
     sets.prop_map(|(initial, velocity)| EllipsoidObstacle::new("ellipsoid", initial, velocity))
 }
 
-pub fn slabs() -> impl Strategy<Value = SlabObstacle> {
+pub fn slabs() -> impl Strategy<Value = Obstacle> {
     (polygon(60.0), vec((1.0..40.0, polygon(2.0)), 1..5)).prop_map(in_sequence)
 }
 
 /// A sequence of velocity ellipses.
-pub fn round_slabs() -> impl Strategy<Value = SlabObstacle> {
+pub fn round_slabs() -> impl Strategy<Value = Obstacle> {
     (ellipse(60.0), vec((1.0..40.0, ellipse(2.0)), 2..5)).prop_map(in_sequence)
 }
 
 /// Sets with the duration of each velocity set.
-fn in_sequence<S: Into<ConvexSet>>((initial, slabs): (S, Vec<(f64, S)>)) -> SlabObstacle {
+fn in_sequence<S: Into<ConvexSet>>((initial, slabs): (S, Vec<(f64, S)>)) -> Obstacle {
     let mut until = 0.0;
     let timed = slabs.into_iter().map(|(duration, velocities)| {
         until += duration;
         TimedVelocitySet::new(until, velocities)
     });
-    SlabObstacle::new("slabs", Uncertainty::new(initial, timed.collect())).expect("increasing")
+    Obstacle::new("slabs", Uncertainty::new(initial, timed.collect())).expect("increasing")
 }
 
 /// Support of the exact sum `O_0 ⊕ t V` of two ellipses.
@@ -131,7 +131,7 @@ pub fn obstacle() -> impl Strategy<Value = Obstacle> {
     prop_oneof![
         polytope().prop_map(Obstacle::from),
         ellipsoid().prop_map(Obstacle::from),
-        slabs().prop_map(Obstacle::from),
+        slabs(),
     ]
 }
 

@@ -5,10 +5,11 @@ use std::fmt::Debug;
 use proptest::prelude::*;
 use proptest::sample::select;
 use searoom::frame::{Vector, heading_of};
+use searoom::obstacle::SpaceTimeObstacle;
 use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
-use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
+use searoom::target::Representation;
 use searoom::trajectory::Segment;
 
 use super::generators::{
@@ -348,7 +349,7 @@ fn a_contact_begins_and_ends_where_the_set_does() {
 /// An ellipse is exact at first and never smaller.
 #[test]
 fn what_remains_of_a_set_goes_on_from_its_section() {
-    let any = prop_oneof![3 => obstacle(), 1 => round_slabs().prop_map(Obstacle::from)];
+    let any = prop_oneof![3 => obstacle(), 1 => round_slabs()];
     let cases = (any, 0.5..100.0, 0.0..20.0, 20.0..90.0);
     check(506, 600, cases, |(o, time, soon, late)| {
         let rest = o.remainder(time);
@@ -356,7 +357,7 @@ fn what_remains_of_a_set_goes_on_from_its_section() {
             for n in directions(24) {
                 let was = o.support(n, time + later).value;
                 let is = rest.support(n, later).value;
-                let equal = later == 0.0 || o.representation() == "polytope";
+                let equal = later == 0.0 || o.representation() == Representation::Polytope;
                 assert!(
                     is > was - 1e-6 && (!equal || is < was + 1e-6),
                     "{later} {was} {is}"

@@ -194,7 +194,7 @@ fn the_outer_ellipse_holds_the_sum_and_is_the_one_of_least_trace() {
         // the minimum over c of (1 + 1/c) Q_o + (1 + c) t² Q_v, by search
         let q = o.initial().shape().trace();
         let v = o.velocity().shape().trace() * time * time;
-        if q > 1e-6 && v > 1e-6 && !o.is_flat() {
+        if q > 1e-6 && v > 1e-6 && o.flat().is_none() {
             let of = |log: f64| (1.0 + (-log).exp()) * q + (1.0 + log.exp()) * v;
             let least = of(golden_maximum(-30.0, 30.0, |log| -of(log)));
             let found = o.outer_section(time).shape().trace();

@@ -2,7 +2,7 @@
 
 use searoom::evaluation::Violation;
 use searoom::geometry::{ConvexPolygon, outer_disc};
-use searoom::obstacle::SlabObstacle;
+use searoom::obstacle::Obstacle;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, ShipTrack};
 use serde_json::{Value, json};
@@ -243,12 +243,12 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let ship = turning.targets[0].ship().expect("a ship").clone();
     let velocities = ship.outer_velocity_sets(ship.turn_rate, turning.horizon);
     let initial = around(&ship, ship.outer_hull(0.0));
-    let slabs = SlabObstacle::new("x", searoom::target::Uncertainty::new(initial, velocities))
+    let slabs = Obstacle::new("x", searoom::target::Uncertainty::new(initial, velocities))
         .expect("in order");
     let mut altered = document(turning);
     let entries = list(&mut altered, "/obstacles").iter_mut();
     for (entry, slab) in entries.zip(slabs.slabs()) {
-        entry["initial_set"]["vertices_m"] = plain(&slab.obstacle().outer_section(0.0));
+        entry["initial_set"]["vertices_m"] = plain(&slab.obstacle().initial().outer_polygon(3));
     }
     rejected(&altered);
 }

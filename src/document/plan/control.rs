@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Run;
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
@@ -65,7 +65,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         intervals: report.intervals,
         defect: finite(report.defect),
         enclosed_targets: (run.targets.iter().map(|target| &target.whole))
-            .filter(|set| !matches!(set, Obstacle::Ellipsoid(_)))
+            .filter(|set| set.as_ellipsoid().is_none())
             .map(|set| set.name().to_owned())
             .collect(),
         starts: report

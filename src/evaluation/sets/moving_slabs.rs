@@ -7,10 +7,7 @@ use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::evaluation::sets::space_time_set::{MovingDisc, MovingSet};
 use crate::geometry::ConvexPolygon;
 use crate::target::{TimedVelocitySet, Uncertainty};
-use crate::tolerance;
-
-/// Sides of the polygon around an ellipse beside polygons.
-const SIDES: usize = 64;
+use crate::tolerance::{self, ELLIPSE_SIDES};
 
 /// Bisection steps for the time at which sections become wide: to a nanosecond of the longest slab.
 const NARROW_HALVINGS: usize = 60;
@@ -42,7 +39,10 @@ impl MovingSlabs {
     pub fn new(sets: &Uncertainty) -> Self {
         match Self::of_ellipses(sets) {
             Some(slabs) => slabs,
-            None => Self::growing(|_| sets.initial.outer_polygon(SIDES), &sets.velocities),
+            None => Self::growing(
+                |_| sets.initial.outer_polygon(ELLIPSE_SIDES),
+                &sets.velocities,
+            ),
         }
     }
 
@@ -80,7 +80,7 @@ impl MovingSlabs {
                 Some(way) => initial.minkowski_sum(way),
                 None => initial,
             };
-            let velocities = set.velocities.outer_polygon(SIDES);
+            let velocities = set.velocities.outer_polygon(ELLIPSE_SIDES);
             let set = Moving::Polygon(MovingSet::new(&section, &velocities));
             slabs.push(Slab { start, end, set });
             if !last {

@@ -125,6 +125,12 @@ impl Ellipse {
         }
     }
 
+    /// The disc of a radius.
+    pub fn disc(center: Vector, radius: f64) -> Self {
+        let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
+        Self { center, axes }
+    }
+
     /// `{p + F z : |z| <= 1}` for the two columns of `F`.
     ///
     /// One Jacobi rotation makes them orthogonal and preserves the digits of a small semi-axis.
@@ -157,6 +163,11 @@ impl Ellipse {
         a * a.transpose() + b * b.transpose()
     }
 
+    /// `sqrt(trace Q)`: an upper bound of the distance of a point of the set from the centre.
+    pub fn root_of_trace(&self) -> f64 {
+        self.axes[0].norm().hypot(self.axes[1].norm())
+    }
+
     /// The area, `pi a b`.
     pub fn area(&self) -> f64 {
         std::f64::consts::PI * self.axes[0].norm() * self.axes[1].norm()
@@ -170,19 +181,6 @@ impl Ellipse {
     /// `sqrt(n' Q n)`: the support about the centre.
     pub fn radius(&self, n: Vector) -> f64 {
         n.dot(&self.axes[0]).hypot(n.dot(&self.axes[1]))
-    }
-
-    /// A boundary point farthest along the unit vector `n`; the centre where the ellipse has no
-    /// width.
-    pub fn boundary_point(&self, n: Vector) -> Vector {
-        let [a, b] = self.axes;
-        let (along, across) = (n.dot(&a), n.dot(&b));
-        let reach = along.hypot(across);
-        if reach > 0.0 {
-            self.center + (a * along + b * across) / reach
-        } else {
-            self.center
-        }
     }
 
     /// True when `p` is in the closed set. NaN is inside. O(1).

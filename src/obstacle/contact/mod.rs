@@ -24,6 +24,38 @@ pub struct Interval {
     pub end: f64,
 }
 
+/// A straight motion: `origin` is own ship's position at t = 0, extrapolated from `[start, end]`.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::obstacle) struct Line {
+    pub origin: Vector,
+    pub velocity: Vector,
+    pub start: f64,
+    pub end: f64,
+}
+
+impl Line {
+    /// The motion from `origin` at t = 0 to `end` seconds.
+    pub(in crate::obstacle) fn ahead(origin: Vector, velocity: Vector, end: f64) -> Self {
+        Self {
+            origin,
+            velocity,
+            start: 0.0,
+            end,
+        }
+    }
+
+    /// The motion of a straight segment, from t = 0 on.
+    pub(in crate::obstacle) fn of(segment: &Segment) -> Self {
+        let velocity = segment.start.ahead() * segment.speed;
+        Self {
+            origin: segment.start.position - velocity * segment.start_time,
+            velocity,
+            start: segment.start_time.max(0.0),
+            end: segment.end_time(),
+        }
+    }
+}
+
 /// Longest arc per chord, radians.
 pub(in crate::obstacle) const CHORD_RAD: f64 = 0.4;
 
@@ -53,38 +85,25 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
 /// Cyrus-Beck clipping by the faces, docs/theory.md section 10 (iv). The body is convex, so there
 /// is at most one interval.
 pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
-    let velocity = line.start.ahead() * line.speed;
-    clip(
-        obstacle,
-        line.start.position,
-        velocity,
-        line.start_time,
-        line.duration,
-        depth,
-    )
+    clip(obstacle, &Line::of(line), depth)
 }
 
-/// [`line_contact`] for a motion from `position` at `start_time` with `velocity`; `duration` may be
-/// infinite.
+/// [`line_contact`] of a motion whose end may be infinite.
 pub(in crate::obstacle) fn clip(
     obstacle: &PolytopeObstacle,
-    position: Vector,
-    velocity: Vector,
-    start_time: f64,
-    duration: f64,
+    line: &Line,
     depth: f64,
 ) -> Option<Interval> {
-    let origin = position - velocity * start_time;
     let mut inside = Interval {
-        start: start_time.max(0.0),
-        end: start_time + duration,
+        start: line.start,
+        end: line.end,
     };
     if inside.start > inside.end {
         return None;
     }
     for face in obstacle.faces() {
-        let rate = face.normal.dot(&velocity) - face.velocity_support;
-        let reach = face.initial_support - depth - face.normal.dot(&origin);
+        let rate = face.normal.dot(&line.velocity) - face.velocity_support;
+        let reach = face.initial_support - depth - face.normal.dot(&line.origin);
         if rate > 0.0 {
             inside.end = inside.end.min(reach / rate);
         } else if rate < 0.0 {
@@ -191,11 +210,7 @@ impl Circle {
 /// Root of a monotone function, given a point where it is `<= 0` and one where it is positive.
 ///
 /// Returns the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
-pub(in crate::obstacle) fn bisect(
-    value: impl Fn(f64) -> f64,
-    mut inside: f64,
-    mut outside: f64,
-) -> (f64, f64) {
+fn bisect(value: impl Fn(f64) -> f64, mut inside: f64, mut outside: f64) -> (f64, f64) {
     let (mut fi, mut fo) = (value(inside), value(outside));
     for step in 0..100 {
         let width = outside - inside;

@@ -3,9 +3,8 @@
 
 use crate::frame::{Vector, cross};
 use crate::obstacle::EllipsoidObstacle;
-use crate::obstacle::contact::{self, Interval};
+use crate::obstacle::contact::{self, Interval, Line};
 use crate::obstacle::ellipsoid::MAX_STEPS;
-use crate::obstacle::risk::Line;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -56,10 +55,7 @@ impl EllipsoidObstacle {
     /// isolated by its turning points; docs/theory.md section 3.
     pub(in crate::obstacle) fn line_start(&self, line: &Line) -> Option<f64> {
         if let Some(flat) = &self.flat {
-            let at = line.origin + line.velocity * line.start;
-            let duration = line.end - line.start;
-            return contact::clip(flat, at, line.velocity, line.start, duration, 0.0)
-                .map(|i| i.start);
+            return contact::clip(flat, line, 0.0).map(|i| i.start);
         }
         let cubic = self.cubic(line);
         self.enters(&cubic, self.cuts(&cubic, line), line)

@@ -11,8 +11,9 @@ use crate::geometry::{
     DISC_SIDES, Ellipse, SignedDistance, distance_in_frame, outer_enclosing_ellipse,
 };
 use crate::obstacle::closest_approach::{ClosestApproach, searched_approach, usable_horizon};
+use crate::obstacle::contact::Line;
 use crate::obstacle::contact::advancement::advanced_contact;
-use crate::obstacle::risk::{Line, PeakRisk, level_of, peak_by_bisection};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection};
 use crate::obstacle::{PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -66,11 +67,7 @@ impl EllipsoidObstacle {
     /// From the positions at t = 0, metres, and the velocities, m/s. O(1).
     pub fn new(name: impl Into<String>, initial: Ellipse, velocity: Ellipse) -> Self {
         let name = name.into();
-        let root = |e: &Ellipse| {
-            let [a, b] = e.semi_axes();
-            a.norm().hypot(b.norm())
-        };
-        let roots = [root(&initial), root(&velocity)];
+        let roots = [initial.root_of_trace(), velocity.root_of_trace()];
         let scaled = |e: &Ellipse, root: f64| {
             e.semi_axes().map(|a| {
                 if root > 0.0 {
@@ -113,11 +110,6 @@ impl EllipsoidObstacle {
         )
     }
 
-    /// True when both sets are points or lie on parallel segments.
-    pub fn is_flat(&self) -> bool {
-        self.flat.is_some()
-    }
-
     /// True when both sets are points or lie on parallel segments, to
     /// [`tolerance::THIN_ELLIPSE`].
     pub(crate) fn is_thin(&self) -> bool {
@@ -125,7 +117,7 @@ impl EllipsoidObstacle {
         is_thinner(self.determinant, self.roots, thin)
     }
 
-    /// The exact polytope of a flat set.
+    /// The exact polytope where both sets are points or lie on parallel segments.
     pub fn flat(&self) -> Option<&PolytopeObstacle> {
         self.flat.as_ref()
     }
@@ -140,16 +132,6 @@ impl EllipsoidObstacle {
         &self.velocity
     }
 
-    /// The polytope of the two circumscribed 16-gons: it contains the sum `O_0 ⊕ t V`, but not all
-    /// of this set. For graphs and figures.
-    pub fn sum_outer_polytope(&self) -> PolytopeObstacle {
-        PolytopeObstacle::new(
-            self.name.clone(),
-            self.initial.outer_polygon(DISC_SIDES),
-            self.velocity.outer_polygon(DISC_SIDES),
-        )
-    }
-
     /// The largest ratio of [`SpaceTimeObstacle::support`] to the support of the exact sum `O_0 ⊕ t
     /// V`, both about the centre, over all directions and times up to `horizon`. O(1).
     ///
@@ -161,7 +143,7 @@ impl EllipsoidObstacle {
     /// the generalised eigenvalues.
     pub fn largest_ratio_to_sum(&self, horizon: f64) -> f64 {
         let [still, growing] = self.roots;
-        if self.is_flat() || still == 0.0 || growing == 0.0 {
+        if self.flat.is_some() || still == 0.0 || growing == 0.0 {
             return 1.0;
         }
         let delay = still / growing;

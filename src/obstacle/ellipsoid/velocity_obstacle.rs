@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::frame::{Vector, direction, heading_of};
+use crate::numerics::bisected;
 use crate::obstacle::{EllipsoidObstacle, HalfPlane, VelocityObstacle};
 
 /// Bisection steps to the last digit of an angle.
@@ -102,16 +103,10 @@ impl EllipsoidObstacle {
         // away
         let ahead = heading_of(away.normal);
         let side = |way: f64| {
-            let (mut inner, mut outer) = (0.0, PI);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (inner + outer);
-                let n = direction(ahead + way * middle);
-                if n.dot(&toward) + self.initial().radius(n) + distance < 0.0 {
-                    inner = middle;
-                } else {
-                    outer = middle;
-                }
-            }
+            let [inner, _] = bisected([0.0, PI], HALVINGS, |angle| {
+                let n = direction(ahead + way * angle);
+                n.dot(&toward) + self.initial().radius(n) + distance < 0.0
+            });
             ahead + way * inner
         };
         let [first, last] = [side(-1.0), side(1.0)];

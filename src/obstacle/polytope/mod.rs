@@ -5,12 +5,14 @@ use std::sync::{Arc, OnceLock};
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
-use crate::obstacle::closest_approach::{ClosestApproach, from_edge, polytope_approach};
-use crate::obstacle::risk::{
-    FaceSpread, Line, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
-    scaled_velocities,
+use crate::obstacle::closest_approach::{
+    ClosestApproach, from_edge, polytope_approach, usable_horizon,
 };
-use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
+use crate::obstacle::contact::{self, Line};
+use crate::obstacle::risk::{
+    FaceSpread, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
+};
+use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle};
 use crate::trajectory::Segment;
 
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a
@@ -321,7 +323,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
     }
 
     fn at_risk(&self, risk: f64) -> Self {
-        let velocity = scaled_velocities(&self.shared.velocity, level_of(risk));
+        let velocity = self.shared.velocity.scaled_about_center(level_of(risk));
         Self::new(
             self.shared.name.clone(),
             self.shared.initial.clone(),
@@ -341,9 +343,9 @@ impl SpaceTimeObstacle for PolytopeObstacle {
 
     /// By the faces, O(n + m); [`PolytopeObstacle::velocity_obstacle`] gives the region.
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
-        crate::obstacle::closest_approach::usable_horizon(position, velocity, horizon).is_none_or(
-            |horizon| contact::clip(self, position, velocity, 0.0, horizon, 0.0).is_some(),
-        )
+        usable_horizon(position, velocity, horizon).is_none_or(|end| {
+            contact::clip(self, &Line::ahead(position, velocity, end), 0.0).is_some()
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Matrix2;
 
 use crate::frame::{Vector, to_port};
-use crate::geometry::{ConvexSet, Ellipse, outer_enclosing_ellipse};
+use crate::geometry::{Ellipse, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, SpaceTimeObstacle};
 
 /// Least semi-axis in metres. The constraint needs a set with interior, so a narrower initial
@@ -34,25 +34,17 @@ impl Keep {
 }
 
 impl KeepOut {
-    /// Outer ellipsoid of an obstacle: an ellipsoid itself; for polytopes and slabs the smallest
-    /// ellipses around their sets of positions and of velocities.
+    /// Outer ellipsoid of an obstacle: an ellipsoid itself, else the smallest ellipses around its
+    /// positions and all its velocities.
     pub fn outer_of(obstacle: &Obstacle) -> Self {
-        let set = match obstacle {
-            Obstacle::Ellipsoid(o) => o.as_ref().clone(),
-            Obstacle::Polytope(o) => EllipsoidObstacle::outer_of(o),
-            Obstacle::Slabs(o) => {
-                let initial = match &o.sets().initial {
-                    ConvexSet::Polygon(initial) => outer_enclosing_ellipse(initial),
-                    ConvexSet::Ellipse(initial) => *initial,
-                };
-                let all = o.sets().outer_velocities_after(f64::NEG_INFINITY);
-                let all = outer_enclosing_ellipse(&all);
-                EllipsoidObstacle::new(o.name(), initial, all)
-            }
+        let sets = obstacle.sets();
+        let velocity = match obstacle.as_ellipsoid() {
+            Some(ellipsoid) => *ellipsoid.velocity(),
+            None => outer_enclosing_ellipse(&sets.outer_velocities_after(f64::NEG_INFINITY)),
         };
-        let initial = outer_widened(set.initial());
+        let initial = outer_widened(&sets.initial.outer_ellipse());
         Self {
-            set: EllipsoidObstacle::new(set.name(), initial, *set.velocity()),
+            set: EllipsoidObstacle::new(obstacle.name(), initial, velocity),
         }
     }
 
@@ -81,8 +73,7 @@ impl KeepOut {
 
 /// Ellipse with each semi-axis at least [`LEAST_SEMI_AXIS`].
 fn outer_widened(ellipse: &Ellipse) -> Ellipse {
-    let [a, b] = ellipse.semi_axes();
-    let (long, short) = if a.norm() >= b.norm() { (a, b) } else { (b, a) };
+    let [long, short] = ellipse.semi_axes();
     if short.norm() >= LEAST_SEMI_AXIS {
         return *ellipse;
     }

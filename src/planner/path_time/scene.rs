@@ -3,12 +3,12 @@
 use super::TOUCH_M;
 use super::due::Due;
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Window};
+use crate::geometry::Window;
 use crate::obstacle::{
     HalfSpace, PathTime, PathTimeObstacle, SpaceTimeObstacle, Track, outer_faces_along,
 };
 use crate::planner::Problem;
-use crate::planner::space_time::piece::{Body, Piece, pieces};
+use crate::planner::space_time::piece::{Piece, pieces};
 use crate::tolerance;
 use crate::trajectory::PathNetwork;
 
@@ -78,11 +78,11 @@ impl<'a> Scene<'a> {
                 continue;
             }
             let rounded: Vec<HalfSpace>;
-            let faces = match &part.body {
-                Body::Polytope(polytope) => polytope.faces(),
-                Body::Ellipsoid(rounded_body) => {
+            let faces = match &part.ellipsoid {
+                None => part.body.faces(),
+                Some(ellipsoid) => {
                     let along: Vec<Track> = near.iter().map(|i| tracks[*i]).collect();
-                    rounded = outer_faces_along(&rounded_body.exact, &along, problem.horizon);
+                    rounded = outer_faces_along(ellipsoid, &along, problem.horizon);
                     &rounded
                 }
             };
@@ -225,18 +225,15 @@ impl<'a> Scene<'a> {
 
 /// Bounding box of all positions of a piece during `duration` seconds from its start.
 fn covered(part: &Piece, duration: f64) -> Window {
-    let reach = |normal: Vector| match &part.body {
+    let reach = |normal: Vector| match &part.ellipsoid {
         // linear in time
-        Body::Polytope(o) => {
-            let (initial, velocity): (&ConvexPolygon, _) = (o.initial(), o.velocity());
+        None => {
+            let (initial, velocity) = (part.body.initial(), part.body.velocity());
             initial.support(normal) + (velocity.support(normal) * duration).max(0.0)
         }
         // concave in time: below the tangents at both ends
-        Body::Ellipsoid(o) => {
-            let (first, last) = (
-                o.exact.support(normal, 0.0),
-                o.exact.support(normal, duration),
-            );
+        Some(o) => {
+            let (first, last) = (o.support(normal, 0.0), o.support(normal, duration));
             let rise = (first.rate * duration).max(0.0);
             let back = (-last.rate * duration).max(0.0);
             // without a tangent slope, the growth of the sets alone bounds it

@@ -1,13 +1,13 @@
 //! Convex piece: a part of an obstacle that is convex in space-time, with its time window.
 //!
-//! A polytope and an ellipsoid are one piece each, without a window. Consecutive velocity sets give
-//! one piece per slab, whose time counts from the slab's start. Until the horizon, the union of
-//! the pieces that exist at a time is the obstacle's section. The only exceptions are pieces
-//! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
-//! obstacle.
+//! Each slab of an obstacle is one piece, with a time window where there are several; its time
+//! counts from the slab's start. Until the horizon, the union of the pieces that exist at a time is
+//! the obstacle's section. The only exceptions are pieces without an interior, which are enlarged.
+//! A motion that is clear of the pieces is clear of the obstacle.
 
 use crate::geometry::{DISC_SIDES, Ellipse};
-use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
+use crate::obstacle::contact::Interval;
+use crate::obstacle::{ConvexObstacle, EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
 /// this. Then it uses one that does not; the contact test rejects motions that meet the ellipsoid.
@@ -19,82 +19,50 @@ pub(crate) struct Piece {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// Time window; `None` for ever.
-    pub window: Option<Window>,
-    pub body: Body,
-}
-
-/// Time window, seconds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Window {
-    pub start: f64,
-    pub end: f64,
-}
-
-/// Shape of a convex piece.
-#[derive(Debug)]
-pub(crate) enum Body {
-    Polytope(PolytopeObstacle),
-    Ellipsoid(Box<BoundedEllipsoid>),
-}
-
-/// Ellipsoid with a polytope around it.
-#[derive(Debug)]
-pub(crate) struct BoundedEllipsoid {
-    pub exact: EllipsoidObstacle,
-    /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
+    pub window: Option<Interval>,
+    /// The polytope, or two 16-gons around the sets of the ellipsoid, enlarged by its excess over
     /// their sum.
-    pub around: PolytopeObstacle,
+    pub body: PolytopeObstacle,
+    /// The ellipsoid, where it is one.
+    pub ellipsoid: Option<EllipsoidObstacle>,
 }
 
 /// Convex pieces of all obstacles until the horizon, in their order.
 pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(obstacles.len());
-    for (obstacle, o) in obstacles.iter().enumerate() {
-        let mut push = |window, body| {
-            pieces.push(Piece {
+    for (obstacle, whole) in obstacles.iter().enumerate() {
+        let whole = whole.outer_with_interior();
+        let several = whole.slabs().len() > 1;
+        let slabs = whole.slabs().iter();
+        let until_horizon = slabs.filter(|slab| slab.start() <= horizon.max(0.0));
+        pieces.extend(until_horizon.map(|slab| {
+            let (body, ellipsoid) = match slab.obstacle() {
+                ConvexObstacle::Polytope(polytope) => (polytope.clone(), None),
+                ConvexObstacle::Ellipsoid(ellipsoid) => (
+                    outer_polytope(ellipsoid, horizon - slab.start()),
+                    Some(ellipsoid.as_ref().clone()),
+                ),
+            };
+            Piece {
                 obstacle,
-                window,
+                window: several.then_some(Interval {
+                    start: slab.start(),
+                    end: slab.end(),
+                }),
                 body,
-            });
-        };
-        match o.outer_with_interior() {
-            Obstacle::Slabs(slabs) => {
-                for slab in slabs.slabs() {
-                    let window = (slabs.slabs().len() > 1).then_some(Window {
-                        start: slab.start(),
-                        end: slab.end(),
-                    });
-                    if slab.start() <= horizon
-                        && let Some(body) = body(slab.obstacle().clone(), horizon - slab.start())
-                    {
-                        push(window, body);
-                    }
-                }
+                ellipsoid,
             }
-            whole => {
-                if let Some(body) = body(whole, horizon) {
-                    push(None, body);
-                }
-            }
-        }
+        }));
     }
     pieces
 }
 
-/// The body of an obstacle that is convex in space-time, until a horizon; `None` for slabs.
-fn body(obstacle: Obstacle, horizon: f64) -> Option<Body> {
-    match obstacle {
-        Obstacle::Polytope(polytope) => Some(Body::Polytope(polytope)),
-        Obstacle::Ellipsoid(ellipsoid) => Some(bounded_ellipsoid(*ellipsoid, horizon)),
-        Obstacle::Slabs(_) => None,
-    }
-}
-
-fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
-    let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
+fn outer_polytope(ellipsoid: &EllipsoidObstacle, horizon: f64) -> PolytopeObstacle {
+    let growth = ellipsoid.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
-    Body::Ellipsoid(Box::new(BoundedEllipsoid {
-        around: PolytopeObstacle::new("", around(exact.initial()), around(exact.velocity())),
-        exact,
-    }))
+    PolytopeObstacle::new(
+        "",
+        around(ellipsoid.initial()),
+        around(ellipsoid.velocity()),
+    )
 }

@@ -1,9 +1,10 @@
 //! Obstacle proxies: convex pieces with the data of a fast contact test.
 
 use crate::frame::{Pose, Vector, cross, to_port};
-use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
+use crate::obstacle::contact::{self, Interval};
+use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::Problem;
-use crate::planner::space_time::piece::{Body, Piece, Window};
+use crate::planner::space_time::piece::Piece;
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
@@ -23,7 +24,7 @@ pub(crate) struct Proxy<'a> {
     /// Ellipsoid of the piece, where it is one.
     pub ellipsoid: Option<&'a EllipsoidObstacle>,
     /// Time window of the piece; `None` for ever.
-    pub window: Option<Window>,
+    pub window: Option<Interval>,
     centre: Vector,
     drift: Vector,
     radius: f64,
@@ -32,14 +33,11 @@ pub(crate) struct Proxy<'a> {
 
 impl<'a> Proxy<'a> {
     pub(crate) fn new(part: &'a Piece) -> Self {
-        let (body, ellipsoid) = match &part.body {
-            Body::Polytope(polytope) => (polytope, None),
-            Body::Ellipsoid(e) => (&e.around, Some(&e.exact)),
-        };
+        let (body, ellipsoid) = (&part.body, part.ellipsoid.as_ref());
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
         let (radius, growth) = match ellipsoid {
             // the root of the trace of the outer section is the sum of the roots of the two sets
-            Some(e) => (root_of_trace(e.initial()), root_of_trace(e.velocity())),
+            Some(e) => (e.initial().root_of_trace(), e.velocity().root_of_trace()),
             None => (
                 body.initial().translated(-centre).reach(),
                 body.velocity().translated(-drift).reach(),
@@ -99,7 +97,7 @@ impl<'a> Proxy<'a> {
 
     /// Enclosing disc at a time, metres; `None` outside the time window.
     pub(crate) fn disc_at(&self, time: f64) -> Option<(Vector, f64)> {
-        let is_over = |w: Window| !(time >= w.start && time <= w.end);
+        let is_over = |w: Interval| !(time >= w.start && time <= w.end);
         if self.window.is_some_and(is_over) {
             return None;
         }
@@ -128,7 +126,7 @@ impl<'a> Proxy<'a> {
     /// Part of a segment within the time window, in the clock of the piece.
     #[cold]
     #[inline(never)]
-    fn during(window: &Window, segment: &Segment) -> Option<Segment> {
+    fn during(window: &Interval, segment: &Segment) -> Option<Segment> {
         if segment.start_time > window.end || segment.end_time() < window.start {
             return None;
         }
@@ -253,11 +251,6 @@ impl<'a> Proxy<'a> {
     }
 }
 
-fn root_of_trace(set: &crate::geometry::Ellipse) -> f64 {
-    let [a, b] = set.semi_axes();
-    a.norm().hypot(b.norm())
-}
-
 /// First contact with an ellipsoid. A line that does not touch it is decided in closed form.
 fn ellipsoid_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
     if !segment.is_arc() {
@@ -338,14 +331,15 @@ mod tests {
             let velocity = ConvexPolygon::hull(&spread).expect("finite");
             let initial = outer_disc(150.0, 0.0).translated(near(12_000.0));
             let body = PolytopeObstacle::new("", initial, velocity);
-            let window = (case % 3 == 0).then_some(Window {
+            let window = (case % 3 == 0).then_some(Interval {
                 start: 200.0,
                 end: 500.0,
             });
             let piece = Piece {
                 obstacle: 0,
                 window,
-                body: Body::Polytope(body),
+                body,
+                ellipsoid: None,
             };
             let proxy = Proxy::new(&piece);
             let horizon = 900.0;

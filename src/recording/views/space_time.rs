@@ -135,10 +135,8 @@ const STEPS: usize = 8;
 fn times(canvas: &Canvas, set: &Obstacle) -> Vec<f64> {
     let step = canvas.end / STEPS as f64;
     let mut times: Vec<f64> = (0..=STEPS).map(|k| step * k as f64).collect();
-    if let Obstacle::Slabs(slabs) = set {
-        let starts = slabs.slabs().iter().map(|slab| slab.start());
-        times.extend(starts.filter(|start| *start < canvas.end));
-    }
+    let starts = set.slabs().iter().map(|slab| slab.start());
+    times.extend(starts.filter(|start| *start > 0.0 && *start < canvas.end));
     times.sort_by(f64::total_cmp);
     times
 }

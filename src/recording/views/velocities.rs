@@ -5,7 +5,6 @@ use rerun::{AsComponents, Points2D, Transform3D};
 use super::chart::Strip;
 use super::ships::{HARD_RADIUS, log_outlines, outline, set_style};
 use crate::frame::{Vector, direction};
-use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Lines, ViewModel, flat, labelled, style};
 use crate::recording::write::Recorder;
@@ -72,30 +71,23 @@ fn log_axes(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// The closed edge of the velocity obstacle at a time and at own ship's position then, clipped to
 /// the view.
 ///
-/// It is exact for a polytope and an outer bound by tangents for an ellipsoid. For slabs it is
-/// that of the hull of all later velocities.
+/// It is exact for a polytope and an outer bound by tangents for an ellipsoid. For several slabs
+/// it is that of the hull of all later velocities.
 fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
     let own = model.motion.pose_at(time).position;
     let ahead = LOOK_AHEAD_S.min((model.end - time).max(1.0));
     let limit = limit(model);
-    let region = match set {
-        Obstacle::Polytope(o) => {
-            from(set, time, o.velocity().clone()).velocity_obstacle(own, ahead)
-        }
+    let region = match set.as_ellipsoid() {
         // it grows from any of its sections as from its first
-        Obstacle::Ellipsoid(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
+        Some(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
             .outer_velocities_within(own, ahead, 0.0),
-        Obstacle::Slabs(o) => {
-            let velocities = o.sets().outer_velocities_after(time);
-            from(set, time, velocities).velocity_obstacle(own, ahead)
+        None => {
+            let velocities = set.sets().outer_velocities_after(time);
+            PolytopeObstacle::new("", set.outer_section(time), velocities)
+                .velocity_obstacle(own, ahead)
         }
     };
     region
         .clipped(limit)
         .map_or_else(Vec::new, |region| outline(&region))
-}
-
-/// The set that starts from the section at `time`, with the velocities from then on.
-fn from(set: &Obstacle, time: f64, velocities: ConvexPolygon) -> PolytopeObstacle {
-    PolytopeObstacle::new("", set.outer_section(time), velocities)
 }

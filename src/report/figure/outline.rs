@@ -5,8 +5,9 @@ use kuva::render::plots::Plot;
 
 use crate::frame::{Vector, cross};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
+use crate::obstacle::{EllipsoidObstacle, Obstacle};
 use crate::study::compare::Stroke;
+use crate::tolerance::ELLIPSE_SIDES;
 
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
@@ -121,31 +122,25 @@ pub fn outer_velocities_within(
     limit: f64,
 ) -> Vec<ConvexPolygon> {
     let Approaching { position, horizon } = *approach;
+    let disc = Ellipse::disc(Vector::zeros(), distance);
     let wider = |set: &ConvexPolygon| {
         if distance > 0.0 {
-            set.minkowski_sum(&disc(distance).outer_polygon(64))
+            set.minkowski_sum(&disc.outer_polygon(ELLIPSE_SIDES))
         } else {
             set.clone()
         }
     };
-    let regions = match target {
-        Obstacle::Polytope(obstacle) => {
-            let (initial, velocity) = (wider(obstacle.initial()), obstacle.velocity().clone());
-            let wide = PolytopeObstacle::new("", initial, velocity);
-            vec![wide.velocity_obstacle(position, horizon)]
-        }
-        Obstacle::Slabs(obstacle) => {
-            let wide = match &obstacle.sets().initial {
-                ConvexSet::Polygon(initial) => obstacle.with_initial(wider(initial)),
+    let regions = match target.as_ellipsoid() {
+        Some(ellipsoid) => vec![ellipsoid.outer_velocities_within(position, horizon, distance)],
+        None => {
+            let wide = match &target.sets().initial {
+                ConvexSet::Polygon(initial) => target.with_initial(wider(initial)),
                 ConvexSet::Ellipse(initial) => {
-                    let wide = EllipsoidObstacle::new("", *initial, disc(distance));
-                    obstacle.with_initial(wide.outer_section(1.0))
+                    let wide = EllipsoidObstacle::new("", *initial, disc);
+                    target.with_initial(wide.outer_section(1.0))
                 }
             };
             wide.outer_velocity_obstacles(position, horizon)
-        }
-        Obstacle::Ellipsoid(obstacle) => {
-            vec![obstacle.outer_velocities_within(position, horizon, distance)]
         }
     };
     regions.iter().filter_map(|r| r.clipped(limit)).collect()
@@ -160,15 +155,10 @@ pub struct Approaching {
     pub horizon: f64,
 }
 
-fn disc(radius: f64) -> Ellipse {
-    let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
-    Ellipse::from_axes(Vector::zeros(), axes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::SpaceTimeObstacle;
+    use crate::obstacle::{PolytopeObstacle, SpaceTimeObstacle};
     use crate::target::{TimedVelocitySet, Uncertainty};
 
     /// Compares the drawn regions with the exact closest approach.

@@ -126,21 +126,16 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
         let hull = ConvexPolygon::hull(&points).ok();
         hull.map(|hull| hull.vertices().to_vec())
     };
-    match target {
+    let steps = match target.sets().initial {
         // linear between the ends
-        Obstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
-        Obstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
-        Obstacle::Slabs(obstacle) => {
-            let steps = match obstacle.sets().initial {
-                ConvexSet::Polygon(_) => 1,
-                ConvexSet::Ellipse(_) => SWEEP,
-            };
-            let slabs = obstacle.slabs().iter().filter(|slab| slab.start() < end);
-            slabs
-                .filter_map(|slab| hull(slab.start(), slab.end().min(end), steps))
-                .collect()
-        }
-    }
+        ConvexSet::Polygon(_) => 1,
+        ConvexSet::Ellipse(_) => SWEEP,
+    };
+    let slabs = target.slabs().iter();
+    slabs
+        .filter(|slab| slab.start() < end || slab.start() == 0.0)
+        .filter_map(|slab| hull(slab.start(), slab.end().min(end), steps))
+        .collect()
 }
 
 /// Formats seconds, rounded to a tenth.

@@ -43,7 +43,7 @@ pub fn assess(
     let degrees = |turn: Option<f64>| turn.map(deg_from_radians);
     let targets = obstacles.iter().map(|target| TargetSectionsDocument {
         name: target.name().to_owned(),
-        representation: target.representation().to_owned(),
+        representation: target.representation().word().to_owned(),
         sections: (query.sections.iter())
             .map(|&t_s| SectionDocument {
                 t_s,

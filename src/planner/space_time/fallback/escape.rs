@@ -9,6 +9,7 @@
 //! instead.
 
 use crate::frame::{Pose, Side, Vector};
+use crate::numerics::bisected;
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
@@ -367,16 +368,8 @@ fn exit_time(
         }
         inside = time;
     }
-    let (mut low, mut high) = (inside, found?);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if is_in(depth(middle)) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(high)
+    let [_, outside] = bisected([inside, found?], HALVINGS, |time| is_in(depth(time)));
+    Some(outside)
 }
 
 fn is_at_end(desired: &DesiredTrajectory, place: Vector) -> bool {

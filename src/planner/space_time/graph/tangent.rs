@@ -10,10 +10,10 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Side, Vector, direction, heading_of, to_port};
+use crate::obstacle::contact::Interval;
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 use crate::planner::space_time::graph::intercept::{Interception, Interceptor, Limits};
-use crate::planner::space_time::piece::Window;
 use crate::planner::space_time::proxy::Proxy;
 
 /// Metres. A distance this small has no sign.
@@ -78,7 +78,7 @@ struct SpeedSectors {
 #[derive(Debug)]
 pub(crate) struct TangentEdges {
     obstacle: usize,
-    window: Option<Window>,
+    window: Option<Interval>,
     corners: Vec<Corner>,
     sectors_by_speed: Vec<SpeedSectors>,
 }
@@ -365,7 +365,7 @@ mod tests {
     use crate::frame::Pose;
     use crate::geometry::fixtures::random_vector;
     use crate::geometry::{ConvexPolygon, outer_disc};
-    use crate::planner::space_time::piece::{Body, Piece};
+    use crate::planner::space_time::piece::Piece;
     use rand::{Rng, SeedableRng};
 
     /// Compares with the interceptions of every corner one by one.
@@ -388,7 +388,8 @@ mod tests {
             let piece = Piece {
                 obstacle: 0,
                 window: None,
-                body: Body::Polytope(body.clone()),
+                body: body.clone(),
+                ellipsoid: None,
             };
             let tangent_edges =
                 TangentEdges::new(&Proxy::new(&piece), &body, speeds.into_iter(), |_| true);

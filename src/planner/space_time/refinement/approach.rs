@@ -1,8 +1,8 @@
 //! Closest approaches of a manoeuvre to convex pieces: local minima of the slack in time.
 
 use crate::frame::{Vector, to_port, to_starboard};
+use crate::obstacle::contact::Interval;
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::planner::space_time::piece::Window;
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::rollout::{Leg, Rollout};
 use crate::tolerance;
@@ -252,7 +252,7 @@ struct Span {
 }
 
 impl Span {
-    fn of(leg: &Leg, window: Option<Window>) -> Self {
+    fn of(leg: &Leg, window: Option<Interval>) -> Self {
         let whole = Self {
             first: 0.0,
             last: 1.0,

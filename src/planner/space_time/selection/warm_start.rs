@@ -248,15 +248,15 @@ mod tests {
             let grown: Vec<Obstacle> = problem
                 .obstacles
                 .iter()
-                .map(|o| match o {
-                    Obstacle::Polytope(o) => crate::obstacle::PolytopeObstacle::new(
+                .map(|o| match o.as_polytope() {
+                    Some(o) => crate::obstacle::PolytopeObstacle::new(
                         "",
                         o.initial()
                             .minkowski_sum(&crate::geometry::outer_disc(15.0, 0.0)),
                         o.velocity().clone(),
                     )
                     .into(),
-                    other => other.clone(),
+                    None => o.clone(),
                 })
                 .collect();
             let problem = Problem {
@@ -270,9 +270,8 @@ mod tests {
                 for k in 0..=2000 {
                     let time = end * f64::from(k) / 2000.0;
                     let place = plan.trajectory.pose_at(time).position;
-                    let inside = |o: &Obstacle| match o {
-                        Obstacle::Polytope(o) => o.slack(place, time).value < -1e-6,
-                        _ => false,
+                    let inside = |o: &Obstacle| {
+                        (o.as_polytope()).is_some_and(|o| o.slack(place, time).value < -1e-6)
                     };
                     assert!(!grown.iter().any(inside), "inside at {time} s");
                 }
