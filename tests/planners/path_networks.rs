@@ -121,6 +121,7 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     assert!(reason.contains(ahead), "{reason}");
     let document = document(&run);
     assert_eq!(document["cost"]["arrived"], false);
+    assert_eq!(document["cost"]["delay_s"], Value::Null);
     assert_eq!(document["outcome"], "relaxed");
     // who says that it arrives, or that more of the way is done, or goes on for less than the
     // horizon, is found out
