@@ -7,7 +7,7 @@
 //! Asserts what it times. The random scenes run once; `scenes` in the name of a filter runs them
 //! alone.
 
-#[path = "../tests/campaigns/control_scenes.rs"]
+#[path = "../tests/campaigns/forces/scenes.rs"]
 mod scenes;
 
 use std::hint::black_box;

@@ -13,11 +13,10 @@ use std::panic::catch_unwind;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
-use campaigns::{
-    Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
-    path_time, replanning, simulation, tidiness, wild,
-};
+use campaigns::plans::{compliance, encounters, harbour, invariance, mutations, tidiness};
+use campaigns::{Report, dense_search, forces, path_time, wild};
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Parser)]
@@ -216,8 +215,8 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Harbour { scenes, .. } => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
         Campaign::Control { count, starts } => {
-            let mut report = control::run_scenes(count.div_ceil(2));
-            report.missed.extend(control::run_starts(starts).missed);
+            let mut report = forces::run_scenes(count.div_ceil(2));
+            report.missed.extend(forces::run_starts(starts).missed);
             report
         }
         Campaign::Invariance(scenes) => invariance::run(scenes.of_each(1)),

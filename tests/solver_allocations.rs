@@ -1,6 +1,6 @@
 //! Tests that the interior-point iteration does not allocate.
 
-#[path = "campaigns/control_scenes.rs"]
+#[path = "campaigns/forces/scenes.rs"]
 mod optimal_control_scenes;
 
 use std::alloc::{GlobalAlloc, Layout, System};

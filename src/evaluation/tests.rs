@@ -169,72 +169,72 @@ fn a_valid_plan_passes_with_its_figures() {
     assert_eq!(passage.min_margin, f64::INFINITY);
 }
 
-#[test]
-fn a_plan_in_another_place_or_time_is_found() {
-    let shifted = |change: fn(&mut Segment)| {
-        let mut s = plan();
-        s.iter_mut().for_each(change);
-        faults(&s)
-    };
-    assert_eq!(shifted(|s| s.start.position.y += 2e-6), ["start"]);
-    let aside = shifted(|s| s.start.position.y += 2e-5);
-    assert_eq!(aside, ["start", "arrival:"]);
-    assert_eq!(shifted(|s| s.start_time += 1e-6), ["start"]);
-    assert_eq!(shifted(|s| s.start_time += 200.0), ["start", "arrival"]);
-    let mut s = plan();
-    s[0].start.heading += 1e-8;
-    assert_eq!(faults(&s)[0], "start");
-}
+/// A corruption of a plan, and the first words of the violations that it causes.
+type Corruption = (fn(&mut Vec<Segment>), &'static [&'static str]);
+
+const CORRUPTIONS: [Corruption; 16] = [
+    // in another place or at another time
+    (
+        |s| s.iter_mut().for_each(|s| s.start.position.y += 2e-6),
+        &["start"],
+    ),
+    (
+        |s| s.iter_mut().for_each(|s| s.start.position.y += 2e-5),
+        &["start", "arrival:"],
+    ),
+    (
+        |s| s.iter_mut().for_each(|s| s.start_time += 1e-6),
+        &["start"],
+    ),
+    (
+        |s| s.iter_mut().for_each(|s| s.start_time += 200.0),
+        &["start", "arrival"],
+    ),
+    (
+        |s| s[0].start.heading += 1e-8,
+        &["start", "position", "heading"],
+    ),
+    // cut off
+    (|s| s.truncate(6), &["arrival:"]),
+    (|s| s[6].duration -= 4e-6, &["arrival:"]),
+    (Vec::clear, &["segments:"]),
+    // on the path as before, but faster
+    (
+        |s| {
+            s[6].speed *= 1.0 + 1e-6;
+            s[6].duration /= 1.0 + 1e-6;
+        },
+        &["speed"],
+    ),
+    (
+        |s| s[5].turn_rate *= 1.0 + 1e-6,
+        &["position", "heading", "turn"],
+    ),
+    // a turn on the spot
+    (
+        |s| s.push(Segment::new(s[6].end(), s[6].end_time(), 1.0, 0.0, 0.1)),
+        &["turn", "speed"],
+    ),
+    (|s| s[2].start.position.y += 2e-6, &["position"]),
+    // the last leg is long, so the arrival is wrong too
+    (|s| s[6].start.heading += 1e-7, &["heading", "arrival:"]),
+    (|s| s[3].start_time += 1e-6, &["time"]),
+    (
+        |s| {
+            s.remove(4);
+        },
+        &["position", "time"],
+    ),
+    (|_| {}, &[]),
+];
 
 #[test]
-fn a_cut_plan_does_not_arrive() {
-    let mut s = plan();
-    s.pop();
-    assert_eq!(faults(&s), ["arrival:"]);
-    let mut s = plan();
-    s[6].duration -= 4e-6;
-    assert_eq!(faults(&s), ["arrival:"]);
-    assert_eq!(faults(&[]), ["segments:"]);
-}
-
-#[test]
-fn speeds_outside_the_set_are_found() {
-    let mut s = plan();
-    let factor = 1.0 + 1e-6;
-    // On the path as before, but faster: only the speed is wrong.
-    s[6].speed *= factor;
-    s[6].duration /= factor;
-    assert_eq!(faults(&s), ["speed"]);
-}
-
-#[test]
-fn a_tightened_turn_is_found() {
-    let mut s = plan();
-    s[5].turn_rate *= 1.0 + 1e-6;
-    assert_eq!(faults(&s), ["position", "heading", "turn"]);
-    // A turn on the spot.
-    let mut s = plan();
-    let (pose, time) = (s[6].end(), s[6].end_time());
-    s.push(Segment::new(pose, time, 1.0, 0.0, 0.1));
-    assert_eq!(faults(&s), ["turn", "speed"]);
-}
-
-#[test]
-fn jumps_in_position_heading_and_time_are_found() {
-    let mut s = plan();
-    s[2].start.position += Vector::new(0.0, 2e-6);
-    assert_eq!(faults(&s), ["position"]);
-    let mut s = plan();
-    s[6].start.heading += 1e-7;
-    // The last leg is long, so the arrival is wrong too.
-    assert_eq!(faults(&s), ["heading", "arrival:"]);
-    let mut s = plan();
-    s[3].start_time += 1e-6;
-    assert_eq!(faults(&s), ["time"]);
-    // A segment is missing.
-    let mut s = plan();
-    s.remove(4);
-    assert_eq!(faults(&s), ["position", "time"]);
+fn every_corruption_is_found_and_nothing_else() {
+    for (index, (corrupt, expected)) in CORRUPTIONS.into_iter().enumerate() {
+        let mut segments = plan();
+        corrupt(&mut segments);
+        assert_eq!(faults(&segments), expected, "corruption {index}");
+    }
 }
 
 #[test]

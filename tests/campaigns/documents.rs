@@ -22,6 +22,25 @@ pub fn scenario(path: &str) -> Scenario {
     Scenario::read(&file(path)).expect(path)
 }
 
+/// A file of `tests/faults`.
+pub fn fault(name: &str) -> String {
+    let path = format!("{}/tests/faults/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("a fault")
+}
+
+/// Text of a scenario in which a ship of 30 m sails along the waypoints, with more tables or keys.
+pub fn text(title: &str, horizon: f64, waypoints: &[[f64; 2]], more: &str) -> String {
+    let places = waypoints.iter();
+    let places = places.map(|[east, north]| format!("{{ east_m = {east}, north_m = {north} }}"));
+    let places: Vec<String> = places.collect();
+    format!(
+        "title = \"{title}\"\nhorizon_s = {horizon}\nmission = {{ waypoints = [{}] }}\n\
+         own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, \
+         length_m = 30, beam_m = 8, turning_radius_m = 100 }}\n{more}\n",
+        places.join(", ")
+    )
+}
+
 pub fn document(scenario: Scenario) -> Value {
     let run = pipeline::run(scenario);
     assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));

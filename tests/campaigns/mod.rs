@@ -4,22 +4,14 @@
 #![allow(dead_code, reason = "the tests and the program use a part each")]
 
 pub mod behaviour;
-pub mod compliance;
-pub mod control;
-pub mod control_scenes;
+pub mod closed_loop;
 pub mod dense_search;
 pub mod documents;
 pub mod encounter_generator;
-pub mod encounters;
-pub mod harbour;
-pub mod invariance;
-pub mod mutations;
-pub mod path_grid;
+pub mod forces;
 pub mod path_time;
-pub mod replanning;
-pub mod simulation;
+pub mod plans;
 pub mod statistics;
-pub mod tidiness;
 pub mod wild;
 
 use std::collections::BTreeMap;

@@ -1,10 +1,8 @@
-//! Assessments: documents, tables, figures, and input that is refused.
+//! Assessments: documents, tables, figures, and what they cannot read.
 
 use std::fs;
 
-use super::program::{
-    Folder, HEAD_ON, assert_values, document, json, list, number, run, searoom, stdout,
-};
+use super::program::{Folder, HEAD_ON, assert_values, document, json, list, number, run, stdout};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
@@ -52,41 +50,6 @@ fn an_assessment_document_has_what_the_contract_names() {
     };
     let with_domain = json(&format!("{asked} --domains"));
     assert!(width(&with_domain) > width(&assessment));
-}
-
-/// The velocity that the document recommends is in no velocity obstacle. One slightly nearer to own
-/// velocity is.
-#[test]
-fn a_recommended_alteration_leaves_every_velocity_obstacle() {
-    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
-        let file = format!("scenarios/colregs/{name}.toml");
-        let assessed = |velocity: [f64; 2]| {
-            let [east, north] = velocity;
-            let option = format!("{east},{north}");
-            let found = searoom(&["assess", &file, "--json", "--velocity", &option]).success();
-            document(&found)
-        };
-        let scenario = searoom::scenario::Scenario::read(file.as_ref()).expect("good");
-        let (speed, heading) = (scenario.own_ship.speed, scenario.own_ship.pose.heading);
-        let free = |heading: f64, speed: f64| {
-            let found = assessed([heading.cos() * speed, heading.sin() * speed]);
-            let mut targets = list(&found["velocities"][0]["targets"]).iter();
-            targets.all(|t| t["in_velocity_obstacle"] == false)
-        };
-        let alteration = assessed([0.0, 0.0])["alteration"].clone();
-        for (key, sign) in [("starboard_deg", -1.0), ("port_deg", 1.0)] {
-            if let Some(turn) = alteration[key].as_f64() {
-                let turned = |share: f64| heading + sign * share * turn.to_radians();
-                assert!(free(turned(1.0), speed), "{name} {key} {turn}");
-                let least = turn == 0.0 || !free(turned(0.999), speed);
-                assert!(least, "{name} {key} {turn}");
-            }
-        }
-        if let Some(change) = alteration["speed_mps"].as_f64() {
-            assert!(free(heading, speed + change), "{name} {change}");
-            assert!(change == 0.0 || !free(heading, speed + 0.999 * change));
-        }
-    }
 }
 
 #[test]

@@ -19,6 +19,9 @@ fn a_folder_may_mix_formats_and_faults() {
     let folder = Folder::new();
     let at = |name: &str, contents: &str| folder.write(name, contents);
     at("a/head-on.toml", HEAD_ON);
+    // neither of these is looked at
+    at(".hidden/x.toml", "");
+    at("notes.txt", "");
     at("b/dnv.json", DNV);
     at("c/none.json", "{\"answer\": 42}");
     at("d/degrees.json", &DNV.replacen("58.763449", "4000000", 1));
@@ -39,9 +42,23 @@ fn a_folder_may_mix_formats_and_faults() {
     .code(2);
     assert!(begun.elapsed().as_secs() < 60);
     let suite = document(&assert);
-    assert_eq!(suite["summary"]["scenarios"], 8);
-    assert_eq!(suite["summary"]["unreadable"], 5);
-    assert_eq!(suite["summary"]["verified"], 3);
+    let summary = [
+        ("scenarios", 8),
+        ("unreadable", 5),
+        ("solved", 3),
+        ("verified", 3),
+    ];
+    for (key, count) in summary {
+        assert_eq!(suite["summary"][key], count, "{key}");
+    }
+    let runs = list(&suite["runs"]).iter();
+    let read = runs.map(|run| (run["file"].as_str(), run["outcome"] == "unreadable"));
+    let bad = ["c/none.json", "d/degrees.json", "e/cut.json"].map(|name| folder.at(name));
+    let read: Vec<_> = read.collect();
+    assert!(read.is_sorted_by_key(|(file, _)| *file), "{read:?}");
+    for file in &bad {
+        assert!(read.contains(&(Some(file), true)), "{file}: {read:?}");
+    }
     let said = stderr(&assert);
     for part in [
         "none.json: 1 fault\n",

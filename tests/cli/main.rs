@@ -2,13 +2,16 @@
 
 mod assessing;
 mod bad_input;
-mod documents;
+mod compare;
+mod docs;
 mod figures;
 mod foreign;
 mod golden;
-mod planning;
+mod plan;
 mod program;
-mod readme;
-mod results;
-mod simulating;
+#[cfg(feature = "recording")]
+mod recordings;
+mod simulate;
+mod suite;
 mod verdict;
+mod verify;

@@ -1,11 +1,9 @@
 //! Each campaign with few scenes; `examples/campaign.rs` runs more.
 
+use crate::campaigns::closed_loop::replanning::{self, Behaviour, How};
 use crate::campaigns::encounter_generator::Meeting;
-use crate::campaigns::replanning::{self, Behaviour, How};
-use crate::campaigns::{
-    compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time,
-    tidiness, wild,
-};
+use crate::campaigns::plans::{compliance, encounters, harbour, invariance, mutations, tidiness};
+use crate::campaigns::{dense_search, forces, path_time, wild};
 
 #[test]
 fn plans_of_random_encounters_are_clear_of_whatever_the_target_may_do() {
@@ -64,12 +62,12 @@ fn plans_on_paths_are_those_of_a_fine_grid() {
 
 #[test]
 fn plans_by_forces_are_the_ships_and_clear_between_the_nodes() {
-    control::run_scenes(5).assert_met();
+    forces::run_scenes(5).assert_met();
 }
 
 #[test]
 fn no_random_start_finds_a_cheaper_plan_by_forces() {
-    control::run_starts(10).assert_met();
+    forces::run_starts(10).assert_met();
 }
 
 #[test]

@@ -19,7 +19,7 @@ use searoom::planner::optimal_control::{
 use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
 use searoom::vessel::{CyberShip2, ForceVector, StateVector, VesselKind};
 
-use crate::campaigns::control_scenes as scenes;
+use crate::campaigns::forces::scenes;
 
 /// Cheapest of the starts that need no other planner.
 fn best(task: &Task<CyberShip2>) -> Option<StartAttempt> {

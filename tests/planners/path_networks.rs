@@ -121,6 +121,7 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     assert!(reason.contains(ahead), "{reason}");
     let document = document(&run);
     assert_eq!(document["cost"]["arrived"], false);
+    assert_eq!(document["cost"]["delay_s"], Value::Null);
     assert_eq!(document["outcome"], "relaxed");
     // documents that claim an arrival or more distance sailed, or end before the horizon, are
     // rejected

@@ -10,7 +10,7 @@ use searoom::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::planner::{NoPlan, Objective, Outcome, Problem, SearchKind, path_time};
 use searoom::trajectory::DesiredTrajectory;
 
-use crate::campaigns::path_grid::Path;
+use crate::campaigns::path_time::grid::Path;
 use crate::campaigns::path_time::{Drawn, assert_sound, own, plan, plan_within, set};
 
 /// Tests two hundred sets across a path of five legs with no time: only a few lines are tested and

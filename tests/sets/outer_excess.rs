@@ -91,7 +91,6 @@ fn the_table_in_the_documents_is_what_the_sets_give() {
     ];
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sets.md");
     let text = std::fs::read_to_string(path).expect("docs/sets.md");
-    println!("{}", rows.join("\n"));
     for row in rows {
         assert!(text.contains(&row), "not in docs/sets.md: {row}");
     }

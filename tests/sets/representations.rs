@@ -1,18 +1,17 @@
 //! Tests of the whole pipeline with ellipsoids, consecutive velocity sets, turning ships and
 //! accepted risk.
 
-use std::time::Duration;
-
 use rayon::prelude::*;
+use searoom::document::PlanDocument;
 use searoom::frame::{Vector, radians_from_deg};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
-use searoom::pipeline::{self, Relaxation, Run};
-use searoom::planner::{Problem, SearchKind, space_time};
+use searoom::obstacle::{LandObstacle, Obstacle};
+use searoom::pipeline::{self, Run};
+use searoom::planner::space_time;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, Representation};
-use searoom::tolerance;
 
+use crate::documents::is_caught;
 use crate::encounter_generator::{EncounterKind, Placement, random_encounter, random_traffic};
 
 /// Named change of a scenario.
@@ -64,49 +63,17 @@ fn scenarios(each: u64) -> Vec<Scenario> {
         .collect()
 }
 
-/// Whole sets of which the obstacles of a run are the level sets.
-fn whole_sets(run: &Run) -> Vec<&Obstacle> {
-    run.targets.iter().map(|t| &t.whole).collect()
-}
-
-/// Checks the claims of a plan by the obstacles' own queries at samples. This is weaker than the
-/// independent checker.
+/// Checks a plan by the independent checker, and its document, with the risk that it takes, by the
+/// check of documents.
 fn assert_claims(name: &str, run: &Run) {
-    let Some(plan) = run.planned.outcome.plan() else {
+    if run.planned.outcome.plan().is_none() {
         return;
-    };
-    let evaluation = run.evaluation.as_ref().expect("judged");
-    assert!(
-        evaluation.verified(),
-        "{name}, {}: {:?}",
-        run.scenario.title,
-        evaluation.violations
-    );
-    let whole = whole_sets(run);
-    let times: Vec<f64> = (0..=400)
-        .map(|i| plan.trajectory.end_time() * f64::from(i) / 400.0)
-        .collect();
-    for (i, set) in run.obstacles().enumerate() {
-        let mut largest = 0.0_f64;
-        for &time in &times {
-            let position = plan.trajectory.pose_at(time).position;
-            let apart = set.signed_distance(position, time).distance;
-            assert!(apart > -tolerance::DEPTH_M, "{name}: {apart} at {time}");
-            if whole[i].signed_distance(position, time).distance < -tolerance::DEPTH_M {
-                largest = largest.max(whole[i].risk(position, time));
-            }
-        }
-        let peak = run.targets[i].peak.expect("a plan");
-        assert!(
-            peak.risk >= largest - 1e-9,
-            "{name}: {peak:?} below {largest}"
-        );
-        assert!(peak.risk <= run.max_risk + 1e-6, "{name}: {peak:?}");
-        let entered = run.relaxations.iter().any(|r| {
-            matches!(r, Relaxation::Risk { target, amount, until: None } if target == set.name() && *amount == peak.risk)
-        });
-        assert_eq!(entered, peak.risk > 0.0, "{name}");
     }
+    let title = &run.scenario.title;
+    let evaluation = run.evaluation.as_ref().expect("judged");
+    assert!(evaluation.verified(), "{name}, {title}: {evaluation:?}");
+    let document = serde_json::to_value(PlanDocument::of(run)).expect("JSON");
+    assert!(!is_caught(&document), "{name}, {title}");
 }
 
 #[test]
@@ -124,57 +91,7 @@ fn every_plan_is_clear_of_its_sets_and_takes_no_more_risk_than_it_may() {
             })
             .collect();
         let count = solved.iter().filter(|s| **s).count();
-        println!("{name}: {count} of {} solved", solved.len());
         assert!(5 * count >= 4 * solved.len(), "{name}: {count} solved");
-    }
-}
-
-/// Largest cost of the graph's plan found, relative to the optimum, for several targets under a
-/// weighted search: 1.51.
-const HASTE: f64 = 1.52;
-
-/// Tests that the bound is admissible for all kinds of sets.
-#[test]
-fn a_star_finds_the_cost_of_dijkstra() {
-    let scenarios = scenarios(3);
-    for (name, change) in CHANGES {
-        let compared: usize = scenarios
-            .par_iter()
-            .map(|scenario| {
-                let mut changed = scenario.clone();
-                change(&mut changed);
-                let obstacles: Vec<Obstacle> = pipeline::sets(&changed)
-                    .iter()
-                    .map(|s| s.hard.at_risk(changed.max_risk))
-                    .collect();
-                let graph_cost = |search| {
-                    let planned = space_time::plan(&Problem {
-                        search,
-                        deadline: Duration::from_secs(120),
-                        ..pipeline::problem(&changed, &obstacles, LandObstacle::none())
-                    });
-                    planned.outcome.plan().and_then(|p| p.graph_cost)
-                };
-                let best = graph_cost(SearchKind::AStar);
-                let exhaustive = graph_cost(SearchKind::Dijkstra);
-                match (best, exhaustive) {
-                    (Some(a), Some(b)) => {
-                        let most = if obstacles.len() > 1 { HASTE } else { 1.0 };
-                        let rounding = 1e-9 * b.max(1.0);
-                        assert!(
-                            a >= b - rounding && a <= most * b + rounding,
-                            "{name}: {a} {b}"
-                        );
-                        1
-                    }
-                    (None, None) => 0,
-                    // Dijkstra may exceed its expansions first
-                    (Some(_), None) => 0,
-                    (None, Some(b)) => panic!("{name}: A* found nothing, Dijkstra {b}"),
-                }
-            })
-            .sum();
-        assert!(compared * 2 > scenarios.len(), "{name}: {compared}");
     }
 }
 
@@ -213,7 +130,7 @@ fn cutting_time_hardly_changes_what_a_plan_costs() {
         }
     }
     changes.sort_by(f64::total_cmp);
-    assert!(changes.len() > 5, "{changes:?}");
+    assert!(changes.len() >= 10, "{changes:?}");
     // measured: 0.2 % in the median, 10 % at most
     let (middle, most) = (changes[changes.len() / 2], changes[changes.len() - 1]);
     assert!(middle < 0.01 && most < 0.15, "{changes:?}");

@@ -137,6 +137,9 @@ as of forces | /planner = "optimal-control" | planner
 land where none is | /cost/min_land_distance_m = 7 | min_land_distance_m
 another objective | /objective = "stage-cost" | objective
 another planner's objective | /objective = "length-risk" | objective
+not safe | /safe = false | safe: the document says false, it is true
+nothing of its safety | /safe remove | safe: the document says nothing, it is true
+another word | /verdict = "solved, and clear of all" | verdict: the document says solved, and
 another relaxation | /relaxation = {"kind": "risk", "target": "target", "amount": 0.9} | relaxation
 "#;
 
@@ -160,7 +163,10 @@ fn every_claim_of_a_document_is_held() {
     assert_rejected(
         &relaxed,
         r#"relaxed as solved | /outcome = "solved" | outcome
-        relaxed as infeasible | /outcome = "infeasible" | outcome"#,
+        relaxed as infeasible | /outcome = "infeasible" | outcome
+        safe within a set | /safe = true | safe: the document says true, it is false
+        claimed from too early | /relaxation/until_s + -1; /relaxations/0/until_s + -1; /obstacles/0/valid_s/0 + -1 | set of
+        a set that has shrunk | /obstacles/0/initial_set/vertices_m/*/0 + 1 | the positions possible"#,
     );
     for file in ["harbour/ferry-crossing.toml", "forces/give-way.toml"] {
         let free = r#"as free | /planner = "space-time" | planner"#;

@@ -7,7 +7,7 @@ use searoom::verification::verify;
 use serde_json::{Value, json};
 
 use crate::alter::{alter, at, list, rows};
-use crate::documents::{checked, document, documents, file, numbers, scenario};
+use crate::documents::{checked, document, documents, file, numbers, scenario, text};
 
 #[test]
 fn what_was_planned_passes() {
@@ -37,11 +37,8 @@ fn what_was_planned_passes() {
 /// just enough to limit the file size.
 #[test]
 fn a_plan_of_a_million_seconds_is_written_and_checked() {
-    let text = r#"title = "long"
-        horizon_s = 1000000.0
-        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
-        mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 4900000, north_m = 0 }] }"#;
-    let written = document(Scenario::parse(text).expect("a scenario"));
+    let text = text("long", 1e6, &[[0.0, 0.0], [4.9e6, 0.0]], "");
+    let written = document(Scenario::parse(&text).expect("a scenario"));
     let samples = "/trajectory/samples";
     let count = written.pointer(samples).and_then(Value::as_array);
     assert!((19_000..20_010).contains(&count.expect("samples").len()));

@@ -5,7 +5,7 @@ use searoom::scenario::Scenario;
 use serde_json::{Value, json};
 
 use crate::alter::{add, alter, assert_word, at, rows, scale, segments};
-use crate::documents::{checked, document, documents, is_caught, scenario};
+use crate::documents::{checked, document, documents, is_caught, scenario, text};
 
 /// Alterations of the segments.
 const TABLE: &str = r#"
@@ -159,15 +159,13 @@ fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
 /// Tests a hull that is nearest during a turn on the spot, on a heading between two legs.
 #[test]
 fn a_closest_approach_in_a_turn_on_the_spot_passes() {
-    let text = r#"
-        title = "corner"
-        horizon_s = 600.0
+    let moored = r#"
         planner = { kind = "path-time" }
-        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
-        mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }, { east_m = 1000, north_m = 1000 }] }
         targets = [{ name = "moored", position = { east_m = 1700, north_m = -100 }, course_deg = 0, speed_mps = 0, length_m = 60, beam_m = 12 }]
     "#;
-    let mut document = document(Scenario::parse(text).expect("sound"));
+    let corner = [[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0]];
+    let text = text("corner", 600.0, &corner, moored);
+    let mut document = document(Scenario::parse(&text).expect("sound"));
     assert!(!is_caught(&document));
     let dcpa = document["encounters"][0]["dcpa_m"]
         .as_f64()

@@ -183,12 +183,4 @@ mod tests {
         assert!((found - dense).abs() < 1e-6 * dense, "{found} {dense}");
         assert!(arc_length_error(&own[..1], &wish, 25.0).is_nan());
     }
-
-    #[test]
-    fn the_desired_trajectory_itself_costs_nothing() {
-        let wish = desired(&[(0.0, 0.0), (300.0, 0.0)], &[5.0]);
-        let own = chain(Pose::new(Vector::zeros(), 0.0), &[(60.0, 5.0, 0.0)]);
-        assert!(space_time_error(&own, &wish, 25.0).abs() < 1e-12);
-        assert!(arc_length_error(&own, &wish, 25.0).abs() < 1e-12);
-    }
 }

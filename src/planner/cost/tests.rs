@@ -183,17 +183,6 @@ fn lines_near_several_legs_are_the_dense_sum() {
     assert!(closed > 395, "{closed}");
 }
 
-#[test]
-fn the_desired_motion_costs_nothing_and_a_constant_lag_its_square() {
-    let straight = [(0.0, 0.0), (1500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
-    let desired = DesiredTrajectory::new(&straight, &[5.0]).expect("valid");
-    let run =
-        |from: f64| Segment::straight(Pose::new(Vector::new(from, 0.0), 0.0), 60.0, 150.0, 5.0);
-    assert!(space_time_error(&desired, &run(300.0), 25.0) < 1e-18);
-    let lag = space_time_error(&desired, &run(260.0), 25.0);
-    assert!((lag - 0.5 * 1600.0 * 150.0 / 300.0).abs() < 1e-9);
-}
-
 /// Along a winding path, the legs that are left out are never nearest.
 #[test]
 fn legs_left_out_are_never_nearest() {

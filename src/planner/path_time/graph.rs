@@ -311,3 +311,6 @@ impl Space for Graph<'_> {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@ use super::{Answer, DenseSearch, recheck};
 use crate::campaigns::encounter_generator::{
     EncounterKind, Placement, random_encounter, random_traffic,
 };
-use crate::campaigns::encounters::planned;
+use crate::campaigns::plans::encounters::planned;
 use crate::campaigns::statistics::quantile;
 use crate::campaigns::{Report, Seeds};
 
@@ -78,10 +78,14 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         report.require(k == 0 || most <= WORST_RATIO, || format!("{ratios:?}"));
     }
     let short = compared.iter().filter(|c| !c.3).count();
-    println!(
-        "{} scenes with a plan; {short} searches cut short",
-        compared.len()
-    );
+    let (all, found) = (seeds.len(), compared.len());
+    println!("{found} scenes with a plan; {short} searches cut short");
+    report.require(20 * found >= 19 * all, || {
+        format!("{found} of {all} have a plan")
+    });
+    report.require(2 * short <= found, || {
+        format!("{short} of {found} searches cut short")
+    });
     report
 }
 

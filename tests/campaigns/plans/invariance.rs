@@ -12,8 +12,8 @@ use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
-use super::encounter_generator::{Placement, random_traffic};
-use super::{Report, Seeds};
+use crate::campaigns::encounter_generator::{Placement, random_traffic};
+use crate::campaigns::{Report, Seeds};
 
 /// Cost in m². Smaller costs are equal if their difference is below a millionth of this.
 pub const LEAST_COST: f64 = 1.0;

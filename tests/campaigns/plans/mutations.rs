@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::Report;
-use super::documents::{documents, is_caught, numbers};
+use crate::campaigns::Report;
+use crate::campaigns::documents::{documents, is_caught, numbers};
 
 /// True for values that are not altered here. Nothing is proven of search statistics and weights.
 /// Another input or set may be sound too; tests/verification/claims.rs alters these.

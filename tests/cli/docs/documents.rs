@@ -3,11 +3,11 @@
 
 use std::collections::BTreeSet;
 
-use super::program::{Folder, document, searoom, stdout};
+use crate::program::{Folder, document, searoom, stdout};
 use serde_json::Value;
 
-const PAGE: &str = include_str!("../../docs/documents.md");
-const VERIFICATION: &str = include_str!("../../docs/verify.md");
+pub const PAGE: &str = include_str!("../../../docs/documents.md");
+const VERIFICATION: &str = include_str!("../../../docs/verify.md");
 
 fn keys(value: &Value, found: &mut BTreeSet<String>) {
     match value {
@@ -25,7 +25,7 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-fn keys_of(args: &[&str]) -> BTreeSet<String> {
+pub fn keys_of(args: &[&str]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     keys(&document(&searoom(args)), &mut found);
     found
@@ -56,17 +56,7 @@ fn every_key_of_a_verification_is_on_its_page() {
     named(VERIFICATION, &keys_of(&["verify", &plan, "--json"]));
 }
 
-#[cfg(feature = "recording")]
-#[test]
-fn every_key_of_a_recording_is_on_the_page() {
-    let folder = Folder::new();
-    let file = folder.path().join("a.rrd");
-    let file = file.to_str().expect("text");
-    searoom(&["plan", "scenarios/colregs/head-on.toml", "--rrd", file]).success();
-    named(PAGE, &keys_of(&["inspect", "--json", file]));
-}
-
-fn named(page: &str, keys: &BTreeSet<String>) {
+pub fn named(page: &str, keys: &BTreeSet<String>) {
     let missing: Vec<_> = keys
         .iter()
         .filter(|key| !page.contains(&format!("`{key}`")))

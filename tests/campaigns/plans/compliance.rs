@@ -7,9 +7,9 @@ use searoom::colregs::{
 };
 use searoom::pipeline::{self, Run};
 
-use super::encounter_generator::{EncounterKind, Meeting};
-use super::statistics::{quantiles, share_cells};
-use super::{Report, Seeds, meetings};
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
+use crate::campaigns::statistics::{quantiles, share_cells};
+use crate::campaigns::{Report, Seeds, meetings};
 
 /// Least share of plans with which both judges are content, of encounters that begin near. Measured
 /// with 3,000 of each kind: 100, 98.6, 99.0, 99.8 and 100 %.

@@ -16,10 +16,10 @@ use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
-use super::encounter_generator::{Placement, random_traffic};
-use super::simulation::{How, Seen, Ship, Truth, sail};
-use super::statistics::spread;
-use super::{Report, Seeds};
+use crate::campaigns::closed_loop::simulation::{How, Seen, Ship, Truth, sail};
+use crate::campaigns::encounter_generator::{Placement, random_traffic};
+use crate::campaigns::statistics::spread;
+use crate::campaigns::{Report, Seeds};
 
 const TARGETS: usize = 3;
 

@@ -8,9 +8,9 @@ use searoom::scenario::{
 use searoom::simulation::Simulation;
 use searoom::target::Motion;
 
-use super::encounter_generator::{EncounterKind, Meeting};
-use super::statistics::{failure_bound, quantiles, share_cells};
-use super::{Report, Seeds, meetings};
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
+use crate::campaigns::statistics::{failure_bound, quantiles, share_cells};
+use crate::campaigns::{Report, Seeds, meetings};
 
 /// Motion of a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

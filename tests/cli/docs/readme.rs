@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::program::{run, searoom, stdout};
+use crate::program::{run, searoom, stdout};
 use searoom::report::COMPARISON_COLUMNS;
 use searoom::scenario::{Fault, Scenario};
 
@@ -10,7 +10,7 @@ const BEGIN: &str = "all but the time -->\n```text\n";
 const END: &str = "```\n<!-- suite end -->";
 
 const ASSESS: &str = "assess scenarios/colregs/give-way.toml --at 750,0,150 --velocity 4.8,-1.4";
-const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/cli/readme.rs -->\n```text\n";
+const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/cli/docs/readme.rs -->\n```text\n";
 const ASSESS_END: &str = "```\n<!-- assess end -->";
 
 fn file(name: &str) -> PathBuf {

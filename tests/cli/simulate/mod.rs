@@ -1,6 +1,8 @@
 //! `searoom simulate` as a user runs it.
 
-use super::program::{
+mod verified;
+
+use crate::program::{
     Folder, HEAD_ON, document, json, list, number, rows, run, says, searoom, stderr, stdout, text,
     untimed,
 };
@@ -60,36 +62,6 @@ fn the_same_run_gives_the_same_document_and_another_seed_another() {
     assert_eq!(first["settings"]["seed"], 7);
     assert_eq!(first, sail(7));
     assert_ne!(first, sail(8));
-}
-
-#[test]
-fn every_plan_that_was_followed_verifies() {
-    let folder = Folder::new();
-    run(&format!("simulate {HEAD_ON_FILE} --plans {folder}/plans")).success();
-    let files = folder.names("plans");
-    assert!(files.len() > 10, "{files:?}");
-    let files = files.iter().map(|name| format!(" {folder}/plans/{name}"));
-    run(&format!("verify{}", files.collect::<String>())).success();
-}
-
-#[cfg(feature = "recording")]
-#[test]
-fn a_recording_tells_what_simulate_tells() {
-    let folder = Folder::new();
-    let file = folder.at("sailed.rrd");
-    let sailed = stdout(&searoom(&["simulate", HEAD_ON_FILE, "--rrd", &file]).success());
-    let inspected = stdout(&searoom(&["inspect", &file]).success());
-    assert!(inspected.contains(sailed.trim_end()), "{inspected}");
-    let found = document(&searoom(&["inspect", "--json", &file]).success());
-    assert_eq!(found["scenario"], "Head-on");
-    assert_eq!(found["simulation"]["format"], "searoom-simulation/1");
-    for command in [&["inspect", "--plan", &file][..], &["verify", &file]] {
-        let refused = stderr(&searoom(command).code(2));
-        says(&refused, "the recording of a simulation");
-    }
-    searoom(&["simulate", "scenarios/colregs", "--rrd", &file])
-        .code(2)
-        .stderr(predicates::str::contains("4 scenarios; name a folder"));
 }
 
 #[test]
@@ -153,7 +125,7 @@ fn a_shorter_time_ends_the_simulation_before_arrival() {
 fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
     let folder = Folder::new();
     let target = "behaviour = { kind = \"swims\" }";
-    let tables = "[simulation]\nstep_s = 0\nseed = 1.5\nwater = 1\n\
+    let tables = "[simulation]\nstep_s = 0\nseed = 1.5\nwater = 1\nreplan = \"often\"\n\
                   vessel = { kind = \"nomoto\", rudder_deg = 200 }\n\
                   sensor = { kind = \"radar\", detection = 0 }\n\
                   current = { speed_mps = -1 }";
@@ -164,6 +136,7 @@ fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
             "targets[0].behaviour.kind: found the text \"swims\"; allowed: \"constant\"",
             "simulation.step_s: found 0; allowed: a number from 0.01 to 10",
             "simulation.seed: found 1.5",
+            "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"",
             "simulation.water: found an unknown key",
             "simulation.vessel.rudder_deg: found 200",
             "simulation.sensor.detection: found 0; allowed: a number from 0.01 to 1",
@@ -172,24 +145,6 @@ fn every_fault_of_the_tables_is_named_by_check_and_simulate() {
             assert!(said.contains(fault), "{command}: {fault}: {said}");
         }
     }
-}
-
-#[test]
-fn what_the_loop_cannot_sail_is_refused_and_the_others_are_sailed() {
-    let folder = Folder::new();
-    let long = folder.write("long.toml", head_on("", "[simulation]\nreplan_s = 5000"));
-    let files = format!("scenarios/paper/figure_9.toml {long} {HEAD_ON_FILE}");
-    let sailed = run(&format!("simulate {files}")).code(2);
-    let said = stderr(&sailed);
-    says(
-        &said,
-        "figure_9.toml: 1 fault\n  planner.kind: found \"optimal-control\"",
-    );
-    says(
-        &said,
-        "simulation.replan_s: found 5000; allowed: at most 400",
-    );
-    assert!(stdout(&sailed).starts_with("Head-on: no contact"));
 }
 
 #[test]
@@ -228,10 +183,6 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
-    let file = folder.write("b.toml", head_on("", "[simulation]\nreplan = \"often\""));
-    let refused = stderr(&searoom(&["simulate", &file]).code(2));
-    let fault = "simulation.replan: found the text \"often\"; allowed: \"period\", \"events\"";
-    assert!(refused.contains(fault), "{refused}");
 }
 
 /// Fields that a target does not report, a sensor, and the fault.
@@ -308,125 +259,4 @@ fn ctrl_c_writes_what_was_sailed_so_far() {
     let altered = altered.replace("\"interrupted\":true", "\"interrupted\":false");
     let file = folder.write("altered.json", altered);
     searoom(&["verify", &file]).code(1);
-}
-
-/// Contacts and distances are computed again from the motions alone.
-#[test]
-fn every_simulation_of_a_list_is_verified() {
-    let folder = Folder::new();
-    let two = format!("{HEAD_ON_FILE} scenarios/colregs/give-way.toml");
-    let mut sailed = json(&format!("simulate {two} --json"));
-    let list = folder.write("list.json", sailed.to_string());
-    let shown = stdout(&searoom(&["verify", &list]).success());
-    assert_eq!(shown.matches(": verified: no contact").count(), 2);
-    let summary = "\n2 documents: 2 verified, 2 safe\n";
-    assert!(shown.ends_with(summary), "{shown}");
-    sailed["simulations"][1]["contact"] = true.into();
-    let altered = folder.write("altered.json", sailed.to_string());
-    let found = document(&searoom(&["verify", &altered, "--json"]).code(1));
-    assert_eq!(found["verified"], 1);
-    assert_eq!(found["plans"][1]["verified"], false);
-    // what stands beside a list is not passed over
-    let mut beside = sailed.clone();
-    for key in ["format", "trajectory"] {
-        beside[key] = "searoom-simulation/1".into();
-        let file = folder.write("beside.json", beside.to_string());
-        searoom(&["verify", &file]).code(2);
-        beside.as_object_mut().expect("an object").remove(key);
-    }
-    sailed["simulations"][1]["format"] = "searoom-simulation/0".into();
-    let old = folder.write("old.json", sailed.to_string());
-    searoom(&["verify", &old]).code(2);
-    let empty = folder.write("empty.json", "{\"simulations\": []}");
-    let refused = searoom(&["verify", &empty]).code(2);
-    says(&stderr(&refused), "empty.json: simulations: an empty list");
-}
-
-#[test]
-fn the_land_of_a_simulation_is_checked_again() {
-    let folder = Folder::new();
-    let file = "scenarios/closed-loop/harbour-ferries.toml";
-    let sailed = json(&format!("simulate {file} --json"));
-    let check = |pointer: &str, value: serde_json::Value| {
-        let mut changed = sailed.clone();
-        *changed.pointer_mut(pointer).expect(pointer) = value;
-        let name = folder.write("sailed.json", changed.to_string());
-        searoom(&["verify", &name])
-    };
-    check("/duration_s", sailed["duration_s"].clone()).success();
-    let near = sailed["sailed"][1]["start"].clone();
-    let [x, y] = ["east_m", "north_m"].map(|key| number(&near[key]));
-    let rock = serde_json::json!([[[x, y], [x + 9.0, y], [x, y + 9.0]]]);
-    for (pointer, value) in [
-        ("/land/least_m", 400.0.into()),
-        ("/land/least_m", serde_json::Value::Null),
-        ("/land/grounded", true.into()),
-        ("/land/least_t_s", 12345.0.into()),
-        ("/land", serde_json::Value::Null),
-        ("/settings/map", false.into()),
-        ("/land/polygons_m", serde_json::json!([])),
-        ("/land/polygons_m", serde_json::json!([[[0.0, 0.0]]])),
-        ("/land/polygons_m", rock),
-    ] {
-        let shown = stdout(&check(pointer, value).code(1));
-        assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
-    }
-}
-
-/// The closest approach is in the last step, in which the current is in no gap.
-#[test]
-fn a_simulation_in_a_current_verifies_at_its_end() {
-    let folder = Folder::new();
-    let file = "scenarios/closed-loop/overtaking-rudder.toml";
-    let sailed = searoom(&["simulate", file, "--duration-s", "150", "--json"]);
-    let sailed = folder.write("sailed.json", stdout(&sailed.success()));
-    searoom(&["verify", &sailed]).success();
-}
-
-#[test]
-fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
-    let folder = Folder::new();
-    let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
-                  current = { speed_mps = 0.3, toward_deg = 10 }";
-    let margins = "tracking_margin_m = 20.0\nsafety_margin_m";
-    let steered = HEAD_ON.replace("safety_margin_m", margins);
-    let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
-    let steered = folder.write("steered.toml", steered);
-    for file in [HEAD_ON_FILE, &steered] {
-        let sailed = json(&format!("simulate {file} --json"));
-        let check = |change: &dyn Fn(&mut serde_json::Value)| {
-            let mut changed = sailed.clone();
-            change(&mut changed);
-            let name = folder.write("sailed.json", changed.to_string());
-            searoom(&["verify", &name])
-        };
-        let shown = stdout(&check(&|_| {}).success());
-        let verdict = "Head-on: verified: no contact, least distance ";
-        assert!(shown.starts_with(verdict), "{shown}");
-        for (pointer, value) in [
-            ("/contact", true.into()),
-            ("/safe", false.into()),
-            ("/targets/0/least_clearance_m", 400.0.into()),
-            ("/targets/0/contact_t_s", 100.0.into()),
-            ("/targets/0/track/0/north_m", 170.0.into()),
-            ("/sailed/0/start/north_m", 20.0.into()),
-            ("/sailed/1/duration_s", (-27.4).into()),
-            ("/duration_s", 900.0.into()),
-            ("/replans/1/safe", false.into()),
-            ("/replans/1/verdict", "NOT SAFE".into()),
-            ("/replans/1/estimates", serde_json::json!([])),
-            ("/replans", serde_json::json!([])),
-            ("/targets", serde_json::json!([])),
-            ("/targets/0/beam_m", 0.0.into()),
-            ("/targets/0/least_clearance_t_s", (-1e9).into()),
-            ("/conduct/unsafe_plans", 2.into()),
-        ] {
-            let altered = check(&|document| {
-                *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);
-            });
-            let shown = stdout(&altered.code(1));
-            assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
-        }
-        check(&|document| document["sailed"] = 3.into()).code(2);
-    }
 }

@@ -18,9 +18,9 @@ use searoom::target::{Motion, ShipTrack};
 use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};
 use searoom::trajectory::Segment;
 
-use super::encounter_generator::{EncounterKind, Meeting};
-use super::statistics::{quantiles, share_cells};
-use super::{Report, Seeds, meetings};
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
+use crate::campaigns::statistics::{quantiles, share_cells};
+use crate::campaigns::{Report, Seeds, meetings};
 
 /// Seconds from one plan to the next.
 const STEP_S: f64 = 20.0;

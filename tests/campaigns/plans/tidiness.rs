@@ -6,9 +6,9 @@ use searoom::scenario::{Compliance, Scenario};
 use searoom::tolerance;
 use searoom::trajectory::{Segment, Trajectory};
 
-use super::encounter_generator::{EncounterKind, Placement, random_encounter};
-use super::statistics::{quantile, quantiles};
-use super::{Report, Seeds};
+use crate::campaigns::encounter_generator::{EncounterKind, Placement, random_encounter};
+use crate::campaigns::statistics::{quantile, quantiles};
+use crate::campaigns::{Report, Seeds};
 
 /// Radians (2°) from which a turn is an alteration of course.
 const ALTERATION: f64 = std::f64::consts::PI / 90.0;
@@ -43,7 +43,10 @@ pub fn run(seeds: Seeds) -> Report {
 }
 
 fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut Report) {
-    let found: Vec<[Planned; 2]> = EncounterKind::with_seeds(seeds)
+    let scenes: Vec<(EncounterKind, u64)> = EncounterKind::with_seeds(seeds).collect();
+    let all = scenes.len();
+    let found: Vec<[Planned; 2]> = scenes
+        .into_iter()
         .filter_map(|(kind, seed)| {
             let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
             let mut scenario = drawn.scenario;
@@ -54,6 +57,9 @@ fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut 
             Some([Planned::of(scenario)?, Planned::of(bare)?])
         })
         .collect();
+    report.require(20 * found.len() >= 19 * all, || {
+        format!("{word}: {} of {all} have both plans", found.len())
+    });
     let ratios: Vec<f64> = found
         .iter()
         .map(|[tidy, bare]| tidy.cost / bare.cost)

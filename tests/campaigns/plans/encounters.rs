@@ -18,12 +18,12 @@ use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;
 use searoom::vessel::OwnShip;
 
-use super::behaviour::{Behaviour, Signal};
-use super::encounter_generator::{
+use crate::campaigns::behaviour::{Behaviour, Signal};
+use crate::campaigns::encounter_generator::{
     EncounterKind, Placement, RandomEncounter, random_encounter, random_traffic,
 };
-use super::statistics::{quantile, spread};
-use super::{Report, Seeds};
+use crate::campaigns::statistics::{quantile, spread};
+use crate::campaigns::{Report, Seeds};
 
 /// Angle in radians (2°) below which a turn is not an alteration of course.
 const ALTERATION: f64 = std::f64::consts::PI / 90.0;

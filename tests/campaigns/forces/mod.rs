@@ -13,8 +13,9 @@ use searoom::trajectory::{ForceNode, Steered};
 use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector, VesselKind};
 
 use super::Report;
-use super::control_scenes as scenes;
 use super::statistics::spread;
+
+pub mod scenes;
 
 /// Least `g - 1` of any set along the cubics, with the given number of samples per interval.
 fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {

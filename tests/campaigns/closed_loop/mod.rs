@@ -1,0 +1,4 @@
+//! Plans that are made again and again while own ship sails.
+
+pub mod replanning;
+pub mod simulation;

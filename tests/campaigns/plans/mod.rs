@@ -1,0 +1,8 @@
+//! Plans of single scenes, each planned once.
+
+pub mod compliance;
+pub mod encounters;
+pub mod harbour;
+pub mod invariance;
+pub mod mutations;
+pub mod tidiness;

@@ -1,0 +1,135 @@
+//! Plans and documents of simulations, verified; altered ones are rejected.
+
+use super::HEAD_ON_FILE;
+use crate::program::{Folder, HEAD_ON, document, json, number, run, says, searoom, stderr, stdout};
+
+#[test]
+fn every_plan_that_was_followed_verifies() {
+    let folder = Folder::new();
+    run(&format!("simulate {HEAD_ON_FILE} --plans {folder}/plans")).success();
+    let files = folder.names("plans");
+    assert!(files.len() > 10, "{files:?}");
+    let files = files.iter().map(|name| format!(" {folder}/plans/{name}"));
+    run(&format!("verify{}", files.collect::<String>())).success();
+}
+
+/// Contacts and distances are computed again from the motions alone.
+#[test]
+fn every_simulation_of_a_list_is_verified() {
+    let folder = Folder::new();
+    let two = format!("{HEAD_ON_FILE} scenarios/colregs/give-way.toml");
+    let mut sailed = json(&format!("simulate {two} --json"));
+    let list = folder.write("list.json", sailed.to_string());
+    let shown = stdout(&searoom(&["verify", &list]).success());
+    assert_eq!(shown.matches(": verified: no contact").count(), 2);
+    let summary = "\n2 documents: 2 verified, 2 safe\n";
+    assert!(shown.ends_with(summary), "{shown}");
+    sailed["simulations"][1]["contact"] = true.into();
+    let altered = folder.write("altered.json", sailed.to_string());
+    let found = document(&searoom(&["verify", &altered, "--json"]).code(1));
+    assert_eq!(found["verified"], 1);
+    assert_eq!(found["plans"][1]["verified"], false);
+    // what stands beside a list is not passed over
+    let mut beside = sailed.clone();
+    for key in ["format", "trajectory"] {
+        beside[key] = "searoom-simulation/1".into();
+        let file = folder.write("beside.json", beside.to_string());
+        searoom(&["verify", &file]).code(2);
+        beside.as_object_mut().expect("an object").remove(key);
+    }
+    sailed["simulations"][1]["format"] = "searoom-simulation/0".into();
+    let old = folder.write("old.json", sailed.to_string());
+    searoom(&["verify", &old]).code(2);
+    let empty = folder.write("empty.json", "{\"simulations\": []}");
+    let refused = searoom(&["verify", &empty]).code(2);
+    says(&stderr(&refused), "empty.json: simulations: an empty list");
+}
+
+#[test]
+fn the_land_of_a_simulation_is_checked_again() {
+    let folder = Folder::new();
+    let file = "scenarios/closed-loop/harbour-ferries.toml";
+    let sailed = json(&format!("simulate {file} --json"));
+    let check = |pointer: &str, value: serde_json::Value| {
+        let mut changed = sailed.clone();
+        *changed.pointer_mut(pointer).expect(pointer) = value;
+        let name = folder.write("sailed.json", changed.to_string());
+        searoom(&["verify", &name])
+    };
+    check("/duration_s", sailed["duration_s"].clone()).success();
+    let near = sailed["sailed"][1]["start"].clone();
+    let [x, y] = ["east_m", "north_m"].map(|key| number(&near[key]));
+    let rock = serde_json::json!([[[x, y], [x + 9.0, y], [x, y + 9.0]]]);
+    for (pointer, value) in [
+        ("/land/least_m", 400.0.into()),
+        ("/land/least_m", serde_json::Value::Null),
+        ("/land/grounded", true.into()),
+        ("/land/least_t_s", 12345.0.into()),
+        ("/land", serde_json::Value::Null),
+        ("/settings/map", false.into()),
+        ("/land/polygons_m", serde_json::json!([])),
+        ("/land/polygons_m", serde_json::json!([[[0.0, 0.0]]])),
+        ("/land/polygons_m", rock),
+    ] {
+        let shown = stdout(&check(pointer, value).code(1));
+        assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
+    }
+}
+
+/// The closest approach is in the last step, in which the current is in no gap.
+#[test]
+fn a_simulation_in_a_current_verifies_at_its_end() {
+    let folder = Folder::new();
+    let file = "scenarios/closed-loop/overtaking-rudder.toml";
+    let sailed = searoom(&["simulate", file, "--duration-s", "150", "--json"]);
+    let sailed = folder.write("sailed.json", stdout(&sailed.success()));
+    searoom(&["verify", &sailed]).success();
+}
+
+#[test]
+fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
+    let folder = Folder::new();
+    let tables = "[simulation]\nvessel = { kind = \"nomoto\" }\n\
+                  current = { speed_mps = 0.3, toward_deg = 10 }";
+    let margins = "tracking_margin_m = 20.0\nsafety_margin_m";
+    let steered = HEAD_ON.replace("safety_margin_m", margins);
+    let steered = format!("{steered}\nbehaviour = {{ kind = \"mutual\" }}\n{tables}\n");
+    let steered = folder.write("steered.toml", steered);
+    for file in [HEAD_ON_FILE, &steered] {
+        let sailed = json(&format!("simulate {file} --json"));
+        let check = |change: &dyn Fn(&mut serde_json::Value)| {
+            let mut changed = sailed.clone();
+            change(&mut changed);
+            let name = folder.write("sailed.json", changed.to_string());
+            searoom(&["verify", &name])
+        };
+        let shown = stdout(&check(&|_| {}).success());
+        let verdict = "Head-on: verified: no contact, least distance ";
+        assert!(shown.starts_with(verdict), "{shown}");
+        for (pointer, value) in [
+            ("/contact", true.into()),
+            ("/safe", false.into()),
+            ("/targets/0/least_clearance_m", 400.0.into()),
+            ("/targets/0/contact_t_s", 100.0.into()),
+            ("/targets/0/track/0/north_m", 170.0.into()),
+            ("/sailed/0/start/north_m", 20.0.into()),
+            ("/sailed/1/duration_s", (-27.4).into()),
+            ("/duration_s", 900.0.into()),
+            ("/replans/1/safe", false.into()),
+            ("/replans/1/verdict", "NOT SAFE".into()),
+            ("/replans/1/estimates", serde_json::json!([])),
+            ("/replans", serde_json::json!([])),
+            ("/targets", serde_json::json!([])),
+            ("/targets/0/beam_m", 0.0.into()),
+            ("/targets/0/least_clearance_t_s", (-1e9).into()),
+            ("/conduct/unsafe_plans", 2.into()),
+        ] {
+            let altered = check(&|document| {
+                *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);
+            });
+            let shown = stdout(&altered.code(1));
+            assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
+        }
+        check(&|document| document["sailed"] = 3.into()).code(2);
+    }
+}

@@ -1,0 +1,122 @@
+//! `searoom verify` as a user runs it.
+
+use std::fs;
+
+use super::program::{Folder, HEAD_ON, document, list, run, says, searoom, stderr, stdout, text};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, is_empty};
+
+#[test]
+fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
+    let folder = Folder::new();
+    let plans = text(folder.path()).to_owned();
+    searoom(&["suite", "scenarios/colregs", "--plans", &plans]).success();
+    let file = |name: &str| format!("{plans}/{name}.json");
+    let four = ["give-way", "head-on", "overtaking", "stand-on"].map(file);
+    run(&format!("verify {}", four.join(" ")))
+        .success()
+        .stderr(is_empty())
+        .stdout(contains("Head-on: verified, safe").and(contains("margin")));
+    searoom(&["verify", &plans])
+        .success()
+        .stdout(contains("4 documents: 4 verified, 4 safe"));
+    let empty = Folder::new();
+    searoom(&["verify", text(empty.path())])
+        .code(2)
+        .stderr(contains("a folder without plan documents"));
+    let altered = file("altered");
+    let good = fs::read_to_string(&four[1]).expect("a plan");
+    let from = "\"turning_radius_m\": 100.0";
+    assert!(good.contains(from));
+    fs::write(&altered, good.replace(from, "\"turning_radius_m\": 101.0")).expect("written");
+    searoom(&["verify", &altered])
+        .code(1)
+        .stderr(is_empty())
+        .stdout(contains("Head-on: REJECTED").and(contains("turning radius in segment")));
+    // the highest status of all wins, and every file is answered
+    let broken = file("broken");
+    fs::write(&broken, &good[..good.len() / 2]).expect("written");
+    let first = &four[0];
+    let all = run(&format!(
+        "verify --json {broken} {altered} {first} no-such.json"
+    ))
+    .code(2)
+    .stderr(contains("broken.json: ").and(contains("no-such.json: cannot be read")));
+    let found = document(&all);
+    let verdicts: Vec<_> = list(&found["plans"])
+        .iter()
+        .map(|p| &p["verified"])
+        .collect();
+    assert_eq!(verdicts, [false, false, true, false]);
+    assert_eq!(found["verified"], 1);
+    assert_eq!(found["plans"][2]["targets"][0]["target"], "target");
+    searoom(&["verify"]).code(2).stderr(contains("PLAN.json"));
+    // what is not proven in time is not verified, and says so
+    let budget = ["verify", "--budget-s", "1e-9", &four[0]];
+    let late = "give-way.json: not proven within the budget of 0.000000001 s";
+    searoom(&budget).code(1).stderr(contains(late));
+    let all = searoom(&[&budget[..], &["--json"]].concat()).code(1);
+    let found = document(&all);
+    assert_eq!(found["plans"][0]["outcome"], "unproven");
+    assert_eq!(found["plans"][0]["verified"], false);
+    for wrong in ["0", "-1", "soon", "1e300"] {
+        searoom(&["verify", "--budget-s", wrong, &four[0]])
+            .code(2)
+            .stderr(contains("a positive number of seconds"));
+    }
+}
+
+/// The message for another document says that it is no plan document, and which kind it is.
+#[test]
+fn other_documents_are_no_plans() {
+    let folder = Folder::new();
+    let compared = run("compare scenarios/colregs/head-on.toml --planner path-time --json");
+    folder.write("comparison.json", stdout(&compared.code(1)));
+    folder.refuses(
+        "
+        verify README.md | found no JSON (expected value at line 1 column 1); allowed: a plan document
+        verify DIR/comparison.json | format: found none in a document with the keys comparisons; allowed: searoom-plan/1
+        ",
+    );
+}
+
+/// Texts of a document are shown, not obeyed: a terminal sees no control character and no line of
+/// their own.
+#[test]
+fn control_characters_of_others_are_shown_as_codes() {
+    let said = stdout(&searoom(&["verify", "tests/faults/verify-spoof.json"]).code(1));
+    assert!(!said.contains('\u{1b}'), "{said:?}");
+    let first = said.lines().next().expect("a line");
+    says(first, r"verified\u000aspace-time | \u001b[8m | REJECTED");
+    // as JSON the text is what it was
+    let checked = document(&run("verify --json tests/faults/verify-spoof.json").code(1));
+    let title = checked["plans"][0]["scenario"].as_str().expect("a text");
+    assert!(title.contains("\u{1b}[8m"));
+
+    let folder = Folder::new();
+    let bad = "\u{1b}[8m\u{9b}2J\u{202e}\u{7f}";
+    let key = bad
+        .replace('\u{1b}', "\\u001b")
+        .replace('\u{7f}', "\\u007f");
+    let file = folder.write(&format!("a{bad}.toml"), format!("\"{key}\" = 1\n{HEAD_ON}"));
+    let plan = folder.write(&format!("b{bad}.json"), format!("{{\"{bad}\": 1}}"));
+    let profile = folder.write("c.toml", format!("x = \"{bad}\"\n"));
+    let scenario = "scenarios/colregs/head-on.toml";
+    for args in [
+        &["check", &file][..],
+        &["plan", &file],
+        &["suite", &file],
+        &["compare", &file],
+        &["assess", &file],
+        &["inspect", &plan],
+        &["verify", &plan],
+        &["import", &plan, "--out", text(folder.path())],
+        &["plan", scenario, "--thresholds", &profile],
+    ] {
+        let output = searoom(args).code(2);
+        for said in [stdout(&output), stderr(&output)] {
+            let acts = |c: char| c.is_control() && !"\n\t".contains(c) || c == '\u{202e}';
+            assert!(!said.contains(acts), "{args:?}: {said:?}");
+        }
+    }
+}
