@@ -26,7 +26,7 @@ map: frame geometry tolerance input
 target: frame geometry tolerance vessel
 colregs: frame tolerance numerics geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory
-planner: obstacle trajectory vessel target search geometry frame tolerance numerics colregs
+planner: parallel obstacle trajectory vessel target search geometry frame tolerance numerics colregs
 evaluation: parallel frame tolerance geometry vessel target trajectory
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text

@@ -93,7 +93,7 @@ impl Plan {
     /// True where no hard set, hull or land is entered from start to arrival.
     #[getter]
     fn safe(&self) -> bool {
-        self.document.safe
+        self.document.is_safe()
     }
 
     /// Seconds that planning took.

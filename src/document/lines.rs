@@ -27,7 +27,7 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
-        all.push(facts(plan.verified, plan.safe).to_owned());
+        all.push(facts(plan.verified, plan.is_safe()).to_owned());
     }
     let broken = breaks(&plan.encounters).unwrap_or_default();
     if !broken.is_empty() {

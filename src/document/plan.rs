@@ -69,8 +69,9 @@ pub struct PlanDocument {
     pub relaxation: Option<RelaxationDocument>,
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
+    /// `None` in a document that does not say so, which `verify` rejects.
     #[serde(default)]
-    pub safe: bool,
+    pub safe: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
     pub violations: Vec<ViolationDocument>,
@@ -94,6 +95,11 @@ pub struct PlanDocument {
 }
 
 impl PlanDocument {
+    /// True where the document says that no hard set, hull or land is entered.
+    pub fn is_safe(&self) -> bool {
+        self.safe == Some(true)
+    }
+
     /// Builds the document of a run.
     pub fn of(run: &Run) -> Self {
         let scenario = &run.scenario;
@@ -124,7 +130,7 @@ impl PlanDocument {
             relaxation: relaxations.first().cloned(),
             relaxations,
             verified: verified(run),
-            safe: run.safe(),
+            safe: Some(run.safe()),
             time_of_no_return_s: None,
             violations: (run.evaluation.as_ref())
                 .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),

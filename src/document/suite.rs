@@ -136,7 +136,7 @@ impl SuiteRunDocument {
             reason: plan.reason.clone(),
             relaxations: plan.relaxations.clone(),
             verified: plan.verified,
-            safe: plan.safe,
+            safe: plan.is_safe(),
             cost: plan.cost.clone(),
             encounters: plan.encounters.clone(),
             targets: Some(plan.targets.len()),

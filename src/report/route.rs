@@ -91,7 +91,7 @@ impl RouteFormat {
         if plan.trajectory.is_none() {
             return Err(RouteError::NoPlan);
         }
-        if !plan.safe {
+        if !plan.is_safe() {
             return Err(RouteError::NotSafe);
         }
         let legs = plan.legs();

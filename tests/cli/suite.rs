@@ -148,5 +148,5 @@ fn a_report_is_one_page_with_its_figures() {
         "plan scenarios/colregs/head-on.toml --report {broken}"
     ))
     .code(2)
-    .stderr(contains("--report: ").and(contains("a folder")));
+    .stderr(contains("--report: ").and(contains("folder")));
 }
