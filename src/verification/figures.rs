@@ -68,7 +68,13 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     same(what, Some(counts[0]), counts[1]);
     for (k, (said, so)) in said.iter().zip(so).enumerate() {
         let what = format!("cost.waypoint_distances_m[{k}]");
-        same_to(&what, Some(*said), *so, WAYPOINT_ACCURACY_M);
+        // no distance is negative
+        let accuracy = if *said < 0.0 {
+            0.0
+        } else {
+            WAYPOINT_ACCURACY_M
+        };
+        same_to(&what, Some(*said), *so, accuracy);
     }
     let (said, so) = (cost.min_clearance_m, evaluation.min_clearance);
     same_to("cost.min_clearance_m", said, so, rounding);

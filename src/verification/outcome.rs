@@ -12,7 +12,9 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     let mut found = Vec::new();
     let safe = evaluation.is_some_and(Evaluation::safe);
     if file.safe != Some(safe) {
-        let said = file.safe.map_or("nothing".to_owned(), |said| said.to_string());
+        let said = file
+            .safe
+            .map_or("nothing".to_owned(), |said| said.to_string());
         found.push(mismatch("safe", said, safe));
     }
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);

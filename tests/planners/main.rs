@@ -10,6 +10,7 @@ mod control_solver;
 mod encounters;
 mod generator;
 mod land;
+mod larger_sets;
 mod long_routes;
 mod optimal_control;
 mod path_networks;

@@ -6,7 +6,7 @@ use crate::geometry::SignedDistance;
 use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Metres. Largest distance of the polygon around an ellipsoid from the ellipse at any time.
-const OUTER_EXCESS_M: f64 = 0.05;
+pub const OUTER_EXCESS_M: f64 = 0.05;
 
 /// Bound on the tangent planes that one leg adds to an ellipsoid; some tens are usual.
 const MAX_CUTS: usize = 200;
@@ -328,25 +328,57 @@ fn centroid(corners: &[PathTime]) -> PathTime {
     )
 }
 
-/// The corners of `{(s, t) : start + s direction in O_t}` within `0 <= s <= length`, `0 <= t <=
-/// horizon`, in order. O((n + m)²).
+/// The corners of `{(s, t) : x(s) in O_(t_0 + t)}` along a track, `0 <= t <= duration`, in order:
+/// paper eq. (29) for any `t_0`, seconds. O((n + m)²).
 ///
-/// Empty where they do not meet. `direction` is a unit vector.
-pub fn along_path(
+/// Times count from `t_0`. Empty where they do not meet.
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PolytopeObstacle, Track, along_track};
+///
+/// let square = |half: f64| {
+///     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
+/// };
+/// let velocity = ConvexPolygon::point(Vector::new(1.0, 0.0));
+/// let target = PolytopeObstacle::new("drifting", square(10.0)?, velocity);
+/// // a path to the north, 100 m east; the target is on it from 90 to 110 s, own ship starts at 60 s
+/// let start = Vector::new(100.0, -50.0);
+/// let track = Track { start, direction: Vector::new(0.0, 1.0), length: 100.0 };
+/// let corners = along_track(&target, &track, 60.0, 200.0);
+/// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
+/// assert!((first - 30.0).abs() < 1e-9, "{first} s after the start");
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
+pub fn along_track(
     obstacle: &PolytopeObstacle,
-    start: Vector,
-    direction: Vector,
-    length: f64,
-    horizon: f64,
+    track: &Track,
+    start_time: f64,
+    duration: f64,
 ) -> Vec<PathTime> {
-    let track = Track {
-        start,
-        direction,
-        length,
-    };
-    let faces = obstacle.faces().iter();
-    let faces = faces.map(|f| PathTimeFace::new(f, 0.0, &track));
-    Clipped::new(faces, length, [0.0, horizon]).map_or_else(Vec::new, |polygon| {
+    corners(obstacle.faces(), track, start_time, duration)
+}
+
+/// [`along_track`] for an ellipsoid: an outer polygon of its projection, which is convex with a
+/// curved boundary. No point of it is farther than [`OUTER_EXCESS_M`] from the ellipse at its time.
+pub fn outer_along_track(
+    obstacle: &EllipsoidObstacle,
+    track: &Track,
+    start_time: f64,
+    duration: f64,
+) -> Vec<PathTime> {
+    let faces = outer_faces_along(obstacle, &[*track], start_time + duration);
+    corners(&faces, track, start_time, duration)
+}
+
+fn corners(faces: &[HalfSpace], track: &Track, start_time: f64, duration: f64) -> Vec<PathTime> {
+    // the clock of the set starts before that of the track
+    let faces = faces
+        .iter()
+        .map(|f| PathTimeFace::new(f, -start_time, track));
+    Clipped::new(faces, track.length, [0.0, duration]).map_or_else(Vec::new, |polygon| {
         polygon.sides.iter().map(|side| side.corner).collect()
     })
 }

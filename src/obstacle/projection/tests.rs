@@ -21,7 +21,12 @@ fn the_projection_is_membership_along_the_path() {
         );
         let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
         let (length, horizon) = (400.0, 120.0);
-        let corners = along_path(&o, start, direction, length, horizon);
+        let track = Track {
+            start,
+            direction,
+            length,
+        };
+        let corners = along_track(&o, &track, 0.0, horizon);
         let points: Vec<Vector> = corners
             .iter()
             .map(|c| Vector::new(c.distance, c.time))
@@ -164,4 +169,53 @@ fn planes_around_an_ellipsoid_take_a_few_distances_each() {
     });
     assert!(made > 60, "{made}");
     assert!(all < 25 * distances, "{all:?} {distances:?}, {made}");
+}
+
+/// Paper eq. (29): the diagram's time starts when own ship enters the path.
+#[test]
+fn a_later_start_sees_what_is_there_later() {
+    let square = |half: f64, x: f64| {
+        let points = [(-half, -half), (half, -half), (half, half), (-half, half)];
+        ConvexPolygon::hull(&points.map(|(a, b)| Vector::new(a + x, b))).expect("finite")
+    };
+    let polytope = PolytopeObstacle::new("x", square(20.0, 0.0), square(0.4, 2.0));
+    let ellipsoid = EllipsoidObstacle::outer_of(&polytope);
+    let track = Track {
+        start: Vector::new(90.0, -200.0),
+        direction: crate::frame::direction(1.4),
+        length: 400.0,
+    };
+    let (start_time, duration) = (25.0, 80.0);
+    let seen = [
+        along_track(&polytope, &track, start_time, duration),
+        outer_along_track(&ellipsoid, &track, start_time, duration),
+    ];
+    let polygons = seen.map(|corners| {
+        let points: Vec<Vector> = (corners.iter())
+            .map(|c| Vector::new(c.distance, c.time))
+            .collect();
+        ConvexPolygon::hull(&points).expect("they meet")
+    });
+    let (mut met, mut clear) = (0, 0);
+    for k in 0..4000 {
+        let distance = track.length * f64::from(k % 80) / 79.0;
+        let time = duration * f64::from(k / 80) / 49.0;
+        let (place, clock) = (track.at(distance), start_time + time);
+        let point = Vector::new(distance, time);
+        let depths = [
+            polytope.signed_distance(place, clock).distance,
+            ellipsoid.signed_distance(place, clock).distance,
+        ];
+        for (kind, (polygon, depth)) in polygons.iter().zip(depths).enumerate() {
+            let outer = if kind == 0 { 1e-6 } else { OUTER_EXCESS_M };
+            if depth < -1e-6 {
+                met += 1;
+                assert!(polygon.contains(point), "{kind} {point} {depth}");
+            } else if depth > outer {
+                clear += 1;
+                assert!(!polygon.contains(point), "{kind} {point} {depth}");
+            }
+        }
+    }
+    assert!(met > 500 && clear > 500, "{met} {clear}");
 }

@@ -12,7 +12,7 @@ use std::cell::Cell;
 
 use crate::frame::Side;
 use crate::geometry::outer_simplified;
-use crate::obstacle::{PolytopeObstacle, along_path};
+use crate::obstacle::{PolytopeObstacle, Track, along_track};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::chain::Chain;
@@ -244,18 +244,16 @@ impl<'a> Graph<'a> {
             let Some(stretch) = self.route.stretch(index, desired) else {
                 continue;
             };
-            let start = leg.start + leg.direction * stretch.from;
-            let length = stretch.to - stretch.from;
+            let track = Track {
+                start: leg.start + leg.direction * stretch.from,
+                direction: leg.direction,
+                length: stretch.to - stretch.from,
+            };
             // in the clock of the convex piece
             let clock = proxy.start();
             let end = proxy.window.map_or(f64::INFINITY, |w| w.end);
-            let corners = along_path(
-                proxy.body,
-                start,
-                leg.direction,
-                length,
-                end.min(self.problem.horizon) - clock,
-            );
+            let duration = end.min(self.problem.horizon) - clock;
+            let corners = along_track(proxy.body, &track, 0.0, duration);
             for mut corner in corners {
                 corner.time += clock;
                 let goal = stretch.distance + corner.distance;
