@@ -431,3 +431,57 @@ fn mixed(speeds: &ManoeuvreSpeeds, length: f64, time: f64) -> [f64; 3] {
         [0.0, length - share, share]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ConvexPolygon;
+    use crate::obstacle::PolytopeObstacle;
+    use crate::planner::Problem;
+    use crate::planner::space_time::piece::pieces;
+    use crate::planner::space_time::proxy::within_reach;
+    use crate::planner::space_time::route::Route;
+    use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::fixtures::own_ship;
+    use std::time::Duration;
+
+    /// A square of 200 m crosses the route from south to north.
+    #[test]
+    fn a_target_is_passed_on_either_side() {
+        let points = [Vector::zeros(), Vector::new(4000.0, 0.0)];
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        let own = own_ship(&[2.5, 5.0, 7.0]);
+        let corners = [
+            (-100.0, -100.0),
+            (100.0, -100.0),
+            (100.0, 100.0),
+            (-100.0, 100.0),
+        ];
+        let square = corners.map(|(x, y)| Vector::new(2000.0 + x, -800.0 + y));
+        let body = PolytopeObstacle::new(
+            "square",
+            ConvexPolygon::hull(&square).expect("convex"),
+            ConvexPolygon::point(Vector::new(0.0, 2.0)),
+        );
+        let obstacles = [body.into()];
+        let problem = Problem::new(&own, &desired, &obstacles, 1600.0);
+        let pieces = pieces(&obstacles, problem.horizon);
+        let proxies = within_reach(&problem, &pieces);
+        let clock = Clock::new(Duration::from_secs(60));
+        let route = Route::new(&problem, clock).expect("a route");
+        let context = Context::new(&problem, &route, &proxies, &[]);
+        let nominal = route.follow(0.0, 0.0);
+        let conflict = Conflict::of(&proxies, &nominal).expect("a conflict");
+        let found = children(&context, &Node::root(&nominal), 0, &conflict, clock);
+        let mut sides = [false; 2];
+        for child in &found {
+            assert!(first_contact(&proxies, &child.motion).is_none());
+            let north = child.motion.iter().map(|s| s.end().position.y);
+            let (south, north) = north.fold((0.0_f64, 0.0_f64), |(low, high), y| {
+                (low.min(y), high.max(y))
+            });
+            sides[usize::from(north > -south)] = true;
+        }
+        assert_eq!(sides, [true; 2]);
+    }
+}
