@@ -9,8 +9,9 @@ use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, Ellipse, outer_disc}
 use crate::tolerance::HALF_WIDTH_M;
 
 impl Obstacle {
-    /// An outer set that is at least a millimetre wide at every time: the set itself, or the set
-    /// grown by half a millimetre. A motion that is clear of it to rounding does not touch the set.
+    /// An outer set that is at least a millimetre wide at every time: the set itself, the set grown
+    /// by half a millimetre, or polygons around the two parts of a thin ellipsoid. A motion that is
+    /// clear of it to rounding does not touch the sum of the initial set and the velocities.
     pub(crate) fn outer_with_interior(&self) -> Self {
         // the ellipse around a needle and a disc is very much wider than polygons around both
         if let Some(needle) = self.as_ellipsoid().filter(|o| o.is_thin()) {

@@ -13,6 +13,8 @@ use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::Hull;
 use crate::vessel::fixtures::own_ship;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 mod land;
@@ -462,4 +464,86 @@ fn out_of_time_own_ship_keeps_a_plan_that_is_clear_of_the_hard_sets() {
     assert!(matches!(after.planned.outcome, Outcome::Deadline(Some(_))));
     assert!(after.planned.is_remainder && after.safe());
     assert_eq!(after.level, RelaxationLevel::ReducedDomains);
+}
+
+/// The hard set contains, for every course of the target, its hull on that heading and own hull on
+/// any heading a margin away.
+#[test]
+fn the_hard_set_contains_the_hull_at_every_heading() {
+    let mut rng = ChaCha8Rng::seed_from_u64(41);
+    for case in 0..200 {
+        let mut within = |a: f64, b: f64| rng.random_range(a..b);
+        let mut ship = track(900.0, 0.0, within(-PI, PI), within(0.0, 9.0));
+        ship.hull.length = within(5.0, 200.0);
+        ship.hull.beam = within(0.1, 0.5) * ship.hull.length;
+        ship.course_spread = within(0.0, 0.2);
+        ship.turn_rate = [0.0, 1e-3, 0.02][case % 3];
+        let mut asked = scenario(ship.clone(), Compliance::Shape);
+        if ship.turn_rate == 0.0 && case % 2 == 0 {
+            asked.targets[0].representation = Representation::Ellipsoid;
+        }
+        let sets = sets(&asked);
+        let reach = asked.own_ship.hull.half_diagonal() + asked.own_ship.safety_margin;
+        for _ in 0..5 {
+            let (turns, speed) = (within(-1.0, 1.0), ship.speed + within(-0.5, 0.5));
+            let (mut pose, mut time, step) = (ship.pose, 0.0, 0.5);
+            while time < asked.horizon {
+                let course = turns * (ship.course_spread + ship.turn_rate * time);
+                pose.heading = ship.pose.heading + course;
+                let hull = ship.hull.polygon(&pose);
+                for corner in hull.vertices() {
+                    let depth = -sets[0].hard.signed_distance(*corner, time).distance;
+                    assert!(
+                        depth > reach - 1e-6,
+                        "{depth} of {reach}, {time} s, {ship:?}"
+                    );
+                }
+                pose.position += pose.ahead() * (speed.max(0.0) * step);
+                time += step;
+            }
+        }
+    }
+}
+
+/// The time is up before anything is found: the run reports what is known.
+#[test]
+fn out_of_time_there_is_still_an_answer() {
+    let mut scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
+    scenario.deadline = 0.0;
+    let run = run(scenario);
+    assert!(matches!(run.planned.outcome, Outcome::Deadline(Some(_))));
+    assert!(run.evaluation.is_some_and(|e| e.verified()));
+    assert!(matches!(
+        run.relaxations[0],
+        Relaxation::Risk { until: Some(_), .. }
+    ));
+}
+
+#[test]
+fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
+    let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
+    let sets = sets(&scenario);
+    let straight = Trajectory::new(vec![Segment {
+        start: scenario.own_ship.pose,
+        start_time: 0.0,
+        duration: 300.0,
+        speed: 5.0,
+        turn_rate: 0.0,
+    }])
+    .expect("valid");
+    let judged = judge(&scenario, &[sets[0].with_domain.clone()], &straight);
+    assert!(!judged.verified());
+    assert!(
+        judged
+            .violations
+            .iter()
+            .any(|v| v.what.starts_with("set of 'other'"))
+    );
+    assert!(
+        judged
+            .violations
+            .iter()
+            .any(|v| v.what.starts_with("hull of 'other'"))
+    );
+    assert!(judged.space_time_error.abs() < 1e-9 && judged.delay.abs() < 1e-9);
 }
