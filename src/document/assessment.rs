@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::sets::InitialSetDocument;
+use super::targets::sets::InitialSetDocument;
 
 /// Results of `assess`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -13,7 +13,6 @@ mod lint;
 mod memory;
 mod parts;
 mod plan;
-mod sets;
 mod simulation;
 mod suite;
 mod targets;
@@ -50,12 +49,12 @@ pub(crate) use plan::{
     cost_of, finite, minimised, objective, planner_names, position, segment_document, stats,
     timing, violations,
 };
-pub use sets::{InitialSetDocument, VelocitySetDocument};
 pub use simulation::*;
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,
 };
+pub use targets::sets::{InitialSetDocument, VelocitySetDocument};
 pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::sets::{InitialSetDocument, VelocitySetDocument};
+use super::targets::sets::{InitialSetDocument, VelocitySetDocument};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::trajectory::Segment;
 

@@ -15,7 +15,7 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
-use super::sets::vertices;
+use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};
 use crate::frame::{

@@ -1,10 +1,11 @@
 //! Targets of a plan, required to verify a document alone.
 
+pub(super) mod sets;
+
 use serde::{Deserialize, Serialize};
 
 use super::parts::PositionDocument;
 use super::plan::position;
-use super::sets::{InitialSetDocument, VelocitySetDocument};
 use crate::frame::{
     Pose, course_deg_from_heading, deg_from_radians, heading_from_course_deg, radians_from_deg,
 };
@@ -12,6 +13,7 @@ use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::scenario::Fault;
 use crate::target::{DomainKind, ShipTrack, Target, TimedVelocitySet};
 use crate::vessel::Hull;
+use sets::{InitialSetDocument, VelocitySetDocument};
 
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -161,7 +161,7 @@ fn ellipse(center: [f64; 2], [a, b]: &[[f64; 2]; 2]) -> Result<ConvexSet, Fault>
     Ok(ellipse.into())
 }
 
-pub(super) fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
+pub(in crate::document) fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
     polygon.vertices().iter().copied().map(plain).collect()
 }
 
