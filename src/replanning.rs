@@ -8,7 +8,7 @@ use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
-use crate::tolerance::{self, POSITION_SIGMAS};
+use crate::tolerance::{self, SIGMAS};
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
@@ -81,13 +81,16 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
     let both = measured.outer_intersection(&moved);
     ship.kept_positions =
         both.filter(|both| *both != measured && both.vertices().len() <= MOST_VERTICES);
-    // a wider spread, or a turn to another side, says that less is known
+    // a wider spread, or a turn to another side, says that the ship may do more; a less accurate
+    // measurement does not
     let beside = match ship.starboard_turn == then.starboard_turn {
         true => 0.0,
         false => wrap(ship.middle_course() - then.middle_course()).abs(),
     };
-    if ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
-        && ship.course_half_width() + beside <= then.course_half_width() * (1.0 + ASSUMED)
+    let may_turn = |ship: &ShipTrack| ship.course_half_width() - SIGMAS * ship.course_std;
+    if ship.kept_velocities.is_none()
+        && ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
+        && may_turn(ship) + beside <= may_turn(&then) * (1.0 + ASSUMED)
     {
         ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
             true => velocities,
@@ -328,20 +331,21 @@ fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) 
     let now = sets.find(|timed| timed.until > elapsed)?;
     let now = now.velocities.as_polygon()?;
     let reached = set.outer_section(elapsed);
-    let known = POSITION_SIGMAS * ship.position_std;
+    let known = SIGMAS * ship.position_std;
     let off = reached.signed_distance(ship.pose.position);
     // negated on purpose: a NaN is outside
     if !(off <= known + ASSUMED * (1.0 + elapsed)) {
         // a ship that has turned since is where none of the assumed velocities would have taken it
         let way = (ship.pose.position - then.pose.position).norm();
-        let farthest = FASTEST * (then.speed + then.speed_spread) * elapsed
-            + POSITION_SIGMAS * (then.position_std + ship.position_std);
+        let farthest = FASTEST * (then.speed + then.speed_half_width()) * elapsed
+            + SIGMAS * (then.position_std + ship.position_std);
         return Some(match way <= farthest {
             true => Assumed::OutsideVelocities,
             false => Assumed::OutsidePlaces,
         });
     }
-    let inside = now.signed_distance(ship.velocity()) <= ASSUMED;
+    let error = SIGMAS * (ship.speed_std + ship.speed * ship.course_std);
+    let inside = now.signed_distance(ship.velocity()) <= error + ASSUMED;
     Some(match inside {
         true => Assumed::Inside,
         false => Assumed::OutsideVelocities,

@@ -5,9 +5,9 @@ mod uncertainty;
 
 pub use uncertainty::{TimedVelocitySet, Uncertainty};
 
-use crate::frame::{Pose, Vector, direction, to_port};
+use crate::frame::{Pose, Vector, direction, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_disc};
-use crate::tolerance::POSITION_SIGMAS;
+use crate::tolerance::SIGMAS;
 use crate::vessel::Hull;
 
 /// Half the angle between two tangents of the outer arc, radians: 5°.
@@ -53,20 +53,25 @@ pub struct ShipTrack {
     pub hull: Hull,
     /// Standard deviation of the position, metres per axis.
     pub position_std: f64,
-    /// Half-width of the speed, m/s.
+    /// Standard deviation of the speed, m/s.
+    pub speed_std: f64,
+    /// Standard deviation of the course, radians.
+    pub course_std: f64,
+    /// By how much the ship may change its speed, m/s.
     pub speed_spread: f64,
-    /// Half-width of the course about the estimate, radians, without `starboard_turn`.
+    /// By how much the ship may change its course to either side, radians, without
+    /// `starboard_turn`.
     pub course_spread: f64,
     /// How much farther to starboard the course may be, radians, to port where it is negative: a
     /// ship that gives way turns to starboard (docs/scenario.md).
     pub starboard_turn: f64,
-    /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
-    /// within `course_spread + turn_rate t`, to starboard `starboard_turn` more.
+    /// Largest turn rate to either side, radians per second, not negative: the possible courses grow
+    /// by `turn_rate t` to either side.
     pub turn_rate: f64,
     /// Positions at t = 0 about the estimate that earlier plans allow, metres; `None` for any.
     pub kept_positions: Option<ConvexPolygon>,
-    /// Velocities that the ship is known to keep to, from before t = 0; `None` for any, and for a
-    /// ship that may turn.
+    /// Velocities that the ship is known to keep to, given or from earlier plans; `None` for any,
+    /// and for a ship that may turn.
     pub kept_velocities: Option<ConvexPolygon>,
     /// The requested ship domain.
     pub domain: DomainKind,
@@ -80,6 +85,8 @@ impl ShipTrack {
             speed,
             hull,
             position_std: 0.0,
+            speed_std: 0.0,
+            course_std: 0.0,
             speed_spread: 0.0,
             course_spread: 0.0,
             starboard_turn: 0.0,
@@ -87,6 +94,28 @@ impl ShipTrack {
             kept_positions: None,
             kept_velocities: None,
             domain: DomainKind::Hull,
+        }
+    }
+
+    /// The ship with a polygon of the velocities that it may take, in place of its spreads. Its
+    /// hull may have every heading on which it may move. O(vertices).
+    pub fn with_velocities(self, velocities: ConvexPolygon) -> Self {
+        let speeds = velocities.vertices().iter().map(|v| v.norm());
+        let fastest = speeds.fold(0.0, f64::max);
+        let slowest = velocities.signed_distance(Vector::zeros());
+        let off = |v: &Vector| wrap(heading_of(*v) - self.pose.heading).abs();
+        let widest = velocities.vertices().iter().map(off).fold(0.0, f64::max);
+        // around zero, or over half a turn, every course is possible
+        let is_narrow = slowest > 0.0 && widest < std::f64::consts::FRAC_PI_2;
+        Self {
+            speed_spread: (fastest - self.speed).max(self.speed - slowest.max(0.0)),
+            course_spread: if is_narrow {
+                widest
+            } else {
+                std::f64::consts::PI
+            },
+            kept_velocities: Some(velocities),
+            ..self
         }
     }
 
@@ -108,9 +137,16 @@ impl ShipTrack {
         self.pose.heading - 0.5 * self.starboard_turn
     }
 
-    /// Half the width of the possible courses, radians.
+    /// Half the width of the possible courses, radians: what the ship may do, and three standard
+    /// deviations.
     pub fn course_half_width(&self) -> f64 {
-        self.course_spread + 0.5 * self.starboard_turn.abs()
+        self.course_spread + SIGMAS * self.course_std + 0.5 * self.starboard_turn.abs()
+    }
+
+    /// Half the width of the possible speeds, m/s: what the ship may do, and three standard
+    /// deviations. Speeds below 0 are left out.
+    pub fn speed_half_width(&self) -> f64 {
+        self.speed_spread + SIGMAS * self.speed_std
     }
 
     /// The position, with the heading in the middle of the possible ones.
@@ -133,7 +169,7 @@ impl ShipTrack {
     /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of
     /// three standard deviations, less what earlier plans exclude.
     pub fn outer_positions(&self) -> ConvexPolygon {
-        let all = outer_disc(POSITION_SIGMAS * self.position_std, self.middle_course());
+        let all = outer_disc(SIGMAS * self.position_std, self.middle_course());
         match &self.kept_positions {
             Some(kept) => all.outer_intersection(kept).unwrap_or(all),
             None => all,
@@ -183,8 +219,8 @@ impl ShipTrack {
         ConvexPolygon::from_ccw(points)
     }
 
-    /// An outer polygon of the velocities with a speed in `[speed - spread, speed + spread]`, at
-    /// least 0, and a course within `course_spread`, to starboard `starboard_turn` more.
+    /// An outer polygon of the velocities with a speed within [`Self::speed_half_width`], at least
+    /// 0, and a course within [`Self::course_half_width`] about the middle.
     ///
     /// Tangents at most 5° from their touching points replace the outer arc. It exceeds the largest
     /// speed by at most 0.4 %.
@@ -193,8 +229,7 @@ impl ShipTrack {
     }
 
     /// Outer velocity sets of the ship while it turns at up to `turn_rate` radians per second to
-    /// either side, so that its course at `t` is within `course_spread + turn_rate t`, to starboard
-    /// `starboard_turn` more.
+    /// either side, so that its course at `t` is within [`Self::course_half_width`] + `turn_rate t`.
     ///
     /// Each set is that of the end of its time interval, when it is widest. An interval lasts at
     /// most until 5° of turn, so a half-width is at most 5° too wide. All courses are possible from
@@ -225,8 +260,8 @@ impl ShipTrack {
     }
 
     fn outer_velocities_within(&self, half_width: f64) -> ConvexPolygon {
-        let slow = (self.speed - self.speed_spread).max(0.0);
-        let fast = self.speed + self.speed_spread;
+        let slow = (self.speed - self.speed_half_width()).max(0.0);
+        let fast = self.speed + self.speed_half_width();
         let (middle, spread) = (self.middle_course(), half_width.min(std::f64::consts::PI));
         let mut points = Vec::new();
         for edge in [-spread, spread] {

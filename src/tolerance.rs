@@ -12,8 +12,8 @@ pub const DEPTH_M: f64 = 1e-6;
 /// [`DEPTH_M`], so that the checker accepts what a planner accepts.
 pub const TOUCH_M: f64 = 1e-7;
 
-/// Standard deviations of a target's position that its sets cover.
-pub const POSITION_SIGMAS: f64 = 3.0;
+/// Standard deviations of a target's position, speed and course that its sets cover.
+pub const SIGMAS: f64 = 3.0;
 
 /// Metres. Positions at the joint of two segments may differ by this: rounding along a chain of
 /// some hundred segments.

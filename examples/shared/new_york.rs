@@ -45,23 +45,20 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
         let at_rest = speed_kn < AT_REST_KN || course >= 360.0;
         let length = length.unwrap_or(LENGTH_M);
         let position = georeference.to_plane(Geographic { lat_deg, lon_deg });
+        let pose = Pose::new(position, heading_from_course_deg(course));
+        let speed = if at_rest { 0.0 } else { speed_kn * KNOT_MPS };
+        let hull = Hull::new(length, beam.unwrap_or(length / SLENDERNESS));
         ships.push(ShipTrack {
-            pose: Pose::new(position, heading_from_course_deg(course)),
-            speed: if at_rest { 0.0 } else { speed_kn * KNOT_MPS },
-            hull: Hull::new(length, beam.unwrap_or(length / SLENDERNESS)),
             position_std: POSITION_STD,
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },
-            starboard_turn: 0.0,
-            turn_rate: 0.0,
-            kept_positions: None,
-            kept_velocities: None,
             // a moored vessel needs no ship domain
             domain: if at_rest {
                 DomainKind::Hull
             } else {
                 DomainKind::Colregs
             },
+            ..ShipTrack::exact(pose, speed, hull)
         });
     }
     // settings independent of the positions

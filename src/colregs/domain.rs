@@ -83,7 +83,7 @@ fn ship_domain_about(
             outer_disc(reach, target.middle_course()).minkowski_sum(&target.outer_positions())
         }
         None => outer_disc(
-            reach + tolerance::POSITION_SIGMAS * target.position_std,
+            reach + tolerance::SIGMAS * target.position_std,
             target.middle_course(),
         ),
     };

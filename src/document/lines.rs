@@ -96,7 +96,11 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
 /// Manoeuvres that the plan continues, and the targets that did not stay in their sets.
 fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     let begun = plan.manoeuvres.iter().find(|m| m.begins_s < 0.0);
-    let begun = begun.map(|m| format!("the manoeuvre that began {:.0} s ago", -m.begins_s));
+    let begun = begun.map(|m| {
+        let phase = plan.phases.first().map_or("", |now| now.phase.word());
+        let ago = -m.begins_s;
+        format!("the manoeuvre that began {ago:.0} s ago, in the phase '{phase}'")
+    });
     let kept = memory
         .keeps_plan
         .then(|| "the previous plan, unchanged".to_owned());

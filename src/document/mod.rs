@@ -12,6 +12,7 @@ mod lines;
 mod lint;
 mod memory;
 mod parts;
+mod phases;
 mod plan;
 mod simulation;
 mod suite;
@@ -37,6 +38,7 @@ pub use memory::{
 pub(crate) use memory::{state_document, steady};
 pub(crate) use parts::segment;
 pub use parts::*;
+pub use phases::{Phase, PhaseDocument};
 pub use plan::control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };

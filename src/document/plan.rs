@@ -15,6 +15,7 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
+use super::phases::{PhaseDocument, phases};
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};
@@ -83,6 +84,8 @@ pub struct PlanDocument {
     pub escape: Option<EscapeDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub manoeuvres: Vec<PlannedManoeuvreDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub phases: Vec<PhaseDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub memory: Option<MemoryDocument>,
     pub targets: Vec<TargetDocument>,
@@ -105,7 +108,7 @@ impl PlanDocument {
         let scenario = &run.scenario;
         let verdict = Verdict::of(run);
         let relaxations: Vec<_> = run.relaxations.iter().map(relaxation).collect();
-        Self {
+        let mut document = Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
             planner: scenario.planner.facts().name.to_owned(),
@@ -140,6 +143,7 @@ impl PlanDocument {
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
             manoeuvres: run.planned.manoeuvres.iter().map(Into::into).collect(),
+            phases: Vec::new(),
             memory: MemoryDocument::of(run),
             targets: scenario.targets.iter().map(target).collect(),
             obstacles: (run.targets.iter())
@@ -152,7 +156,10 @@ impl PlanDocument {
             path_time: (run.planned.path_time.as_deref())
                 .map(|diagram| path_time_document(run, diagram)),
             optimal_control: control(run),
-        }
+        };
+        let legs = document.legs();
+        document.phases = phases(&legs, &document.manoeuvres, document.escape.as_ref());
+        document
     }
 }
 

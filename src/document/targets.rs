@@ -37,6 +37,10 @@ pub struct ShipDocument {
     pub length_m: f64,
     pub beam_m: f64,
     pub position_std_m: f64,
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub speed_std_mps: f64,
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub course_std_deg: f64,
     pub speed_spread_mps: f64,
     pub course_spread_deg: f64,
     #[serde(default)]
@@ -81,6 +85,8 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         length_m: track.hull.length,
         beam_m: track.hull.beam,
         position_std_m: track.position_std,
+        speed_std_mps: track.speed_std,
+        course_std_deg: deg_from_radians(track.course_std),
         speed_spread_mps: track.speed_spread,
         course_spread_deg: deg_from_radians(track.course_spread),
         starboard_turn_deg: deg_from_radians(track.starboard_turn),
@@ -104,6 +110,8 @@ impl ShipDocument {
             speed: self.speed_mps,
             hull: Hull::new(self.length_m, self.beam_m),
             position_std: self.position_std_m,
+            speed_std: self.speed_std_mps,
+            course_std: radians_from_deg(self.course_std_deg),
             speed_spread: self.speed_spread_mps,
             course_spread: radians_from_deg(self.course_spread_deg),
             starboard_turn: radians_from_deg(self.starboard_turn_deg),

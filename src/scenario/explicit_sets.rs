@@ -11,12 +11,15 @@ use crate::target::{TimedVelocitySet, Uncertainty};
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
 /// Keys of a tracked ship.
-const SHIP_KEYS: [&str; 13] = [
+const SHIP_KEYS: [&str; 16] = [
     "position",
     "course_deg",
     "length_m",
     "beam_m",
     "position_std_m",
+    "speed_std_mps",
+    "speed_std_kn",
+    "course_std_deg",
     "course_spread_deg",
     "starboard_turn_deg",
     "turn_rate_deg_per_s",
@@ -140,6 +143,11 @@ fn timed_velocity_sets(list: &Field, initial: Option<&ConvexSet>) -> Option<Vec<
         }));
     }
     sets.into_iter().collect()
+}
+
+/// A velocity set alone.
+pub(super) fn velocity_set(field: &Field) -> Option<ConvexSet> {
+    set(field, &VELOCITY)
 }
 
 fn set(field: &Field, keys: &SetKeys) -> Option<ConvexSet> {

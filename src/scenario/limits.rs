@@ -66,6 +66,8 @@ pub(super) const CHOSEN_SPEED: Range = Range::between(1e-3, 100.0).or_zero();
 pub(super) const VELOCITY: Range = Range::within(100.0);
 /// Degrees; a course below 0 or above 360 is the one a full circle away.
 pub(super) const COURSE: Range = Range::within(360.0);
+/// m/s².
+pub(super) const ACCELERATION: Range = Range::between(1e-4, 100.0);
 /// Degrees, half a full circle to either side.
 pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
 /// Degrees to starboard, to port where negative.

@@ -8,10 +8,24 @@ use super::simulation::{SimulatedTarget, simulated};
 use super::{Behaviour, NotReported, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
+use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::input::{Field, Table};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::text::LINE;
+use crate::tolerance;
 use crate::vessel::OwnShip;
+
+/// Keys of what a tracked ship may do, and of the accuracy of its velocity.
+const SPREADS: [&str; 8] = [
+    "speed_std_mps",
+    "speed_std_kn",
+    "course_std_deg",
+    "speed_spread_mps",
+    "speed_spread_kn",
+    "course_spread_deg",
+    "starboard_turn_deg",
+    "turn_rate_deg_per_s",
+];
 
 /// The list `targets`, which may be absent, with what is known of each from before the present, and
 /// its true motion in a simulation.
@@ -122,8 +136,11 @@ fn motion(table: &mut Table, plane: &Plane) -> Option<(Motion, Representation)> 
     let representation = (asked.as_ref()).map_or(Some(Representation::Polytope), |field| {
         field.choice(Representation::WORDS)
     });
-    let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| table.has(key));
-    let motion = if explicit.contains(&true) {
+    // a ship may have its velocities as a set, and keeps its hull, role and domain
+    let has_sets = ["initial_set", "velocity_sets"].map(|key| table.has(key));
+    let is_ship = ["position", "length_m", "beam_m"].map(|key| table.has(key));
+    let only_velocities = table.has("velocity_set") && !is_ship.contains(&true);
+    let motion = if has_sets.contains(&true) || only_velocities {
         explicit_sets::sets(table).map(Motion::Sets)
     } else {
         ship(table, plane).map(Motion::Ship)
@@ -155,24 +172,48 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(table);
     let position_std = table.number("position_std_m", limits::DISTANCE);
+    let domain = table.read_or("domain", DomainKind::Colregs, domain);
+    let given = table.has("velocity_set").then(|| velocities(table));
+    let speed_std = table.speed("speed_std", limits::SPEED);
+    let course_std = table.number("course_std_deg", limits::COURSE_SPREAD);
     let speed_spread = table.speed("speed_spread", limits::SPEED);
     let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
     let starboard_turn = table.number("starboard_turn_deg", limits::STARBOARD_TURN);
     let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
-    let domain = table.read_or("domain", DomainKind::Colregs, domain);
-    Some(ShipTrack {
-        pose: pose?,
-        speed: speed?,
-        hull: hull?,
+    let ship = ShipTrack {
         position_std: position_std.unwrap_or(0.0),
+        speed_std: speed_std.unwrap_or(0.0),
+        course_std: radians_from_deg(course_std.unwrap_or(0.0)),
         speed_spread: speed_spread.unwrap_or(0.0),
         course_spread: radians_from_deg(course_spread.unwrap_or(0.0)),
         starboard_turn: radians_from_deg(starboard_turn.unwrap_or(0.0)),
         turn_rate: radians_from_deg(turn_rate.unwrap_or(0.0)),
-        kept_positions: None,
-        kept_velocities: None,
         domain: domain?,
-    })
+        ..ShipTrack::exact(pose?, speed?, hull?)
+    };
+    let Some(given) = given else {
+        return Some(ship);
+    };
+    let (field, velocities) = given?;
+    if velocities.signed_distance(ship.velocity()) > tolerance::ALTERATION_MPS {
+        return field.reject(
+            "a set without the velocity of course_deg and the speed",
+            "a set that holds it",
+        );
+    }
+    Some(ship.with_velocities(velocities))
+}
+
+/// The velocities that a tracked ship may take, given as a polygon in place of its spreads.
+fn velocities<'a>(table: &mut Table<'a>) -> Option<(Field<'a>, ConvexPolygon)> {
+    for key in SPREADS {
+        table.forbid(key, "nothing beside velocity_set: it holds every velocity");
+    }
+    let field = table.take("velocity_set")?;
+    match explicit_sets::velocity_set(&field)? {
+        ConvexSet::Polygon(polygon) => Some((field, polygon)),
+        ConvexSet::Ellipse(_) => field.reject("an ellipse", "{ vertices_mps } beside a ship"),
+    }
 }
 
 fn domain(field: &Field) -> Option<DomainKind> {

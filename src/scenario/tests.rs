@@ -3,7 +3,7 @@
 use nalgebra::Matrix2;
 
 use super::*;
-use crate::frame::mps_from_knots;
+use crate::frame::{Pose, heading_of, mps_from_knots};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::planner::ControlSettings;
 use crate::target::{DomainKind, Motion, Representation, Uncertainty};
@@ -135,6 +135,93 @@ fn miles_and_cables_replace_metres() {
 }
 
 #[test]
+fn measured_speed_and_course_widen_the_velocities_by_three_deviations() {
+    let measured = "speed_std_mps = 0.1\ncourse_std_deg = 1\nspeed_spread_mps = 0.2\n\
+                    course_spread_deg = 1.5";
+    let widened = "speed_spread_mps = 0.5\ncourse_spread_deg = 4.5";
+    let set = |keys: &str| {
+        let scenario = Scenario::parse(&format!("{SCENARIO}{SHIP}{keys}")).expect("valid");
+        let ship = scenario.targets[0].ship().expect("a ship").clone();
+        (ship.outer_velocity_set(), ship.outer_hull(0.0))
+    };
+    let ((velocities, hull), (wide, wide_hull)) = (set(measured), set(widened));
+    for (found, expected) in [(velocities, wide), (hull, wide_hull)] {
+        let pairs = found.vertices().iter().zip(expected.vertices());
+        assert_eq!(found.vertices().len(), expected.vertices().len());
+        for (a, b) in pairs {
+            assert!((a - b).norm() < 1e-9, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_ship_may_have_its_velocities_as_a_set() {
+    let ship = format!("{SCENARIO}{SHIP}");
+    let with = |vertices: &str| format!("{ship}velocity_set = {{ vertices_mps = {vertices} }}");
+    let corners = [(-4.0, -1.0), (-6.0, -1.0), (-6.0, 2.0)];
+    let scenario = Scenario::parse(&with("[[-4, -1], [-6, -1], [-6, 2]]")).expect("valid");
+    let track = scenario.targets[0].ship().expect("a ship");
+    let velocities = track.outer_velocity_set();
+    assert_eq!(velocities.vertices().len(), 3);
+    for (east, north) in corners {
+        let corner = Vector::new(east, north);
+        assert!(velocities.signed_distance(corner).abs() < 1e-9, "{corner}");
+        // the hull has every heading of these velocities
+        let hull = track
+            .hull
+            .polygon(&Pose::new(track.pose.position, heading_of(corner)));
+        let outer = track.outer_hull(0.0);
+        let inside = |p: &Vector| outer.signed_distance(*p) < 1e-9;
+        assert!(hull.vertices().iter().all(inside), "{corner}");
+    }
+    // around zero it may lie at any angle
+    let any = Scenario::parse(&with("[[-6, -1], [1, -1], [1, 2], [-6, 2]]")).expect("valid");
+    let any = any.targets[0].ship().expect("a ship").clone();
+    assert_eq!(any.course_spread, std::f64::consts::PI);
+
+    let far = with("[[-4, 1], [-6, 1], [-6, 2]]");
+    assert_eq!(paths(&far), ["targets[0].velocity_set"]);
+    let round = format!(
+        "{ship}velocity_set = {{ center_mps = [-5, 0], shape_m2_per_s2 = [[1, 0], [0, 1]] }}"
+    );
+    assert_eq!(paths(&round), ["targets[0].velocity_set"]);
+    for key in ["speed_spread_mps", "course_std_deg", "turn_rate_deg_per_s"] {
+        let both = format!("{}\n{key} = 1", with("[[-4, -1], [-6, -1], [-6, 2]]"));
+        assert_eq!(paths(&both), [format!("targets[0].{key}")]);
+    }
+}
+
+/// Own ship's keys, the rest of the file, and the key of the fault, if any. From 2.5 to 5 m/s at
+/// 0.1 m/s² it is 31.25 m off; the path-time planner also stops, which takes 125 m.
+const ACCELERATIONS: &str = r#"
+acceleration_mps2 = 0.1\nsafety_margin_m = 40\ntracking_margin_m = 31.3 | |
+acceleration_mps2 = 0.1\nsafety_margin_m = 40\ntracking_margin_m = 31.2 | | own_ship.acceleration_mps2
+acceleration_mps2 = 0.1 | | own_ship.acceleration_mps2
+acceleration_mps2 = 0.1\nspeeds_mps = [5] | |
+acceleration_mps2 = 0 | | own_ship.acceleration_mps2
+acceleration_mps2 = 0.1\nsafety_margin_m = 99\ntracking_margin_m = 99 | kind = "path-time" | own_ship.acceleration_mps2
+acceleration_mps2 = 0.1\nsafety_margin_m = 199\ntracking_margin_m = 126 | kind = "path-time" |
+acceleration_mps2 = 0.1\nsafety_margin_m = 99\ntracking_margin_m = 99 | kind = "optimal-control" | own_ship.acceleration_mps2
+"#;
+
+#[test]
+fn own_ship_may_not_leave_its_tracking_margin_while_it_changes_speed() {
+    for [own, planner, path] in rows(ACCELERATIONS) {
+        let own = format!("turning_radius_m = 100\n{}", own.replace("\\n", "\n"));
+        let text = SCENARIO.replace("turning_radius_m = 100", &own);
+        let found = Scenario::parse(&format!("{text}[planner]\n{planner}"));
+        let found: Vec<String> = (found.err().into_iter().flatten())
+            .map(|fault| fault.path)
+            .collect();
+        let expected: Vec<String> = Some(path.to_owned())
+            .filter(|p| !p.is_empty())
+            .into_iter()
+            .collect();
+        assert_eq!(found, expected, "{own} {planner}");
+    }
+}
+
+#[test]
 fn explicit_sets_are_taken_as_they_are() {
     let text = format!(
         "{SCENARIO}[[targets]]\nname = \"figure 1\"\n\
@@ -187,7 +274,7 @@ const SHIP_MISTAKES: &str = r#"
     beam_m | starboard_turn_deg = -181\nbeam_m | targets[0].starboard_turn_deg
     beam_m | position_std_m = nan\nbeam_m | targets[0].position_std_m
     beam_m | domain = "round"\nbeam_m | targets[0].domain
-    beam_m | velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m | targets[0].initial_set
+    beam_m | velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m | targets[0].velocity_set
 "#;
 
 #[test]

@@ -293,6 +293,8 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
                 ("length_m", ship.length_m),
                 ("beam_m", ship.beam_m),
                 ("position_std_m", ship.position_std_m),
+                ("speed_std_mps", ship.speed_std_mps),
+                ("course_std_deg", ship.course_std_deg),
                 ("speed_spread_mps", ship.speed_spread_mps),
                 ("turn_rate_deg_per_s", ship.turn_rate_deg_per_s),
             ] {

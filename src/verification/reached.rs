@@ -28,7 +28,7 @@ pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> (f64, ConvexPolygon) {
     match &ship.kept_positions {
         Some(_) => (own, ship.outer_positions()),
         None => (
-            own + tolerance::POSITION_SIGMAS * ship.position_std,
+            own + tolerance::SIGMAS * ship.position_std,
             ConvexPolygon::point(Vector::zeros()),
         ),
     }
@@ -174,8 +174,9 @@ impl<'a> Known<'a> {
         let spread = match &self.motion {
             Moving::Ship(ship) => {
                 let turned = ship.course_half_width() + ship.turn_rate * time;
-                let fast = ship.speed + ship.speed_spread;
-                (2.0 * fast * turned.min(1.0) + 2.0 * ship.speed_spread) * time
+                let spread = ship.speed_half_width();
+                let fast = ship.speed + spread;
+                (2.0 * fast * turned.min(1.0) + 2.0 * spread) * time
             }
             Moving::Sets(sets) => lasting(sets, time).map(|(t, _, across)| t * across).sum(),
         };
@@ -235,8 +236,8 @@ fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
 }
 
 fn speeds(ship: &ShipTrack) -> (f64, f64) {
-    let slow = (ship.speed - ship.speed_spread).max(0.0);
-    (slow, ship.speed + ship.speed_spread)
+    let half = ship.speed_half_width();
+    ((ship.speed - half).max(0.0), ship.speed + half)
 }
 
 /// Points whose convex hull contains every velocity that a ship may have until a time. All are

@@ -342,17 +342,11 @@ fn draw(kind: EncounterKind, meeting: &Meeting, rng: &mut ChaCha8Rng) -> Option<
     let relative = Vector::new(OWN_SPEED, 0.0) - velocity;
     let position = sight * range + to_port(relative.normalize()) * miss;
     let ship = ShipTrack {
-        pose: Pose::new(position, heading),
-        speed,
-        hull,
         position_std,
         speed_spread,
         course_spread,
-        starboard_turn: 0.0,
-        turn_rate: 0.0,
-        kept_positions: None,
-        kept_velocities: None,
         domain: DomainKind::Colregs,
+        ..ShipTrack::exact(Pose::new(position, heading), speed, hull)
     };
     let own = |time: f64| Pose::new(Vector::new(OWN_SPEED * time, 0.0), 0.0);
     let intended = [-EARLIER, 0.0]

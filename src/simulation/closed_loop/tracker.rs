@@ -7,10 +7,7 @@ use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of, to_port, wrap};
 use crate::scenario::Sensor;
 use crate::target::ShipTrack;
-use crate::tolerance::POSITION_SIGMAS;
-
-/// Standard deviations of an estimate that widen a set.
-const SIGMAS: f64 = POSITION_SIGMAS;
+use crate::tolerance::SIGMAS;
 
 /// Standard deviation of a velocity before any measurement, m/s: three of them hold every ship.
 const ANY_VELOCITY: f64 = 15.0;
@@ -349,6 +346,8 @@ impl Track {
             pose,
             speed: self.velocities.speed,
             position_std: self.estimate.position_std,
+            speed_std: 0.0,
+            course_std: 0.0,
             speed_spread: self.velocities.speed_spread,
             // it may have turned since
             course_spread: (spread + turned).min(std::f64::consts::PI),

@@ -15,7 +15,7 @@ use searoom::planner::cost::whole_space_time_error;
 use searoom::replanning::remember;
 use searoom::scenario::{Memory, Scenario};
 use searoom::target::{Motion, ShipTrack};
-use searoom::tolerance::{POSITION_SIGMAS, TOUCH_M};
+use searoom::tolerance::{SIGMAS, TOUCH_M};
 use searoom::trajectory::Segment;
 
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
@@ -136,7 +136,7 @@ fn later(
     if let Motion::Ship(ship) = &mut scenario.targets[0].motion {
         ship.pose.position = now.pose.position;
         if how.noise {
-            ship.pose.position += within(POSITION_SIGMAS * ship.position_std, rng);
+            ship.pose.position += within(SIGMAS * ship.position_std, rng);
         }
         if how.behaviour != Behaviour::Extreme {
             (ship.pose.heading, ship.speed) = (now.pose.heading, now.speed);

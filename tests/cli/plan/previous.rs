@@ -69,6 +69,21 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert!((begins(&first) - 60.0 - begins(&second)).abs() < 1e-9);
     assert_eq!(second["encounters"][0]["roles"][0]["from_s"], -60.0);
     assert_eq!(second["encounters"][0]["violations"], Value::Array(vec![]));
+    // no phase begins again: it is out, as the first plan has it by then
+    let phases = |plan: &Value| {
+        let phases = list(&plan["phases"]).iter();
+        let covers = phases.clone().zip(phases.clone().skip(1));
+        assert!(
+            covers
+                .into_iter()
+                .all(|(p, next)| p["until_s"] == next["from_s"])
+        );
+        let word = |p: &Value| p["phase"].as_str().expect("a word").to_owned();
+        phases.map(word).collect::<Vec<_>>()
+    };
+    let first_phases = ["free", "out", "parallel", "back", "free"];
+    assert_eq!(phases(&first), first_phases);
+    assert_eq!(phases(&second), first_phases[1..]);
     // without the previous plan own ship turns back at once
     let anew = json(&format!("plan {file} --json"));
     let side = |plan: &Value| plan["cost"]["first_turn"]["side"].clone();
@@ -119,6 +134,19 @@ fn a_plan_goes_on_from_the_previous_one() {
     assert!(moved["targets"][0]["ship"]["kept_velocities"].is_object());
     let moved = folder.write("moved.json", moved.to_string());
     searoom(&["verify", &moved]).success();
+
+    // so does one that is measured less well; one that may do more does not
+    for (more, kept) in [("speed_std_mps = 0.2\n", true), ("", false)] {
+        let spread = if kept { "0.5" } else { "0.6" };
+        let wider = format!("{more}speed_spread_mps = {spread}");
+        let moved = later.replace("speed_spread_mps = 0.5", &wider);
+        assert!(moved.contains(&wider));
+        let moved = document(&go_on(&folder.write("wider.toml", moved)).success());
+        let velocities = &moved["targets"][0]["ship"]["kept_velocities"];
+        assert_eq!(velocities.is_object(), kept, "{wider}");
+        let moved = folder.write("wider.json", moved.to_string());
+        searoom(&["verify", &moved]).success();
+    }
 
     // a remainder at a speed that is no longer own ship's is not kept
     let slower = later.replace("[2.5, 5.0, 6.0]", "[2.5, 6.0]");
