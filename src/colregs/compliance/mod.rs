@@ -82,13 +82,17 @@ impl ComplianceReport {
         let frees: Vec<f64> = (encounters.clone().zip(&all))
             .map(|(encounter, roles)| monitor::frees_at(encounter, roles, thresholds))
             .collect();
+        let first = (0..frees.len()).min_by(|a, b| frees[*a].total_cmp(&frees[*b]));
+        let others = |but: Option<usize>| {
+            let others = frees.iter().enumerate();
+            let others = others.filter(|(index, _)| Some(*index) != but);
+            others.map(|(_, time)| *time).fold(f64::INFINITY, f64::min)
+        };
+        let [earliest, second] = [None, first].map(others);
         (encounters.zip(all).enumerate())
             .map(|(index, (encounter, roles))| {
-                let others = frees
-                    .iter()
-                    .enumerate()
-                    .filter(|(other, _)| *other != index);
-                let excused_from = others.map(|(_, time)| *time).fold(f64::INFINITY, f64::min);
+                let is_first = Some(index) == first;
+                let excused_from = if is_first { second } else { earliest };
                 Self::within(encounter, roles, excused_from, thresholds)
             })
             .collect()

@@ -4,6 +4,7 @@ use crate::colregs::encounter::{NO_RELATIVE_SPEED, state_at};
 use crate::colregs::{Risk, SteadyShip, TargetMemory};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
+use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -268,7 +269,9 @@ impl OwnSamples {
             _ => None,
         };
         let samples = match near() {
-            Some(sample) if sample.apart > far => vec![sample],
+            Some((index, apart)) if apart > far => {
+                vec![self.sample(index, &target.hull, nominal(self.ships[index].0))]
+            }
             _ => {
                 let known = memory.and_then(TargetMemory::known_from).unwrap_or(0.0);
                 let known = (0..self.ships.len()).filter(|index| self.ships[*index].0 >= known);
@@ -294,7 +297,8 @@ impl OwnSamples {
         let (time, own) = self.ships[index];
         let between = Between::of(&self.hull, &own, hull, &target);
         let apart = between.distance();
-        let closing = own.velocity() - target.velocity();
+        let [(ahead, _), _, (target_ahead, _), _] = between.halves;
+        let closing = ahead * own.speed - target_ahead * target.speed;
         // negated on purpose: a NaN is a meeting
         let meets_in = if !(apart > 0.0) {
             0.0
@@ -310,37 +314,44 @@ impl OwnSamples {
         }
     }
 
-    /// First sample of the least distance of the hulls, by branch and bound on the speeds of the
-    /// ships. `None` if the distance is not finite.
-    fn nearest(&self, target: &ShipTrack) -> Option<EncounterSample> {
+    /// Index of the first sample of the least distance of the hulls, and that distance, by branch
+    /// and bound. `None` if the distance is not finite.
+    ///
+    /// Between two samples own ship is within half of `sqrt(way² - chord²)` of the uniform motion
+    /// along the chord, where `way` is the most that it can move: by Stewart's theorem for the
+    /// triangle of both samples and its position.
+    fn nearest(&self, target: &ShipTrack) -> Option<(usize, f64)> {
         // turning hulls come closer than their centres
         let swing = self.hull.half_diagonal() + target.hull.half_diagonal();
-        let closing = self.closing(target);
-        let range = |index: usize| {
+        let position = |index: usize| self.ships[index].1.pose.position;
+        let offset = |index: usize| target.pose_at(self.ships[index].0).position - position(index);
+        let apart = |index: usize| {
             let (time, own) = &self.ships[index];
-            (target.pose_at(*time).position - own.pose.position).norm()
+            let there = SteadyShip::on_track(target, *time);
+            Between::of(&self.hull, own, &target.hull, &there).distance()
         };
-        let sample = |index: usize| {
-            let there = SteadyShip::on_track(target, self.ships[index].0);
-            self.sample(index, &target.hull, there)
-        };
-        let mut best = sample(0);
+        let mut best = (0, apart(0));
         let mut open = vec![(0, self.ships.len() - 1)];
         while let Some((from, until)) = open.pop() {
-            let last = sample(until);
-            if last.apart < best.apart || last.apart == best.apart && last.time < best.time {
-                best = last;
+            let last = apart(until);
+            if last < best.1 || last == best.1 && until < best.0 {
+                best = (until, last);
             }
-            let lasts = self.ships[until].0 - self.ships[from].0;
-            let least = 0.5 * (range(from) + range(until) - closing * lasts) - swing;
+            let way = self.greatest_speed * (self.ships[until].0 - self.ships[from].0);
+            // shortened by more than the difference of the squares is rounded
+            let chord = (position(until) - position(from)).norm() * (1.0 - tolerance::LIMIT);
+            let (here, change) = (offset(from), offset(until) - offset(from));
+            let closest = (-here.dot(&change) / change.norm_squared()).clamp(0.0, 1.0);
+            let beside = 0.5 * (way * way - chord * chord).max(0.0).sqrt();
+            let least = (here + change * closest).norm() - beside - swing;
             // negated on purpose: a NaN is searched
-            if until > from + 1 && !(least > best.apart) {
+            if until > from + 1 && !(least > best.1) {
                 let middle = from + (until - from) / 2;
                 open.push((middle, until));
                 open.push((from, middle));
             }
         }
-        best.apart.is_finite().then_some(best)
+        best.1.is_finite().then_some(best)
     }
 }
 
@@ -416,11 +427,18 @@ impl Between {
         };
         let away = |of: &[(Vector, f64)], point: Vector| {
             let beyond = |(axis, half): &(Vector, f64)| (axis.dot(&point).abs() - half).max(0.0);
-            beyond(&of[0]).hypot(beyond(&of[1]))
+            Vector::new(beyond(&of[0]), beyond(&of[1]))
         };
         let theirs = corners(b).map(|corner| away(a, self.offset + corner));
         let ours = corners(a).map(|corner| away(b, corner - self.offset));
-        theirs.into_iter().chain(ours).fold(f64::INFINITY, f64::min)
+        let ways = theirs.into_iter().chain(ours);
+        ways.fold(f64::INFINITY, |least, way| {
+            // a square costs less than a root
+            if way.norm_squared() * (1.0 - tolerance::LIMIT) > least * least {
+                return least;
+            }
+            least.min(way.x.hypot(way.y))
+        })
     }
 
     /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it
