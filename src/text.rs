@@ -1,5 +1,7 @@
 //! Allowed names and titles, and safe display of untrusted texts.
 
+use std::borrow::Cow;
+
 /// Defines the names that the values of an enum have in files and on the command line.
 macro_rules! words {
     ($kind:ty { $($value:ident => $word:literal),+ $(,)? }) => {
@@ -37,15 +39,21 @@ pub(crate) fn is_unprintable(c: char) -> bool {
 
 /// An untrusted text on one line: control characters appear as their codes, `\u001b` as in JSON.
 pub fn printable(text: &str) -> String {
-    shown(text, |_| false)
+    shown(text, |_| false).into_owned()
 }
 
 /// [`printable`] for a text with several lines and tabs.
-pub fn printable_lines(text: &str) -> String {
+pub fn printable_lines(text: &str) -> Cow<'_, str> {
     shown(text, |c| matches!(c, '\n' | '\t'))
 }
 
-fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
+fn shown(text: &str, keep: impl Fn(char) -> bool) -> Cow<'_, str> {
+    // nearly every text is ASCII, and many bytes are compared at once
+    let is_plain = |byte: &u8| matches!(byte, b' '..=b'~') | keep(char::from(*byte));
+    let are_plain = |bytes: &[u8]| bytes.iter().fold(true, |all, byte| all & is_plain(byte));
+    if text.as_bytes().chunks(1024).all(are_plain) {
+        return Cow::Borrowed(text);
+    }
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         if is_unprintable(c) && !keep(c) {
@@ -54,7 +62,7 @@ fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
             out.push(c);
         }
     }
-    out
+    Cow::Owned(out)
 }
 
 /// Longest number that [`short_numbers`] leaves unchanged, in characters.

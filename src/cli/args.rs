@@ -467,7 +467,7 @@ fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
     }
     Thresholds::read(file)
         .map(Arc::new)
-        .map_err(|error| printable_lines(&error.to_string()))
+        .map_err(|error| printable_lines(&error.to_string()).into_owned())
 }
 
 fn budget(word: &str) -> Result<Duration, String> {

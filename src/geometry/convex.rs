@@ -137,16 +137,16 @@ impl ConvexPolygon {
         let mut i = 0;
         let mut kept = 0;
         while v.len() > 2 && kept < v.len() {
-            let n = v.len();
-            let (a, b) = (v[(i + n - 1) % n], v[i % n]);
-            let c = v[(i + 1) % n];
-            let (e, f) = (b - a, c - b);
+            let last = v.len() - 1;
+            let before = if i > 0 { i - 1 } else { last };
+            let after = if i < last { i + 1 } else { 0 };
+            let (e, f) = (v[i] - v[before], v[after] - v[i]);
             if cross(e, f) <= tolerance::COLLINEAR_RAD * e.norm() * f.norm() && e.dot(&f) > 0.0 {
-                v.remove(i % n);
+                v.remove(i);
                 kept = 0;
-                i %= v.len();
+                i %= last;
             } else {
-                i = (i + 1) % n;
+                i = after;
                 kept += 1;
             }
         }
@@ -212,8 +212,9 @@ impl ConvexPolygon {
             }
         }
         directions.iter().map(move |along| {
-            let (from, mut most) = (at, along.dot(&vertices[at]));
-            for next in (1..count).map(|step| (from + step) % count) {
+            let (mut next, mut most) = (at, along.dot(&vertices[at]));
+            for _ in 1..count {
+                next = if next + 1 < count { next + 1 } else { 0 };
                 let reach = along.dot(&vertices[next]);
                 if reach > most {
                     (at, most) = (next, reach);

@@ -165,10 +165,11 @@ impl<'a> Field<'a> {
         if !self.is_table() {
             return self.refuse("an object");
         }
+        let node = self.node.get(key)?;
         Some(Self {
             faults: self.faults,
             path: self.path_of(key),
-            node: self.node.get(key)?,
+            node,
         })
     }
 

@@ -3,6 +3,7 @@
 pub mod products;
 pub mod status;
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -57,7 +58,7 @@ impl Output {
 
     /// Escapes control characters, except the colour codes of tables. Coloured tables are already
     /// escaped.
-    fn shown(&self, text: &str) -> String {
+    fn shown<'t>(&self, text: &'t str) -> Cow<'t, str> {
         if !self.colour {
             return printable_lines(text);
         }
@@ -74,7 +75,7 @@ impl Output {
             }
             rest = &rest[at + length..];
         }
-        out + &printable_lines(rest)
+        Cow::Owned(out + &printable_lines(rest))
     }
 
     /// Prints a document.
@@ -102,8 +103,8 @@ impl Output {
     /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         // an error of standard error cannot be reported
-        let error = printable_lines(&error.to_string());
-        let _ = writeln!(std::io::stderr(), "error: {error}");
+        let error = error.to_string();
+        let _ = writeln!(std::io::stderr(), "error: {}", printable_lines(&error));
     }
 
     /// Prints an error of the input or of its use.
@@ -131,8 +132,8 @@ impl Output {
 
     /// Prints a note.
     pub fn note(&self, note: &impl Display) {
-        let note = printable_lines(&note.to_string());
-        let _ = writeln!(std::io::stderr(), "note: {note}");
+        let note = note.to_string();
+        let _ = writeln!(std::io::stderr(), "note: {}", printable_lines(&note));
     }
 
     /// Notes that a file was written.
