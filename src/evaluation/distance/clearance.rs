@@ -63,6 +63,35 @@ struct Moving {
     turn_rate: f64,
 }
 
+/// Widest gap between own ship and a set along a normal of either.
+struct Widest {
+    /// Its width, and the greatest lower bound of any gap.
+    gap: Probe,
+    /// Direction from the set to own ship across it.
+    across: Vector,
+}
+
+impl Widest {
+    fn new() -> Self {
+        Self {
+            gap: Probe::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+            across: Vector::zeros(),
+        }
+    }
+
+    /// True for the width of a gap that changes nothing: a bound exceeds it by more than rounding.
+    fn exceeds(&self, width: f64) -> bool {
+        width < self.gap.lower - tolerance::DEPTH_M
+    }
+
+    fn see(&mut self, gap: Probe, across: Vector) {
+        if gap.value > self.gap.value {
+            (self.gap.value, self.across) = (gap.value, across);
+        }
+        self.gap.lower = self.gap.lower.max(gap.lower);
+    }
+}
+
 /// One side of own hull: its normal, and its distance from the centre.
 #[derive(Debug, Clone, Copy)]
 struct Side {
@@ -112,9 +141,7 @@ impl Body {
             return Probe::new(f64::NAN, f64::NAN);
         }
         let reach = self.half_length.hypot(self.half_beam);
-        let apart = set
-            .disc
-            .least_distance(pose.position, bounds.speed, [time, half]);
+        let apart = set.disc.least_distance(piece, [time, half]);
         if let Some(far) = Probe::beyond(known, apart - reach) {
             return far;
         }
@@ -146,21 +173,17 @@ impl Body {
             }
             gap
         };
-        let mut best = Probe::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
-        // Direction from the set to the body across the widest gap.
-        let mut across = Vector::zeros();
-        let mut keep = |gap: Probe, toward: Vector| {
-            if gap.value > best.value {
-                (best.value, across) = (gap.value, toward);
-            }
-            best.lower = best.lower.max(gap.lower);
-        };
+        let mut widest = Widest::new();
         for face in &set.faces {
+            // No nearest corner is farther from the face than the centre.
+            if widest.exceeds(face.normal.dot(&pose.position) - face.support(time)) {
+                continue;
+            }
             let gap = beyond(face);
             if let Some(far) = Probe::beyond(known, gap.lower) {
                 return far;
             }
-            keep(gap, face.normal);
+            widest.see(gap, face.normal);
         }
         if !self.is_point() {
             let ahead = pose.ahead();
@@ -171,12 +194,21 @@ impl Body {
                 (port, self.half_beam),
                 (-port, self.half_beam),
             ];
+            let center = set.disc.center.at(time) - pose.position;
             for (normal, reach) in sides {
+                // No vertex is farther from the side than the mean of all.
+                if widest.exceeds(normal.dot(&center) - reach) {
+                    continue;
+                }
                 let side = Side { normal, reach };
                 let gap = beyond_side(&pose, &moving, bounds, side, set, time, half);
-                keep(gap, -normal);
+                widest.see(gap, -normal);
             }
         }
+        let Widest {
+            gap: mut best,
+            across,
+        } = widest;
         // No normal of either shape separates them: they overlap, and the smallest overlap along a
         // normal is the depth.
         if !(best.value > 0.0) {
@@ -204,9 +236,9 @@ impl Body {
     }
 
     fn corners(&self, pose: &Pose, moving: &Moving) -> [Corner; 4] {
-        let (l, b) = (self.half_length, self.half_beam);
-        [(l, -b), (l, b), (-l, b), (-l, -b)].map(|(ahead, port)| {
-            let position = pose.world_coordinates(Vector::new(ahead, port));
+        let (l, b, ahead) = (self.half_length, self.half_beam, pose.ahead());
+        [(l, -b), (l, b), (-l, b), (-l, -b)].map(|(x, y)| {
+            let position = pose.position + ahead * x + to_port(ahead) * y;
             Corner {
                 position,
                 velocity: moving.velocity + to_port(position - pose.position) * moving.turn_rate,

@@ -222,8 +222,7 @@ impl MovingEllipse {
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
             return Probe::new(f64::NAN, f64::NAN);
         }
-        let disc = self.disc();
-        let apart = disc.least_distance(position, piece.bounds().speed, [time, half]);
+        let apart = self.disc().least_distance(piece, [time, half]);
         if let Some(far) = Probe::beyond(known, apart) {
             return far;
         }

@@ -37,11 +37,17 @@ impl MovingSlabs {
     /// Builds the slabs of a target's sets. Where some are polygons and some ellipses, polygons
     /// around the ellipses are used. O(slabs (n + m)²).
     pub fn new(sets: &Uncertainty) -> Self {
+        Self::until(sets, f64::INFINITY)
+    }
+
+    /// [`Self::new`] without slabs of polygons that begin at `until` or later.
+    pub fn until(sets: &Uncertainty, until: f64) -> Self {
         match Self::of_ellipses(sets) {
             Some(slabs) => slabs,
             None => Self::growing(
                 |_| sets.initial.outer_polygon(ELLIPSE_SIDES),
                 &sets.velocities,
+                until,
             ),
         }
     }
@@ -65,10 +71,11 @@ impl MovingSlabs {
     }
 
     /// Slabs of polygons with one set at t = 0 per slab, as a function of the slab's end, which is
-    /// infinite for the last one.
+    /// infinite for the last one. Without slabs that begin at `until` or later.
     pub fn growing(
         initial: impl Fn(f64) -> ConvexPolygon,
         velocities: &[TimedVelocitySet],
+        until: f64,
     ) -> Self {
         let mut slabs = Vec::with_capacity(velocities.len());
         let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
@@ -83,14 +90,15 @@ impl MovingSlabs {
             let velocities = set.velocities.outer_polygon(ELLIPSE_SIDES);
             let set = Moving::Polygon(MovingSet::new(&section, &velocities));
             slabs.push(Slab { start, end, set });
-            if !last {
-                let here = velocities.scaled(end - start);
-                way = Some(match way {
-                    Some(way) => way.minkowski_sum(&here),
-                    None => here,
-                });
-                start = end;
+            if end >= until {
+                break;
             }
+            let here = velocities.scaled(end - start);
+            way = Some(match way {
+                Some(way) => way.minkowski_sum(&here),
+                None => here,
+            });
+            start = end;
         }
         Self { slabs }
     }
@@ -187,18 +195,25 @@ impl MovingSlabs {
 
     /// Least distance over all slabs, each within its time. Beside ellipses own ship is a point.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
+        self.least_distance_below(f64::INFINITY, pieces, own)
+    }
+
+    /// [`Self::least_distance`] if it is less than a `known` one, otherwise infinite.
+    pub fn least_distance_below<P: Piece>(&self, known: f64, pieces: &[P], own: Body) -> Least {
         let parts: Vec<Vec<P>> = (self.slabs.iter()).map(|slab| slab.parts(pieces)).collect();
         // The centres are in the sets, so no distance above the least of theirs matters.
         let mut nearest = f64::INFINITY;
         for (slab, parts) in self.slabs.iter().zip(&parts) {
             let disc = slab.disc();
             for part in parts {
-                let here = part.pose_at(part.start_time()).position;
-                // A NaN is ignored here and found below.
-                nearest = nearest.min((here - disc.center.at(part.start_time())).norm());
+                for time in [part.start_time(), part.end_time()] {
+                    let here = part.pose_at(time).position;
+                    // A NaN is ignored here and found below.
+                    nearest = nearest.min((here - disc.center.at(time)).norm());
+                }
             }
         }
-        let nearest = nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M;
+        let nearest = (nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M).min(known);
         let mut least = Least::new();
         for (slab, parts) in self.slabs.iter().zip(&parts) {
             // Parts that are not nearer than in earlier slabs are not refined.

@@ -39,12 +39,17 @@ impl SpaceTimeSet {
     /// Least signed distance of own ship's position from the set while the set is valid. Infinite
     /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
-        self.judged("", pieces).0
+        self.judged("", pieces, f64::INFINITY).0
     }
 
-    /// [`Self::least_distance`], and the violation if the set is entered.
-    pub(crate) fn judged<P: Piece>(&self, label: &str, pieces: &[P]) -> (Least, Option<Violation>) {
-        let slabs = MovingSlabs::new(&self.sets);
+    /// [`Self::least_distance`], infinite unless it is less than a `known` one, and the violation if
+    /// the set is entered.
+    pub(crate) fn judged<P: Piece>(
+        &self,
+        label: &str,
+        pieces: &[P],
+        known: f64,
+    ) -> (Least, Option<Violation>) {
         let later;
         let pieces = if self.from == 0.0 {
             pieces
@@ -52,7 +57,8 @@ impl SpaceTimeSet {
             later = since(pieces, self.from, self.from);
             &later
         };
-        let mut least = slabs.least_distance(pieces, Body::POINT);
+        let slabs = MovingSlabs::until(&self.sets, end_of(pieces));
+        let mut least = slabs.least_distance_below(known, pieces, Body::POINT);
         let mut entered = entered(label, &slabs, pieces, &least);
         least.time += self.from;
         if let Some(violation) = &mut entered {
@@ -60,6 +66,15 @@ impl SpaceTimeSet {
         }
         (least, entered)
     }
+}
+
+/// Latest end of some pieces, seconds; 0 without any, infinite for a NaN.
+pub(crate) fn end_of<P: Piece>(pieces: &[P]) -> f64 {
+    let ends = pieces.iter().map(Piece::end_time);
+    ends.fold(0.0, |latest, end| match end.is_nan() {
+        true => f64::INFINITY,
+        false => end.max(latest),
+    })
 }
 
 /// Returns the parts of a chain of pieces after `from`, with time measured from `zero`. If `from`
@@ -101,12 +116,21 @@ impl MovingDisc {
         }
     }
 
-    /// Lower bound of the distance of a point within `half` seconds, from its position at `time`
-    /// and its greatest speed.
-    pub fn least_distance(&self, position: Vector, speed: f64, [time, half]: [f64; 2]) -> f64 {
-        let closing = speed + self.center.velocity.norm();
-        let apart = (position - self.center.at(time)).norm();
-        apart - closing * half - self.radius - self.growth * (time + half)
+    /// Lower bound of the distance of the position of a piece within `half` seconds of `time`: that
+    /// on the tangent, from which the position deviates by at most half of its acceleration times
+    /// the time squared. NaN, no bound, where a square overflows.
+    pub fn least_distance(&self, piece: &impl Piece, [time, half]: [f64; 2]) -> f64 {
+        let offset = piece.pose_at(time).position - self.center.at(time);
+        let relative = piece.velocity_at(time) - self.center.velocity;
+        let square = relative.norm_squared();
+        let closest = match square {
+            0.0 => 0.0,
+            _ if square.is_finite() => (-offset.dot(&relative) / square).clamp(-half, half),
+            _ => f64::NAN,
+        };
+        let bend = 0.5 * piece.bounds().acceleration * half * half;
+        let apart = (offset + relative * closest).norm() - bend;
+        apart - self.radius - self.growth * (time + half)
     }
 }
 

@@ -169,3 +169,50 @@ fn the_time_after_arrival_is_told_and_not_judged() {
     assert!(near(found.min_clearance, found.hold_clearance));
     assert_eq!(hold(&[], 60.0).hold_clearance, f64::INFINITY);
 }
+
+/// Random targets and sets, some of which are entered: whatever a plan reports is the same as where
+/// every clearance and margin is asked for.
+#[test]
+fn the_least_clearances_are_those_over_every_target() {
+    let mut rng = ChaCha8Rng::seed_from_u64(41);
+    let [mut entered, mut skipped] = [0, 0];
+    for case in 0..60 {
+        let mut anywhere = |far: f64| {
+            let [x, y] = [0.0, 0.0].map(|_| rng.random_range(-far..far));
+            Pose::new(Vector::new(x + 750.0, y), rng.random_range(-3.0..3.0))
+        };
+        let far = [600.0, 3000.0][case % 2];
+        let targets: Vec<Target> = (0..12)
+            .map(|_| known(ship(0.1, 5.0), anywhere(far), Hull::new(60.0, 12.0)))
+            .collect();
+        let sets: Vec<SpaceTimeSet> = (0..12)
+            .map(|_| {
+                let Vector { x, y, .. } = anywhere(far).position;
+                left(&rectangle([x, y], [x + 50.0, y + 20.0]), 0.0)
+            })
+            .collect();
+        let segments = straight();
+        let judged = |each_target| {
+            evaluate(&Request {
+                targets: &targets,
+                sets: &sets,
+                each_target,
+                ..Request::new(&segments, &own(), &desired(), 400.0)
+            })
+        };
+        let (every, least) = (judged(true), judged(false));
+        assert_eq!(every.violations, least.violations);
+        assert_eq!(every.safety, least.safety);
+        assert_eq!(every.min_clearance, least.min_clearance);
+        assert_eq!(every.hold_clearance, least.hold_clearance);
+        for (every, least) in every.passages.iter().zip(&least.passages) {
+            assert_eq!((every.dcpa, every.tcpa), (least.dcpa, least.tcpa));
+            let same = |a: f64, b: f64| a == b || b == f64::INFINITY;
+            assert!(same(every.min_clearance, least.min_clearance));
+            assert!(same(every.hold_clearance, least.hold_clearance));
+            skipped += usize::from(least.min_clearance == f64::INFINITY);
+        }
+        entered += every.violations.len();
+    }
+    assert!(entered > 20 && skipped > 400, "{entered} {skipped}");
+}
