@@ -65,6 +65,9 @@ impl Violation {
 }
 
 /// Encounter of own ship with one target along the plan.
+///
+/// Clearances and the margin may be infinite where they were not asked for
+/// ([`Request::each_target`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
     /// Least distance between own hull and the target's nominal hull, metres; negative in overlap.
