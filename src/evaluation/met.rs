@@ -31,32 +31,6 @@ fn at_risk(sets: &[TimedVelocitySet], target: &Target, risk: f64) -> Vec<TimedVe
     sets.iter().map(scaled).collect()
 }
 
-/// Clearances above which nothing is asked for, metres.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Known {
-    /// Until the end of the motion.
-    pub clearance: f64,
-    /// After it.
-    pub hold: f64,
-}
-
-impl Known {
-    /// Every clearance is asked for.
-    pub const NONE: Self = Self {
-        clearance: f64::INFINITY,
-        hold: f64::INFINITY,
-    };
-
-    /// Only clearances less than those of a passage are asked for. Overlaps always are: a bound is
-    /// at most [`tolerance::MARGIN_M`] below the value.
-    pub fn of(passage: &Passage) -> Self {
-        Self {
-            clearance: passage.min_clearance.max(tolerance::MARGIN_M),
-            hold: passage.hold_clearance.max(tolerance::MARGIN_M),
-        }
-    }
-}
-
 /// Returns the encounter with a target, the least clearance that is judged, and the safety.
 ///
 /// The judged clearance is the distance to every hull that the target may have at the accepted
@@ -67,15 +41,14 @@ pub(super) fn passage<P: Piece>(
     turns: &[Turn],
     target: &Target,
     claim: &Claim,
-    known: Known,
 ) -> (Passage, Least, Safety) {
     let (margin, from) = (&claim.margin, claim.from);
     let lying = at_rest(pieces, request.arrival_hold);
     let (closest, worst, kept, hold, safety) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
-            let along = |slabs: &MovingSlabs, pieces: &[P], turns: &[Turn], known: f64| {
-                let mut least = slabs.least_distance_below(known, pieces, body);
+            let along = |slabs: &MovingSlabs, pieces: &[P], turns: &[Turn]| {
+                let mut least = slabs.least_distance(pieces, body);
                 let turning = least_while_turning(turns, body, slabs);
                 least.see(turning.value, turning.time);
                 least.certified &= turning.certified;
@@ -92,18 +65,18 @@ pub(super) fn passage<P: Piece>(
             let velocities = ship.outer_velocity_sets(ship.turn_rate, request.horizon);
             let end = end_of(&lying);
             let whole = MovingSlabs::growing(turned, &velocities, end);
-            let worst = along(&whole, pieces, turns, known.clearance);
-            let hold = whole.least_distance_below(known.hold, &lying, body);
+            let worst = along(&whole, pieces, turns);
+            let hold = whole.least_distance(&lying, body);
             let kept = if from > 0.0 || request.max_risk > 0.0 {
                 let velocities = at_risk(&velocities, target, request.max_risk);
                 let later = turns.iter().filter(|turn| turn.time >= from).copied();
                 let later: Vec<Turn> = later.collect();
                 let slabs = MovingSlabs::growing(turned, &velocities, end);
-                along(&slabs, &since(pieces, from, 0.0), &later, known.clearance)
+                along(&slabs, &since(pieces, from, 0.0), &later)
             } else {
                 worst
             };
-            let closest = along(&nominal, pieces, turns, f64::INFINITY);
+            let closest = along(&nominal, pieces, turns);
             let safety = claim.of_ship(request, [&closest, &worst], || {
                 whole.least_distance(pieces, Body::POINT)
             });

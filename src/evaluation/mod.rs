@@ -35,7 +35,7 @@ use distance::least::Least;
 use distance::piece::Piece;
 use distance::turn::{Turn, turns};
 use land::LandBodies;
-use met::{Known, passage};
+use met::passage;
 use safety::{Claim, collision, grounding};
 
 use std::collections::HashMap;
@@ -43,7 +43,6 @@ use std::collections::HashMap;
 use crate::frame::Side;
 use crate::geometry::Polygon;
 use crate::parallel;
-use crate::target::Target;
 use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::Hull;
@@ -65,9 +64,6 @@ impl Violation {
 }
 
 /// Encounter of own ship with one target along the plan.
-///
-/// Clearances and the margin may be infinite where they were not asked for
-/// ([`Request::each_target`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
     /// Least distance between own hull and the target's nominal hull, metres; negative in overlap.
@@ -238,13 +234,8 @@ fn meetings<P: Piece>(
     judged: bool,
     violations: &mut Vec<Violation>,
 ) -> (Vec<Passage>, Safety) {
-    // A bound is at most this much below the value, so the sign is proven.
-    let known = match request.each_target {
-        true => f64::INFINITY,
-        false => tolerance::MARGIN_M,
-    };
     let margins = parallel::map(request.sets, |_, set| {
-        set.judged(&format!("set of '{}'", set.name), pieces, known)
+        set.judged(&format!("set of '{}'", set.name), pieces)
     });
     let mut by_name: HashMap<&str, Claim> = HashMap::new();
     for (set, (least, entered)) in request.sets.iter().zip(margins) {
@@ -255,21 +246,9 @@ fn meetings<P: Piece>(
     let mut worst = Safety::Safe;
     let mut passages = Vec::with_capacity(request.targets.len());
     let unclaimed = Claim::new();
-    let of = |target: &Target, known: Known| {
+    let found = parallel::map(request.targets, |_, target| {
         let claim = by_name.get(target.name.as_str()).unwrap_or(&unclaimed);
-        passage(request, pieces, turns, target, claim, known)
-    };
-    let first = match request.each_target {
-        true => None,
-        false => nearest(request.targets, pieces),
-    };
-    let first = first.map(|index| (index, of(&request.targets[index], Known::NONE)));
-    let known = first
-        .as_ref()
-        .map_or(Known::NONE, |(_, (passage, ..))| Known::of(passage));
-    let found = parallel::map(request.targets, |index, target| match &first {
-        Some((first, found)) if *first == index => *found,
-        _ => of(target, known),
+        passage(request, pieces, turns, target, claim)
     });
     for (target, (passage, clearance, safety)) in request.targets.iter().zip(found) {
         worst = worst.max(safety);
@@ -281,20 +260,6 @@ fn meetings<P: Piece>(
         passages.push(passage);
     }
     (passages, worst)
-}
-
-/// Index of the target whose nominal position is nearest to own ship at the ends of the pieces.
-fn nearest<P: Piece>(targets: &[Target], pieces: &[P]) -> Option<usize> {
-    let ends = pieces
-        .iter()
-        .flat_map(|s| [s.start_time(), s.end_time()].map(|time| (s, time)));
-    let apart = |target: &Target| {
-        let here = |(s, time): (&P, f64)| s.pose_at(time).position - target.position_at(time);
-        let distances = ends.clone().map(|end| here(end).norm());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    let apart: Vec<f64> = targets.iter().map(apart).collect();
-    (0..apart.len()).min_by(|a, b| apart[*a].total_cmp(&apart[*b]))
 }
 
 /// Least signed distance between a hull and land along a motion, metres, and when. It is negative

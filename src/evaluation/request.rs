@@ -52,10 +52,6 @@ pub struct Request<'a> {
     /// Accepted risk of paper eq. (25), in `[0, 1)`. The sets are already the level sets of this
     /// risk. Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
     pub max_risk: f64,
-    /// True where the clearance and the margin of every target are asked for. Otherwise the least
-    /// clearances over all targets are exact, those of other targets are exact or infinite, and so
-    /// are margins of sets that are not entered.
-    pub each_target: bool,
 }
 
 impl<'a> Request<'a> {
@@ -80,7 +76,6 @@ impl<'a> Request<'a> {
             arrival_hold: 60.0,
             time_weight: own.speed * own.speed,
             max_risk: 0.0,
-            each_target: true,
         }
     }
 }

@@ -109,7 +109,6 @@ fn judged(
         arrival_hold: scenario.arrival_hold,
         time_weight: scenario.time_weight,
         max_risk: claims.risk,
-        each_target: false,
     };
     match trajectory.steered() {
         Some(motion) => {

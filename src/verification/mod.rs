@@ -211,7 +211,6 @@ fn request(claim: &Claim) -> Request<'_> {
         arrival_hold: claim.arrival_hold(),
         time_weight: claim.file.time_weight_m2_per_s2,
         max_risk: claim.file.max_risk,
-        each_target: true,
     }
 }
 

@@ -195,11 +195,6 @@ impl MovingSlabs {
 
     /// Least distance over all slabs, each within its time. Beside ellipses own ship is a point.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
-        self.least_distance_below(f64::INFINITY, pieces, own)
-    }
-
-    /// [`Self::least_distance`] if it is less than a `known` one, otherwise infinite.
-    pub fn least_distance_below<P: Piece>(&self, known: f64, pieces: &[P], own: Body) -> Least {
         let parts: Vec<Vec<P>> = (self.slabs.iter()).map(|slab| slab.parts(pieces)).collect();
         // The centres are in the sets, so no distance above the least of theirs matters.
         let mut nearest = f64::INFINITY;
@@ -213,7 +208,7 @@ impl MovingSlabs {
                 }
             }
         }
-        let nearest = (nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M).min(known);
+        let nearest = nearest * (1.0 + tolerance::LIMIT) + tolerance::DEPTH_M;
         let mut least = Least::new();
         for (slab, parts) in self.slabs.iter().zip(&parts) {
             // Parts that are not nearer than in earlier slabs are not refined.

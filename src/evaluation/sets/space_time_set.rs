@@ -39,17 +39,11 @@ impl SpaceTimeSet {
     /// Least signed distance of own ship's position from the set while the set is valid. Infinite
     /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
-        self.judged("", pieces, f64::INFINITY).0
+        self.judged("", pieces).0
     }
 
-    /// [`Self::least_distance`], infinite unless it is less than a `known` one, and the violation if
-    /// the set is entered.
-    pub(crate) fn judged<P: Piece>(
-        &self,
-        label: &str,
-        pieces: &[P],
-        known: f64,
-    ) -> (Least, Option<Violation>) {
+    /// [`Self::least_distance`], and the violation if the set is entered.
+    pub(crate) fn judged<P: Piece>(&self, label: &str, pieces: &[P]) -> (Least, Option<Violation>) {
         let later;
         let pieces = if self.from == 0.0 {
             pieces
@@ -58,7 +52,7 @@ impl SpaceTimeSet {
             &later
         };
         let slabs = MovingSlabs::until(&self.sets, end_of(pieces));
-        let mut least = slabs.least_distance_below(known, pieces, Body::POINT);
+        let mut least = slabs.least_distance(pieces, Body::POINT);
         let mut entered = entered(label, &slabs, pieces, &least);
         least.time += self.from;
         if let Some(violation) = &mut entered {
