@@ -343,7 +343,7 @@ mod tests {
 
     #[test]
     fn the_fixtures_collide_after_120_seconds() {
-        for (other, role, _) in ships() {
+        for (other, role) in ships() {
             let way = [(0.0, 0.0), (2000.0, 0.0)];
             let found = met(&way, Motion::Ship(track(&other, 50.0)), 400.0);
             assert_eq!(found.role, role);

@@ -13,7 +13,7 @@ mod thresholds;
 
 pub use domain::{ShipDomain, ship_domain, sweep};
 pub use encounter::{Encounter, Risk, TargetMemory, encounter, first_risk, risk_distance};
-pub use role::{Role, Sectors, SteadyShip, raw_role, role_within};
+pub use role::{Role, Sectors, SteadyShip, role_within};
 pub(crate) use rules::Duty;
 pub use rules::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, ClosedSide, CrossingAhead, Encountered,

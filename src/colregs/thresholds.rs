@@ -195,79 +195,80 @@ const SECONDS: Range = Range::between(0.0, 86_400.0);
 const LENGTHS: Range = Range::between(0.0, 1000.0);
 const FRACTION: Range = Range::between(0.0, 1.0);
 
+/// The place of a threshold.
+macro_rules! at {
+    ($($field:ident).+) => {
+        |t| &mut t.$($field).+
+    };
+}
+
 /// A number: its key in files, its range, its place. A key in degrees stands for radians here.
 type Number = (&'static str, Range, fn(&mut Thresholds) -> &mut f64);
 
 const NUMBERS: [Number; 35] = [
-    ("head_on_deg", DEGREES, |t| &mut t.sectors.head_on),
-    ("abaft_the_beam_deg", DEGREES, |t| {
-        &mut t.sectors.abaft_the_beam
-    }),
-    ("at_rest_mps", SPEED, |t| &mut t.sectors.at_rest),
-    ("closing_mps", SPEED, |t| &mut t.sectors.closing),
-    ("risk_time_s", SECONDS, |t| &mut t.risk.time),
-    ("large_factor", Range::between(1.0, 100.0), |t| {
-        &mut t.large_factor
-    }),
-    ("risk_lengths", LENGTHS, |t| &mut t.risk.lengths),
-    ("release_lengths", LENGTHS, |t| &mut t.risk.release_lengths),
-    ("collision_lengths", LENGTHS, |t| {
-        &mut t.score.collision_lengths
-    }),
-    ("near_miss_lengths", LENGTHS, |t| {
-        &mut t.score.near_miss_lengths
-    }),
-    ("least_lengths", LENGTHS, |t| &mut t.score.least_lengths),
-    ("preferred_lengths", LENGTHS, |t| {
-        &mut t.score.preferred_lengths
-    }),
-    ("weight_least", FRACTION, |t| &mut t.score.weight_least),
-    ("weight_near_miss", FRACTION, |t| {
-        &mut t.score.weight_near_miss
-    }),
-    ("weight_collision", FRACTION, |t| {
-        &mut t.score.weight_collision
-    }),
-    ("apparent_deg", DEGREES, |t| &mut t.score.apparent),
-    ("steady_deg", DEGREES, |t| &mut t.score.steady),
-    ("steady_speed", FRACTION, |t| &mut t.score.steady_speed),
-    ("turn_rate_deg_per_s", DEGREES, |t| &mut t.score.turn_rate),
-    ("starboard_deg", DEGREES, |t| &mut t.score.starboard),
-    ("weight_starboard", FRACTION, |t| {
-        &mut t.score.weight_starboard
-    }),
-    ("weight_delay", FRACTION, |t| &mut t.score.weight_delay),
-    ("weight_side", FRACTION, |t| &mut t.score.weight_side),
-    ("ahead_lengths", LENGTHS, |t| &mut t.score.ahead_lengths),
-    ("ahead_s", SECONDS, |t| &mut t.score.ahead_time),
-    ("weight_ahead_overtaking", FRACTION, |t| {
-        &mut t.score.weight_ahead_overtaking
-    }),
-    ("weight_ahead_crossing", FRACTION, |t| {
-        &mut t.score.weight_ahead_crossing
-    }),
-    ("hold_deg", DEGREES, |t| &mut t.score.hold),
-    ("stage_3_lengths", LENGTHS, |t| &mut t.score.stage_3_lengths),
-    ("stage_4_lengths", LENGTHS, |t| &mut t.score.stage_4_lengths),
-    ("overtaken_lengths", LENGTHS, |t| {
-        &mut t.score.overtaken_lengths
-    }),
-    ("ample_time_s", SECONDS, |t| &mut t.score.ample_time),
-    ("monitor_turn_deg", DEGREES, |t| &mut t.monitor.turn),
-    ("react_s", SECONDS, |t| &mut t.monitor.react),
-    ("manoeuvre_s", SECONDS, |t| &mut t.monitor.manoeuvre),
+    ("head_on_deg", DEGREES, at!(sectors.head_on)),
+    ("abaft_the_beam_deg", DEGREES, at!(sectors.abaft_the_beam)),
+    ("at_rest_mps", SPEED, at!(sectors.at_rest)),
+    ("closing_mps", SPEED, at!(sectors.closing)),
+    ("risk_time_s", SECONDS, at!(risk.time)),
+    (
+        "large_factor",
+        Range::between(1.0, 100.0),
+        at!(large_factor),
+    ),
+    ("risk_lengths", LENGTHS, at!(risk.lengths)),
+    ("release_lengths", LENGTHS, at!(risk.release_lengths)),
+    ("collision_lengths", LENGTHS, at!(score.collision_lengths)),
+    ("near_miss_lengths", LENGTHS, at!(score.near_miss_lengths)),
+    ("least_lengths", LENGTHS, at!(score.least_lengths)),
+    ("preferred_lengths", LENGTHS, at!(score.preferred_lengths)),
+    ("weight_least", FRACTION, at!(score.weight_least)),
+    ("weight_near_miss", FRACTION, at!(score.weight_near_miss)),
+    ("weight_collision", FRACTION, at!(score.weight_collision)),
+    ("apparent_deg", DEGREES, at!(score.apparent)),
+    ("steady_deg", DEGREES, at!(score.steady)),
+    ("steady_speed", FRACTION, at!(score.steady_speed)),
+    ("turn_rate_deg_per_s", DEGREES, at!(score.turn_rate)),
+    ("starboard_deg", DEGREES, at!(score.starboard)),
+    ("weight_starboard", FRACTION, at!(score.weight_starboard)),
+    ("weight_delay", FRACTION, at!(score.weight_delay)),
+    ("weight_side", FRACTION, at!(score.weight_side)),
+    ("ahead_lengths", LENGTHS, at!(score.ahead_lengths)),
+    ("ahead_s", SECONDS, at!(score.ahead_time)),
+    (
+        "weight_ahead_overtaking",
+        FRACTION,
+        at!(score.weight_ahead_overtaking),
+    ),
+    (
+        "weight_ahead_crossing",
+        FRACTION,
+        at!(score.weight_ahead_crossing),
+    ),
+    ("hold_deg", DEGREES, at!(score.hold)),
+    ("stage_3_lengths", LENGTHS, at!(score.stage_3_lengths)),
+    ("stage_4_lengths", LENGTHS, at!(score.stage_4_lengths)),
+    ("overtaken_lengths", LENGTHS, at!(score.overtaken_lengths)),
+    ("ample_time_s", SECONDS, at!(score.ample_time)),
+    ("monitor_turn_deg", DEGREES, at!(monitor.turn)),
+    ("react_s", SECONDS, at!(monitor.react)),
+    ("manoeuvre_s", SECONDS, at!(monitor.manoeuvre)),
 ];
 
 /// A count: its key in files, its range, its place.
 type Count = (&'static str, Range, fn(&mut Thresholds) -> &mut usize);
 
 const COUNTS: [Count; 2] = [
-    ("evaluations", Range::between(1.0, 1000.0), |t| {
-        &mut t.risk.evaluations
-    }),
-    ("small_turns", Range::between(0.0, 1000.0), |t| {
-        &mut t.score.small_turns
-    }),
+    (
+        "evaluations",
+        Range::between(1.0, 1000.0),
+        at!(risk.evaluations),
+    ),
+    (
+        "small_turns",
+        Range::between(0.0, 1000.0),
+        at!(score.small_turns),
+    ),
 ];
 
 static PUBLISHED: [Thresholds; 3] = [

@@ -116,14 +116,8 @@ mod tests {
     fn out_of_time_nothing_is_claimed_of_a_set() {
         let around = |size: f64| Ellipse::disc(Vector::zeros(), size);
         let set = EllipsoidObstacle::new("storm", around(9000.0), around(1e-3)).into();
-        let way = Segment {
-            start: Pose::new(Vector::zeros(), 0.0),
-            start_time: 0.0,
-            duration: 4000.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
-        let way = Trajectory::new(vec![way]).expect("sound");
+        let start = Pose::new(Vector::zeros(), 0.0);
+        let way = Segment::straight(start, 0.0, 4000.0, 5.0).into();
         let found = left_for_good(&set, &way, || false).expect("it starts inside");
         assert!((found - 1800.0).abs() < 2.0, "{found}");
         assert_eq!(left_for_good(&set, &way, || true), Some(4000.0));

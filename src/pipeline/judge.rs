@@ -10,12 +10,8 @@ use crate::trajectory::Trajectory;
 
 /// Evaluates a trajectory against the obstacles that it was planned against.
 pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajectory) -> Evaluation {
-    let claims = Claims {
-        obstacles,
-        released: &[],
-        risk: scenario.max_risk,
-    };
-    judge_plan(scenario, &claims, trajectory, true)
+    let risk = scenario.max_risk;
+    judge_plan(scenario, obstacles, &[], risk, trajectory, true)
 }
 
 /// Evaluates an answer at its accepted risk; sets that it enters count from when they are left.
@@ -24,19 +20,24 @@ pub(super) fn judge_answer(
     answer: &Attempt,
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let claims = Claims {
-        obstacles: &answer.obstacles,
-        released: &answer.released,
-        risk: answer.risk,
-    };
+    let (obstacles, released) = (&answer.obstacles, &answer.released);
     let plan = answer.planned.outcome.plan();
     let arrives = plan.is_none_or(|plan| plan.to_go == 0.0);
-    judge_plan(scenario, &claims, trajectory, arrives)
+    judge_plan(
+        scenario,
+        obstacles,
+        released,
+        answer.risk,
+        trajectory,
+        arrives,
+    )
 }
 
 fn judge_plan(
     scenario: &Scenario,
-    claims: &Claims,
+    obstacles: &[Obstacle],
+    released: &[Option<f64>],
+    risk: f64,
     trajectory: &Trajectory,
     arrives: bool,
 ) -> Evaluation {
@@ -47,7 +48,7 @@ fn judge_plan(
         true if arrives => Freedom::Paths(&paths),
         true => Freedom::PathsToHorizon(&paths),
     };
-    judged(scenario, claims, trajectory, freedom)
+    judged(scenario, obstacles, released, risk, trajectory, freedom)
 }
 
 /// Evaluates a motion that is not a plan: start, sets, hulls, land and figures, without own ship's
@@ -57,36 +58,22 @@ pub fn judge_free(
     obstacles: &[Obstacle],
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let claims = Claims {
-        obstacles,
-        released: &[],
-        risk: scenario.max_risk,
-    };
-    judged(scenario, &claims, trajectory, Freedom::Any)
+    let risk = scenario.max_risk;
+    judged(scenario, obstacles, &[], risk, trajectory, Freedom::Any)
 }
 
-/// Sets that a trajectory is claimed to be clear of.
-struct Claims<'a> {
-    obstacles: &'a [Obstacle],
-    /// Seconds, per set: the time from which it counts, where the trajectory enters it.
-    released: &'a [Option<f64>],
-    /// The risk of which the obstacles are the level sets.
-    risk: f64,
-}
-
+/// `released` holds per set the time in seconds from which it counts, where the trajectory enters
+/// it. The obstacles are the level sets of `risk`.
 fn judged(
     scenario: &Scenario,
-    claims: &Claims,
+    obstacles: &[Obstacle],
+    released: &[Option<f64>],
+    risk: f64,
     trajectory: &Trajectory,
     freedom: Freedom,
 ) -> Evaluation {
-    let released = claims
-        .released
-        .iter()
-        .copied()
-        .chain(std::iter::repeat(None));
-    let sets: Vec<SpaceTimeSet> = (claims.obstacles.iter())
-        .zip(released)
+    let released = released.iter().copied().chain(std::iter::repeat(None));
+    let sets: Vec<SpaceTimeSet> = (obstacles.iter().zip(released))
         .map(|(o, released)| {
             let from = released.unwrap_or(0.0);
             SpaceTimeSet {
@@ -108,7 +95,7 @@ fn judged(
         horizon: scenario.horizon,
         arrival_hold: scenario.arrival_hold,
         time_weight: scenario.time_weight,
-        max_risk: claims.risk,
+        max_risk: risk,
     };
     match trajectory.steered() {
         Some(motion) => {

@@ -77,6 +77,26 @@ pub(super) struct Attempt {
 }
 
 impl Attempt {
+    /// An attempt that enters no set.
+    fn of(
+        level: RelaxationLevel,
+        (whole, reductions): (Vec<Obstacle>, Vec<f64>),
+        obstacles: Vec<Obstacle>,
+        risk: f64,
+        planned: Planned,
+    ) -> Self {
+        Self {
+            level,
+            released: vec![None; whole.len()],
+            whole,
+            reductions,
+            obstacles,
+            risk,
+            planned,
+            why: None,
+        }
+    }
+
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.planned.outcome.plan().map(|plan| &plan.trajectory)
     }
@@ -275,18 +295,10 @@ impl Relaxer<'_> {
             return None;
         }
         let risk = self.scenario.max_risk;
-        let (whole, reductions) = self.scaled(&self.scales(0.0));
-        let obstacles = level_sets(&whole, risk);
-        let mut found = Attempt {
-            level,
-            released: vec![None; whole.len()],
-            whole,
-            reductions,
-            obstacles,
-            risk,
-            planned: Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory)),
-            why: None,
-        };
+        let scaled = self.scaled(&self.scales(0.0));
+        let obstacles = level_sets(&scaled.0, risk);
+        let none = Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory));
+        let mut found = Attempt::of(level, scaled, obstacles, risk, none);
         let kept = better_remainder(self.scenario, &self.problem(&found.obstacles), &found)?;
         found.planned = kept.planned;
         let retained = self.retained_along(found.trajectory()?, risk);
@@ -367,16 +379,8 @@ impl Relaxer<'_> {
         } else {
             RelaxationLevel::Compliant
         };
-        let found = Attempt {
-            level,
-            reductions: vec![0.0; whole.len()],
-            released: vec![None; whole.len()],
-            whole,
-            obstacles,
-            risk,
-            planned: Planned::of(outcome),
-            why: None,
-        };
+        let sets = (whole, self.scales(0.0));
+        let found = Attempt::of(level, sets, obstacles, risk, Planned::of(outcome));
         if !with_domain {
             return Some(self.clear_of(&found, &self.scales(0.0), level));
         }
@@ -576,20 +580,12 @@ impl Relaxer<'_> {
                 settings: &self.scenario.settings,
             })
         };
-        Attempt {
-            level,
-            released: vec![None; whole.len()],
-            whole,
-            // domains that nobody asked for are not given up
-            reductions: match self.scenario.compliance {
-                Compliance::Shape | Compliance::Rules => reductions,
-                Compliance::None => vec![0.0; self.sets.len()],
-            },
-            obstacles,
-            risk,
-            planned,
-            why: None,
-        }
+        // domains that nobody asked for are not given up
+        let reductions = match self.scenario.compliance.shapes() {
+            true => reductions,
+            false => self.scales(0.0),
+        };
+        Attempt::of(level, (whole, reductions), obstacles, risk, planned)
     }
 
     /// An attempt against domains of one scale factor; `None` where there is no plan.

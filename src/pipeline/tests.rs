@@ -1,13 +1,12 @@
 //! Which sets are used, what is given up, and what the evaluation sees.
 
 use super::*;
-use crate::colregs::{Role, Thresholds};
+use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
 use crate::obstacle::PolytopeObstacle;
 use crate::planner::path_time::PathTimePlanner;
-use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::scenario::Compliance;
-use crate::simulation::{EncounterKind, Placement, random_encounter};
+use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -32,31 +31,19 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
     let points = [Vector::zeros(), Vector::new(1500.0, 0.0)];
     Scenario {
         title: "one target".to_owned(),
-        time: 0.0,
         horizon: 400.0,
-        arrival_hold: 60.0,
         own_ship: own_ship(&[2.5, 5.0, 6.0]),
         desired: DesiredTrajectory::new(&points, &[5.0]).expect("valid"),
-        alternatives: Vec::new(),
-        planner: DEFAULT_PLANNER,
-        objective: Objective::SpaceTimeError,
-        settings: PlannerSettings::at_length(30.0),
         targets: vec![Target {
             name: "other".to_owned(),
             motion: Motion::Ship(target),
             representation: Representation::Polytope,
         }],
-        search: SearchKind::AStar,
         compliance,
-        time_weight: 25.0,
-        max_risk: 0.0,
         deadline: 5.0,
-        limits: std::sync::Arc::new(Thresholds::STANDARD),
-        thresholds: None,
-        earth: None,
-        land: None,
-        memory: crate::scenario::Memory::default(),
-        simulation: crate::scenario::SimulationSettings::default(),
+        ..random_traffic(0, 0, Placement::Origin)
+            .expect("drawn")
+            .scenario
     }
 }
 
@@ -523,14 +510,7 @@ fn out_of_time_there_is_still_an_answer() {
 fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
     let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
     let sets = sets(&scenario);
-    let straight = Trajectory::new(vec![Segment {
-        start: scenario.own_ship.pose,
-        start_time: 0.0,
-        duration: 300.0,
-        speed: 5.0,
-        turn_rate: 0.0,
-    }])
-    .expect("valid");
+    let straight = Segment::straight(scenario.own_ship.pose, 0.0, 300.0, 5.0).into();
     let judged = judge(&scenario, &[sets[0].with_domain.clone()], &straight);
     assert!(!judged.verified());
     assert!(

@@ -11,6 +11,7 @@ pub mod optimal_control;
 pub mod path_time;
 pub mod space_time;
 
+pub use crate::search::Counts as SearchStats;
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
@@ -21,7 +22,6 @@ use std::time::Duration;
 use crate::colregs::{Duty, Encountered, Thresholds};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{LandObstacle, Obstacle};
-use crate::search::Counts;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{OwnShip, VesselKind};
 
@@ -240,27 +240,6 @@ impl<'a> Problem<'a> {
 /// collision regulations discourage.
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
-/// Search statistics up to the cheapest plan on the graph.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct SearchStats {
-    /// Expanded nodes.
-    pub expanded: usize,
-    /// Generated nodes.
-    pub generated: usize,
-    /// Edges tested against every obstacle.
-    pub edges_checked: usize,
-}
-
-impl From<Counts> for SearchStats {
-    fn from(counts: Counts) -> Self {
-        Self {
-            expanded: counts.expanded,
-            generated: counts.generated,
-            edges_checked: counts.tested,
-        }
-    }
-}
-
 /// A collision-free trajectory to the end of the desired path.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -396,7 +375,7 @@ impl Outcome {
 pub struct Planned {
     /// The result.
     pub outcome: Outcome,
-    /// Search statistics.
+    /// Search statistics up to the cheapest plan on the graph.
     pub stats: SearchStats,
     /// All nodes and edges that the search generated.
     pub explored: ExploredGraph,

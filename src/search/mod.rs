@@ -115,7 +115,7 @@ pub struct Counts {
     /// Generated nodes.
     pub generated: usize,
     /// Tested edges.
-    pub tested: usize,
+    pub edges_checked: usize,
 }
 
 /// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest
@@ -246,7 +246,7 @@ impl<S> Search<S> {
                 return Stop::Budget;
             }
             if self.nodes[index].parent.is_some() {
-                self.counts.tested += 1;
+                self.counts.edges_checked += 1;
                 if !space.admits(&self.nodes[index].state) {
                     self.nodes[index].fate = Fate::Rejected;
                     continue;

@@ -283,13 +283,13 @@ impl DesiredTrajectory {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fixtures::desired;
     use super::*;
 
     #[test]
     fn the_nearest_point_matches_a_dense_scan() {
         let points = [(0.0, 0.0), (400.0, 0.0), (600.0, 300.0), (500.0, 320.0)];
-        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        let desired = DesiredTrajectory::new(&points, &[5.0, 4.0, 3.0]).expect("valid");
+        let desired = desired(&points, &[5.0, 4.0, 3.0]);
         let q = 25.0;
         for i in 0..200 {
             let k = f64::from(i);
@@ -338,11 +338,8 @@ mod tests {
 
     #[test]
     fn waypoints_on_a_line_are_left_out_and_others_are_not() {
-        let points = |points: &[(f64, f64)]| -> Vec<Vector> {
-            points.iter().map(|&(x, y)| Vector::new(x, y)).collect()
-        };
         let legs = |at: &[(f64, f64)], speeds: &[f64]| {
-            let desired = DesiredTrajectory::new(&points(at), speeds).expect("valid");
+            let desired = desired(at, speeds);
             let straight = desired.straightened();
             assert_eq!(straight.end(), desired.end());
             assert!((straight.duration() - desired.duration()).abs() < 1e-9);

@@ -356,10 +356,7 @@ fn foot(leg: &[Vector], p: Vector) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn points(list: &[(f64, f64)]) -> Vec<Vector> {
-        list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
-    }
+    use crate::geometry::fixtures::places as points;
 
     /// Lengths of all ways from start to end that use each leg at most once.
     fn ways(network: &PathNetwork) -> Vec<f64> {

@@ -206,13 +206,7 @@ mod tests {
     #[test]
     fn an_arc_stays_on_its_circle_and_a_flat_one_is_a_line() {
         let start = Pose::new(Vector::new(3.0, -2.0), 0.4);
-        let arc = Segment {
-            start,
-            start_time: 5.0,
-            duration: 40.0,
-            speed: 5.0,
-            turn_rate: -0.05,
-        };
+        let arc = Segment::new(start, 5.0, 40.0, 5.0, -0.05);
         let centre = start.position + crate::frame::to_starboard(start.ahead()) * 100.0;
         for i in 0..=40 {
             let p = arc.pose_at(5.0 + f64::from(i)).position;
@@ -233,13 +227,7 @@ mod tests {
     fn a_mover_is_where_its_segment_is() {
         let start = Pose::new(Vector::new(-40.0, 7.0), 2.2);
         for turn_rate in [0.0, 0.05, -0.02, 1e-5] {
-            let segment = Segment {
-                start,
-                start_time: 3.0,
-                duration: 90.0,
-                speed: 5.0,
-                turn_rate,
-            };
+            let segment = Segment::new(start, 3.0, 90.0, 5.0, turn_rate);
             let mover = Mover::new(&segment);
             for i in 0..90 {
                 let t = 3.0 + f64::from(i);
@@ -251,13 +239,7 @@ mod tests {
     #[test]
     fn cutting_keeps_the_motion() {
         let start = Pose::new(Vector::new(0.0, 0.0), 1.0);
-        let arc = Segment {
-            start,
-            start_time: 2.0,
-            duration: 30.0,
-            speed: 4.0,
-            turn_rate: 0.03,
-        };
+        let arc = Segment::new(start, 2.0, 30.0, 4.0, 0.03);
         let part = arc.between(10.0, 20.0);
         for t in [10.0, 13.3, 20.0] {
             assert!((part.pose_at(t).position - arc.pose_at(t).position).norm() < 1e-9);

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use searoom::colregs::compliance::{ComplianceReport, EncounterSamples};
-use searoom::colregs::{Role, SteadyShip, Thresholds, raw_role};
+use searoom::colregs::{Role, Sectors, SteadyShip, Thresholds, role_within};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::target::ShipTrack;
 use searoom::trajectory::{Segment, Trajectory};
@@ -51,7 +51,7 @@ fn table_of_roles() -> String {
                 let heading = -f64::from(*course).to_radians();
                 let target = ship(place, heading, ratio * SPEED);
                 let nearing = place.dot(&(own.velocity() - target.velocity())) > 1e-6;
-                let role = raw_role(&own, &target).filter(|_| nearing);
+                let role = role_within(&own, &target, &Sectors::STANDARD).filter(|_| nearing);
                 text += &format!(" {} |", word(role));
             }
         }

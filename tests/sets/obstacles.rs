@@ -6,7 +6,6 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use searoom::frame::{Vector, heading_of};
 use searoom::obstacle::SpaceTimeObstacle;
-use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::target::Representation;
@@ -299,51 +298,6 @@ suite!(of_polytopes, polytope());
 suite!(of_ellipsoids, ellipsoid());
 suite!(of_slabs, slabs());
 suite!(of_round_slabs, round_slabs());
-
-/// Tests lines and arcs: during a contact the position is in the set, and just before and after it
-/// is not. Positions between two contacts are also outside.
-#[test]
-fn a_contact_begins_and_ends_where_the_set_does() {
-    let [begun, ended, twice] = [(); 3].map(|()| Counter::default());
-    check(505, 4000, (polytope(), segment()), |(o, s)| {
-        let contacts: Vec<Interval> = if s.is_arc() {
-            arc_contacts(&o, &s, 0.0)
-        } else {
-            line_contact(&o, &s, 0.0).into_iter().collect()
-        };
-        let slack = |t: f64| o.slack(s.pose_at(t).position, t).value;
-        for contact in &contacts {
-            let middle = 0.5 * (contact.start + contact.end);
-            assert!(slack(middle) < 1e-6, "{contact:?}");
-            for (edge, inward, limit) in [
-                (contact.start, 1.0, s.start_time),
-                (contact.end, -1.0, s.end_time()),
-            ] {
-                assert!(slack(edge) < 1e-6, "{contact:?}");
-                if (edge - limit).abs() < 1e-3 {
-                    continue;
-                }
-                assert!(slack(edge - 1e-4 * inward) > -1e-9, "{contact:?}");
-                assert!(slack(edge).abs() < 1e-6, "{contact:?}");
-                (if inward > 0.0 { &begun } else { &ended }).add(true);
-            }
-        }
-        for pair in contacts.windows(2) {
-            twice.add(true);
-            assert!(slack(0.5 * (pair[0].end + pair[1].start)) > -1e-9);
-        }
-        for k in 0..=200 {
-            let t = s.start_time + s.duration * f64::from(k) / 200.0;
-            let within = contacts
-                .iter()
-                .any(|c| c.start - 1e-6 <= t && t <= c.end + 1e-6);
-            assert!(within || slack(t) > -1e-6, "{t}");
-        }
-    });
-    begun.assert_above(300);
-    ended.assert_above(300);
-    twice.assert_above(5);
-}
 
 /// Tests the remainder of a set from a time on, with a clock that starts then. A polygon is exact.
 /// An ellipse is exact at first and never smaller.

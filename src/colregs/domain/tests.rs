@@ -1,7 +1,7 @@
 //! Ship domains: nested, swept to the forbidden side, reduced around own ship's start.
 
 use super::*;
-use crate::colregs::{Role, SteadyShip, raw_role, risk_distance};
+use crate::colregs::{Role, Sectors, SteadyShip, risk_distance, role_within};
 use crate::frame::{direction, to_port, to_starboard};
 use crate::vessel::Hull;
 use crate::vessel::fixtures::own_ship;
@@ -48,7 +48,7 @@ fn risk_with(own: &OwnShip, target: &ShipTrack) -> Risk {
     let own = steady(own.pose, own.speed);
     let target = steady(target.pose, target.speed);
     Risk {
-        role: raw_role(&own, &target).expect("finite"),
+        role: role_within(&own, &target, &Sectors::STANDARD).expect("finite"),
         time: 0.0,
         own,
         target,
@@ -112,7 +112,7 @@ fn the_design_inequality_holds_whatever_the_hull() {
         target.domain = DomainKind::Colregs;
         let mut risk = risk_with(&own_at(Vector::zeros(), 0.0), &target);
         risk.own.pose.heading = rng.random_range(-PI..PI);
-        let Some(role) = raw_role(&risk.own, &risk.target) else {
+        let Some(role) = role_within(&risk.own, &risk.target, &Sectors::STANDARD) else {
             continue;
         };
         risk.role = role;

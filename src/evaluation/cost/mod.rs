@@ -96,22 +96,6 @@ mod tests {
     use crate::trajectory::fixtures::{chain, desired};
 
     #[test]
-    fn running_late_on_a_straight_leg_has_a_closed_form() {
-        // 100 s at 4 m/s where 5 m/s is desired: the lag grows by 1 m per second, then stays
-        // constant.
-        let own = chain(
-            Pose::new(Vector::zeros(), 0.0),
-            &[(100.0, 4.0, 0.0), (60.0, 5.0, 0.0)],
-        );
-        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)], &[5.0]);
-        let q = 25.0;
-        let kappa = q / (q + 25.0);
-        let exact = kappa * (100.0_f64.powi(3) / 3.0 + 60.0 * 100.0_f64.powi(2)) / 200.0;
-        let found = space_time_error(&own, &wish, q);
-        assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
-    }
-
-    #[test]
     fn the_integral_matches_a_dense_sum_on_polylines_and_arcs() {
         let wish = desired(
             &[(0.0, 0.0), (300.0, 0.0), (300.0, 200.0), (100.0, 250.0)],

@@ -16,20 +16,10 @@ fn escapes(sets: &[Obstacle], held: &[Segment], time: f64, turns: &[f64]) -> boo
     let start = leg.pose_at(time);
     own.speeds.iter().any(|&speed| {
         turns.iter().any(|&turn| {
-            let arc = Segment {
-                start,
-                start_time: time,
-                duration: turn.abs() * own.turning_radius / speed,
-                speed,
-                turn_rate: turn.signum() * speed / own.turning_radius,
-            };
-            let line = Segment {
-                start: arc.end(),
-                start_time: arc.end_time(),
-                duration: CLEAR_FOR_S,
-                turn_rate: 0.0,
-                ..arc
-            };
+            let duration = turn.abs() * own.turning_radius / speed;
+            let rate = turn.signum() * speed / own.turning_radius;
+            let arc = Segment::new(start, time, duration, speed, rate);
+            let line = Segment::straight(arc.end(), arc.end_time(), CLEAR_FOR_S, speed);
             let met = |set: &Obstacle| {
                 [arc, line]
                     .iter()

@@ -34,6 +34,20 @@ pub(crate) struct State {
     pub tested: Cell<bool>,
 }
 
+impl State {
+    /// A line that is not tested yet.
+    fn new(node: usize, from: usize, leg: Option<usize>, via: Option<PathTime>) -> Self {
+        Self {
+            node,
+            from,
+            leg,
+            via,
+            met: Cell::new(None),
+            tested: Cell::new(false),
+        }
+    }
+}
+
 /// Implicit search graph. Lines never leave a leg. Full-speed arrivals at the end of a leg become
 /// nodes when the search requests them.
 #[derive(Debug)]
@@ -87,14 +101,7 @@ impl<'a> Graph<'a> {
 
     pub(crate) fn root(&mut self) -> State {
         self.settled[0] = true;
-        State {
-            node: 0,
-            from: 0,
-            leg: None,
-            via: None,
-            met: Cell::new(None),
-            tested: Cell::new(false),
-        }
+        State::new(0, 0, None, None)
     }
 
     /// Generates the lines on a leg from a node on it.
@@ -189,14 +196,8 @@ impl<'a> Graph<'a> {
             .windows(2)
             .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
             .sum();
-        let state = State {
-            node: to,
-            from,
-            leg,
-            via: (line.len() > 2).then(|| line[1]),
-            met: Cell::new(None),
-            tested: Cell::new(false),
-        };
+        let via = (line.len() > 2).then(|| line[1]);
+        let state = State::new(to, from, leg, via);
         if self.has_arrived(&state) {
             step += self.measure.after_arrival(self.nodes[to].time);
         }

@@ -30,7 +30,7 @@ use super::clock::Clock;
 use super::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
     NominalTarget, Objective, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts, Problem,
-    SearchKind, SearchStats,
+    SearchKind,
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -222,7 +222,7 @@ fn search_for(
         };
         return Planned { outcome, ..quick };
     }
-    let stats = SearchStats::from(search.counts());
+    let stats = search.counts();
     let found = goal.map(|goal| {
         let mut profile = begun.clone();
         for index in &search.way_to(goal)[1..] {

@@ -119,34 +119,21 @@ fn straightness(desired: &DesiredTrajectory) -> f64 {
     let mut least: f64 = (0..legs.len() - 1).map(corner).fold(1.0, f64::min);
     let mut seen = least;
     let halves = |piece: &Piece| -> [Piece; 2] {
-        let (from, to) = (piece.from, piece.to);
-        if piece.first == piece.last {
-            let middle = 0.5 * (from + to);
-            return [
-                Piece {
-                    to: middle,
-                    ..*piece
-                },
-                Piece {
-                    from: middle,
-                    ..*piece
-                },
-            ];
-        }
-        let cut = usize::midpoint(piece.first, piece.last) + 1;
-        let (before, after) = (
+        let (at, last, first) = if piece.first == piece.last {
+            (0.5 * (piece.from + piece.to), piece.last, piece.first)
+        } else {
+            let cut = usize::midpoint(piece.first, piece.last) + 1;
+            (legs[cut].start_distance, cut - 1, cut)
+        };
+        [
             Piece {
-                to: legs[cut].start_distance,
-                last: cut - 1,
+                to: at,
+                last,
                 ..*piece
             },
-            legs[cut].start_distance,
-        );
-        [
-            before,
             Piece {
-                from: after,
-                first: cut,
+                from: at,
+                first,
                 ..*piece
             },
         ]

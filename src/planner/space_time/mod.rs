@@ -318,7 +318,7 @@ fn attempt(
     Attempt {
         plan: selection.plan(),
         timed_out,
-        stats: search.counts().into(),
+        stats: search.counts(),
         explored: node::explored(search),
     }
 }

@@ -72,10 +72,6 @@ pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> Enc
 
 const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
 
-fn mirrored(legs: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    legs.iter().map(|(turn, t)| (-turn, *t)).collect()
-}
-
 fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> ComplianceReport {
     let meeting = steady(&planned(legs, 6.0), x, y, heading, speed);
     ComplianceReport::judge(&meeting, standard())
@@ -89,20 +85,6 @@ fn violated(c: &ComplianceReport) -> Vec<&'static str> {
     let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
     let broken = c.monitors.iter().filter(is_violated);
     broken.map(|f| f.monitor).collect()
-}
-
-#[test]
-fn head_on_to_starboard_is_well_done_and_to_port_is_not() {
-    let good = conduct(&OUT_AND_BACK, 1440.0, 0.0, PI, 6.0);
-    assert!(good.complies(), "{good:?}");
-    assert!(good.scores.rule_14 > Some(0.7), "{:?}", good.scores);
-    assert_eq!(good.scores.rule_15, None);
-    let bad = conduct(&mirrored(&OUT_AND_BACK), 1440.0, 0.0, PI, 6.0);
-    assert_eq!(rules(&bad), ["14(a)", "14(a)"]);
-    assert_eq!(violated(&bad), ["R4"]);
-    assert!(bad.scores.rule_14 < Some(0.1), "{:?}", bad.scores);
-    // the same distance on either side
-    assert!((bad.scores.safety - good.scores.safety).abs() < 1e-9);
 }
 
 #[test]
@@ -143,61 +125,6 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
     assert_eq!(found.verdict, MonitorVerdict::Undecided);
     assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
-}
-
-#[test]
-fn giving_way_leads_astern_of_the_other() {
-    let good = conduct(&OUT_AND_BACK, 720.0, -720.0, FRAC_PI_2, 6.0);
-    assert!(good.complies(), "{good:?}");
-    assert!(good.scores.rule_15 > Some(0.4), "{:?}", good.scores);
-    let ahead = [(0.0, 20.0), (0.6, 60.0), (-0.6, 130.0)];
-    let bad = conduct(&ahead, 720.0, -720.0, FRAC_PI_2, 6.6);
-    assert!(rules(&bad).contains(&"15"), "{bad:?}");
-    assert_eq!(violated(&bad), ["R3"]);
-    assert!(bad.scores.rule_15 < good.scores.rule_15);
-}
-
-#[test]
-fn standing_on_is_holding_on_and_never_turning_to_port() {
-    // the other gives way: it is too slow to be met
-    let held = conduct(&[(0.0, 240.0)], 760.0, 720.0, -FRAC_PI_2, 5.0);
-    assert!(held.complies(), "{held:?}");
-    assert!(held.scores.rule_17 > Some(0.3), "{held:?}");
-    let away = [(0.0, 30.0), (-0.7, 200.0)];
-    let turned = conduct(&away, 760.0, 720.0, -FRAC_PI_2, 5.0);
-    assert_eq!(rules(&turned), ["17(a)(i)"]);
-    let into_it = conduct(&[(0.0, 240.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
-    assert_eq!(rules(&into_it), ["17(b)"]);
-    // the turn does not end the role
-    assert_eq!(violated(&turned), ["R6"]);
-    // within 12 lengths it may act
-    let late = conduct(&[(0.0, 70.0), (-0.9, 100.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
-    assert!(late.complies(), "{late:?}");
-    let to_port = conduct(&mirrored(&away), 760.0, 720.0, -FRAC_PI_2, 5.0);
-    assert_eq!(rules(&to_port), ["17(c)", "17(a)(i)"]);
-    assert!(turned.scores.rule_17 < held.scores.rule_17);
-}
-
-#[test]
-fn overtaking_is_free_in_its_side_and_not_across_the_bow() {
-    let out = [(0.0, 5.0), (-0.7, 25.0), (0.7, 240.0)];
-    let far = [&out[..], &[(0.4, 60.0), (-0.4, 90.0)]].concat();
-    for legs in [far.clone(), mirrored(&far)] {
-        let c = conduct(&legs, 432.0, 0.0, 0.0, 2.4);
-        assert!(c.violations.is_empty(), "{:?}", c.violations);
-        assert!(c.scores.rule_13 > Some(0.3), "{:?}", c.scores);
-    }
-    let across = [(0.0, 5.0), (-0.5, 40.0), (0.5, 45.0), (0.7, 90.0)];
-    let c = conduct(&across, 432.0, 0.0, 0.0, 2.4);
-    assert!(rules(&c).contains(&"13"), "{c:?}");
-}
-
-#[test]
-fn many_small_turns_are_a_succession() {
-    let legs: Vec<(f64, f64)> = (0..4).map(|_| (-0.15, 8.0)).chain([(0.6, 60.0)]).collect();
-    let c = conduct(&legs, 1440.0, 0.0, PI, 6.0);
-    assert!(rules(&c).contains(&"8(b)"), "{c:?}");
-    assert_eq!(c.scores.rule_8, Some(0.0));
 }
 
 /// Turned about and moved, nothing changes; mirrored, the give-way ship stands on.
@@ -265,11 +192,18 @@ const SEAMANSHIP: &str = "
     stands on, late to port | port | 170s 60° 300s | 17(c)
     overtaken, late | astern | 200s -60° 300s |
     overtaken, turns early | astern | 30s -60° 300s | 17(a)(i) R6
+    crosses ahead | fast from starboard | 20s 34° 60s -34° 130s | 15 15 8(d) R3
+    holds on into a collision | port | 500s | 17(b) S R1
+    makes many small turns | ahead | 8s -9° 8s -9° 8s -9° 8s -9° 8s 36° 60s | 8(b)
+    overtakes to starboard | slower | 5s -40° 25s 40° 240s 23° 60s -23° 90s |
+    overtakes to port | slower | 5s 40° 25s -40° 240s -23° 60s 23° 90s |
+    overtakes and crosses ahead | slower | 5s -29° 40s 29° 45s 40° 90s | 13 8(d)
 ";
 
 /// The judges name the rules that each manoeuvre of the table breaks, and no others.
 #[test]
 fn poor_seamanship_is_caught_by_its_rule() {
+    let mut wrong = Vec::new();
     for [name, target, legs, broken] in rows(SEAMANSHIP) {
         let target = match target {
             // 400 s before the closest approach
@@ -277,12 +211,28 @@ fn poor_seamanship_is_caught_by_its_rule() {
             "ahead" => [2880.0, 0.0, PI, 6.0],
             "starboard" => [1440.0, -1440.0, FRAC_PI_2, 6.0],
             "port" => [1440.0, 1440.0, -FRAC_PI_2, 6.0],
+            "fast from starboard" => [720.0, -720.0, FRAC_PI_2, 6.6],
+            "slower" => [432.0, 0.0, 0.0, 2.4],
             _ => [-1080.0, 0.0, 0.0, 9.0],
         };
         let found = judged(legs, target);
         let violated: Vec<&str> = found.broken().collect();
-        assert_eq!(violated.join(" "), broken, "{name}: {found:?}");
+        if violated.join(" ") != broken {
+            wrong.push(format!("{name}: {violated:?}"));
+        }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn small_turns_and_a_course_ahead_of_the_target_lower_their_scores() {
+    let small = "8s -9° 8s -9° 8s -9° 8s -9° 8s 36° 60s";
+    let small = judged(small, [2880.0, 0.0, PI, 6.0]).scores;
+    assert_eq!(small.rule_8, Some(0.0));
+    let ahead = judged("20s 34° 60s -34° 130s", [720.0, -720.0, FRAC_PI_2, 6.6]).scores;
+    let passes = judged("5s -29° 40s 29° 45s 40° 90s", [432.0, 0.0, 0.0, 2.4]).scores;
+    assert!(ahead.rule_15 < ahead.rule_16, "{ahead:?}");
+    assert!(passes.rule_13 < passes.rule_16, "{passes:?}");
 }
 
 /// A turn in ample time is not late, wherever the risk began; a later one is, by the way that the

@@ -22,15 +22,7 @@ fn finite(graph: &mut Graph) -> DiGraph<usize, f64> {
     let mut arrivals: HashMap<(usize, u64), usize> = HashMap::new();
     let (mut open, mut lines) = (vec![0], Vec::new());
     while let Some(from) = open.pop() {
-        let state = State {
-            node: from,
-            from,
-            leg: None,
-            via: None,
-            met: Cell::new(None),
-            tested: Cell::new(false),
-        };
-        graph.successors(&state, &mut lines);
+        graph.successors(&State::new(from, from, None, None), &mut lines);
         for (line, cost) in lines.drain(..) {
             if graph.bound(&line).is_infinite() || graph.barrier(&line).is_some() {
                 continue;
