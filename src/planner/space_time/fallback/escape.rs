@@ -12,7 +12,7 @@ use crate::frame::{Pose, Side, Vector};
 use crate::numerics::bisected;
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
+use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls, depth_step};
 use crate::planner::space_time::land;
 use crate::planner::space_time::motion::{part, pose_at, until};
 use crate::planner::space_time::piece::pieces as parts_of;
@@ -266,15 +266,35 @@ fn exits(
             exits.push((harm, out, turn, speed));
         }
     }
-    exits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    exits.truncate(MAX_EXITS);
+    let exits = exits.into_iter().map(|(harm, out, turn, speed)| Exit {
+        motion: turned(own, speed, turn, problem.horizon),
+        out,
+        harm,
+    });
+    least_harmful(own, nominal_hulls, exits.collect())
+}
+
+/// The [`MAX_EXITS`] exits with the least harm. The soonest of the least deep ones sets the limits:
+/// slower ones may take hardly longer, and come hardly nearer to a nominal hull.
+fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
+    let Some(first) = exits.iter().min_by(|a, b| a.harm.total_cmp(&b.harm)) else {
+        return exits;
+    };
+    let soonest = first.out;
+    let nearest = nominal_hulls.nearest(own, &first.motion, soonest, f64::INFINITY);
+    let nearest = nearest - depth_step(own);
+    for exit in &mut exits {
+        exit.harm = exit.harm.with_delay(own, exit.out, soonest);
+    }
+    exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+    let keeps_off = |exit: &Exit| {
+        !exit.harm.is_soon()
+            || nominal_hulls.nearest(own, &exit.motion, exit.out, nearest) >= nearest
+    };
     exits
         .into_iter()
-        .map(|(harm, out, turn, speed)| Exit {
-            motion: turned(own, speed, turn, problem.horizon),
-            out,
-            harm,
-        })
+        .filter(keeps_off)
+        .take(MAX_EXITS)
         .collect()
 }
 
