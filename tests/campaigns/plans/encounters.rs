@@ -51,7 +51,7 @@ const UNSOLVED_AMONG: f64 = 0.01;
 /// Fraction of plans with a relaxed ship domain. Measured: 235 of 10,000.
 const REDUCED: f64 = 0.06;
 
-/// Fraction of encounters with another role than intended. Measured: none of 500 of each kind.
+/// Fraction of encounters with another role than intended. Measured: none of 2,000.
 const ANOTHER_ROLE: f64 = 0.005;
 
 /// Upper bounds in m² of the median cost of each kind, about 1.1 times the values measured with 500

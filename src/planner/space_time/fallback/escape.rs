@@ -47,7 +47,7 @@ const EXIT_HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 /// Seconds for which a turn is held where own ship is in no set and there is no plan.
 const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
-/// Exits from which plans are sought, least harm first.
+/// Exits from which plans are sought, least harm first, and as many of the soonest ones.
 const MAX_EXITS: usize = 4;
 
 /// Motions that are compared even after the deadline.
@@ -61,7 +61,7 @@ const MIN_COMPARED: usize = 12;
 /// path is too long for the horizon or leads onto land. The caller determines from when on the
 /// motion is clear of which sets.
 ///
-/// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
+/// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
 /// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
@@ -209,6 +209,7 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
 }
 
 /// Motion that is outside the sets from a time on, for as long as it is held.
+#[derive(Clone)]
 struct Exit {
     motion: Vec<Segment>,
     out: f64,
@@ -274,15 +275,18 @@ fn exits(
     least_harmful(own, nominal_hulls, exits.collect())
 }
 
-/// The [`MAX_EXITS`] exits with the least harm. The soonest of the least deep ones sets the limits:
-/// slower ones may take hardly longer, and come hardly nearer to a nominal hull.
+/// The [`MAX_EXITS`] exits with the least harm, then as many of the soonest ones: there may be a
+/// plan from these alone. The soonest of the least deep ones sets the limits: slower ones may take
+/// hardly longer, and come hardly nearer to a nominal hull.
 fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
-    let Some(first) = exits.iter().min_by(|a, b| a.harm.total_cmp(&b.harm)) else {
+    exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+    let Some(first) = exits.first() else {
         return exits;
     };
     let soonest = first.out;
     let nearest = nominal_hulls.nearest(own, &first.motion, soonest, f64::INFINITY);
     let nearest = nearest - depth_step(own);
+    let soonest_exits: Vec<Exit> = exits.iter().take(MAX_EXITS).cloned().collect();
     for exit in &mut exits {
         exit.harm = exit.harm.with_delay(own, exit.out, soonest);
     }
@@ -291,11 +295,17 @@ fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exi
         !exit.harm.is_soon()
             || nominal_hulls.nearest(own, &exit.motion, exit.out, nearest) >= nearest
     };
-    exits
+    let mut found: Vec<Exit> = exits
         .into_iter()
         .filter(keeps_off)
         .take(MAX_EXITS)
-        .collect()
+        .collect();
+    for exit in soonest_exits {
+        if found.iter().all(|other| other.motion != exit.motion) {
+            found.push(exit);
+        }
+    }
+    found
 }
 
 /// Candidate turns, radians, to port positive, each once, and whether it is one of the coarsest.
