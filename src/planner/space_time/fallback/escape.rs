@@ -213,6 +213,8 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
 struct Exit {
     motion: Vec<Segment>,
     out: f64,
+    /// When it meets another set, seconds; infinite if it meets none.
+    clear_until: f64,
     harm: Harm,
 }
 
@@ -241,9 +243,10 @@ fn exits(
         -slacks.fold(f64::INFINITY, f64::min)
     };
     let fastest = held.iter().map(|h| h.speed()).fold(0.0, f64::max);
-    let meets = |any: &[&Proxy], motion: &[Segment]| {
-        let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
-        pairs.any(|(h, s)| h.first_contact(s).is_some())
+    let met = |any: &[&Proxy], motion: &[Segment]| {
+        let pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
+        let times = pairs.filter_map(|(h, s)| h.first_contact(s));
+        times.fold(f64::INFINITY, f64::min)
     };
     let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
@@ -255,24 +258,23 @@ fn exits(
             let Some(out) = exit_time(&motion, problem.horizon, speed + fastest, depth) else {
                 continue;
             };
-            let before = until(&motion, out);
+            let clear_until = met(&others, &motion);
             // own ship may enter a growing set again: then it has not left for good
-            if meets(&others, &before)
-                || meets(&held, &part(&motion, out, f64::INFINITY))
-                || land::meets(problem.land_obstacle, &before)
+            if clear_until <= out
+                || met(&held, &part(&motion, out, f64::INFINITY)).is_finite()
+                || land::meets(problem.land_obstacle, &until(&motion, out))
             {
                 continue;
             }
-            let harm = Harm::of(own, nominal_hulls, &motion, out, depth);
-            exits.push((harm, out, turn, speed));
+            exits.push(Exit {
+                harm: Harm::of(own, nominal_hulls, &motion, out, depth),
+                motion,
+                out,
+                clear_until,
+            });
         }
     }
-    let exits = exits.into_iter().map(|(harm, out, turn, speed)| Exit {
-        motion: turned(own, speed, turn, problem.horizon),
-        out,
-        harm,
-    });
-    least_harmful(own, nominal_hulls, exits.collect())
+    least_harmful(own, nominal_hulls, exits)
 }
 
 /// The [`MAX_EXITS`] exits with the least harm, then as many of the soonest ones: there may be a
@@ -330,15 +332,19 @@ fn turns() -> impl Iterator<Item = (f64, bool)> {
     })
 }
 
-/// Initial motions: every exit held for a while; none where own ship is in no set.
+/// Initial motions: every exit held for a while, those first that meet no other set meanwhile; none
+/// where own ship is in no set.
 fn exit_motions(exits: &[Exit]) -> Vec<Vec<Segment>> {
     if exits.is_empty() {
         return vec![Vec::new()];
     }
     let held = exits
         .iter()
-        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, hold)));
-    held.map(|(exit, hold)| until(&exit.motion, exit.out + hold))
+        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, exit.out + hold)));
+    let (clear, others): (Vec<_>, Vec<_>) = held.partition(|(exit, end)| *end <= exit.clear_until);
+    let motions = clear.into_iter().chain(others);
+    motions
+        .map(|(exit, end)| until(&exit.motion, end))
         .collect()
 }
 
