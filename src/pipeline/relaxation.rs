@@ -459,7 +459,11 @@ impl Relaxer<'_> {
     /// attempt is returned unchanged.
     fn leaving_sets(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
-        let problem = self.problem(&hard);
+        let mut problem = self.problem(&hard);
+        // few changes of speed are preferred over the cost
+        if self.scenario.settings.tidy != Some(false) {
+            problem.tidy = Some(self.scenario.settings.tidiness);
+        }
         let own = self.scenario.own_ship.hull;
         let targets = self.scenario.targets.iter().zip(&hard);
         let nominal: Vec<_> = targets

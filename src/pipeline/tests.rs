@@ -331,6 +331,25 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
     assert!(judged.min_clearance > start - 1.0, "{start}");
 }
 
+/// At full speed own ship would leave the set 1.7 s earlier. It leaves at its least speed, comes no
+/// nearer to the other ship than at the start, and then sails at one speed.
+#[test]
+fn out_of_a_set_the_lowest_speed_that_is_about_as_soon_and_then_few_changes() {
+    let run = run(fault("leaves-slowly.toml"));
+    assert_eq!(run.level, RelaxationLevel::Inside);
+    let [Some(until), None, None] = released(&run)[..] else {
+        panic!("{:?}", released(&run));
+    };
+    assert!((9.0..10.5).contains(&until), "{until}");
+    let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
+    assert_eq!(trajectory.speed_at(0.9 * until), 1.0);
+    assert!(changes_of_speed(trajectory) <= 2);
+    let judged = run.evaluation.expect("judged");
+    assert!(judged.verified());
+    assert!(judged.passages[0].dcpa > 25.0);
+    assert!(judged.min_clearance > 8.0, "{}", judged.min_clearance);
+}
+
 /// The last level: own ship is enclosed for ever and continues; nothing is claimed of what it runs
 /// into.
 #[test]

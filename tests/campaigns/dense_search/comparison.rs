@@ -22,6 +22,10 @@ const WORTH_FINDING: f64 = 200_000.0;
 /// Maximum ratio of J to that of the dense search.
 const WORST_RATIO: f64 = 1.10;
 
+/// Maximum ratios among several targets, of A* and of the thorough search: 90th percentile, worst.
+/// With 60 scenes of four targets: 1.02 and 1.16, and 1.00 and 1.16.
+const AMONG_SEVERAL: [[f64; 2]; 2] = [[1.06, 1.25], [1.04, 1.25]];
+
 /// Runs the coarse search, then the fine search below its cost; the fine one takes ten times as
 /// long.
 fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
@@ -75,7 +79,10 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         println!(
             "{name}: J over the least that any search found: median {half:.3}, 90 % {most:.3}, worst {worst:.3}"
         );
-        report.require(k == 0 || most <= WORST_RATIO, || format!("{ratios:?}"));
+        let [most_allowed, worst_allowed] = AMONG_SEVERAL[k];
+        report.require(most <= most_allowed && worst <= worst_allowed, || {
+            format!("{name}: {ratios:?}")
+        });
     }
     let short = compared.iter().filter(|c| !c.3).count();
     let (all, found) = (seeds.len(), compared.len());

@@ -214,9 +214,12 @@ fn ways(network: &PathNetwork) -> Vec<Vec<Vector>> {
     ways
 }
 
+/// Grid steps by which the best motion on the grid may be later on the mean. Measured: 0.23.
+const STEPS_LATER: f64 = 0.35;
+
 /// The least time is that of a fine grid, and Dijkstra finds it too.
 fn least_time(seeds: Seeds, report: &mut Report) {
-    let (mut solved, mut waited, mut on_grid, mut gap) = (0, 0, 0, 0.0);
+    let (mut solved, mut waited, mut on_grid, mut gap) = (0, 0, 0_u32, 0.0);
     let count = seeds.clone().count();
     for seed in seeds {
         let drawn = draw(seed, Kinds::Exact);
@@ -250,11 +253,14 @@ fn least_time(seeds: Seeds, report: &mut Report) {
         assert!(off < 1e-9, "{seed}: {arrival}, by Dijkstra {off} off");
         assert!(dijkstra.stats.expanded >= planned.stats.expanded, "{seed}");
     }
+    let gap = gap / f64::from(on_grid);
     println!(
-        "{count} scenes: {solved} with a plan, {waited} of them late; the grid arrives {:.2} of its \
-         steps later on the mean",
-        gap / f64::from(on_grid)
+        "{count} scenes: {solved} with a plan, {waited} of them late; the grid arrives {gap:.2} of its \
+         steps later on the mean"
     );
+    report.require(gap <= STEPS_LATER, || {
+        format!("the grid arrives {gap:.2} of its steps later")
+    });
     let enough = solved * 2 > count && waited * 5 > solved;
     report.require(enough && on_grid as usize * 10 > solved * 9, || {
         format!("{solved} plans, {waited} late, {on_grid} on the grid")

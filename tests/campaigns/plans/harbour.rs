@@ -23,6 +23,10 @@ use crate::campaigns::{Report, Seeds};
 
 const TARGETS: usize = 3;
 
+/// Least fraction of the plans across the island that pass land within twice the margin: others do
+/// not test it. Measured: 9 of 10. In the fjord and along the quays none of 20 does.
+const NEAR_LAND: f64 = 0.8;
+
 pub fn harbour() -> Arc<Map> {
     let origin = Geographic::new(63.444, 10.39);
     let earth = Georeference::new(origin).expect("valid");
@@ -168,10 +172,15 @@ pub fn run(seeds: Seeds) -> Report {
     let mut report = Report::default();
     for waters in [&FJORD, &QUAYS] {
         let scenes = seeds.clone().map(|seed| scene(&map, waters, seed));
-        judge(waters.name, scenes.collect(), &mut report);
+        judge(waters.name, scenes.collect(), 0.0, &mut report);
     }
     let island = seeds.filter_map(|seed| across_the_island(&map, seed));
-    judge("across the island", island.collect(), &mut report);
+    judge(
+        "across the island",
+        island.collect(),
+        NEAR_LAND,
+        &mut report,
+    );
     report
 }
 
@@ -232,7 +241,7 @@ pub fn sail_all(seeds: Seeds) -> Report {
     report
 }
 
-fn judge(name: &str, scenes: Vec<Scenario>, report: &mut Report) {
+fn judge(name: &str, scenes: Vec<Scenario>, near_land: f64, report: &mut Report) {
     let all = scenes.len();
     let (mut solved, mut near) = (0, 0);
     let (mut times, mut costs) = (Vec::new(), Vec::new());
@@ -258,5 +267,8 @@ fn judge(name: &str, scenes: Vec<Scenario>, report: &mut Report) {
     println!("  space-time error, m²  {}", spread(&costs));
     report.require(20 * solved >= 19 * all, || {
         format!("{name}: {solved} of {all} solved")
+    });
+    report.require(near as f64 >= near_land * solved as f64, || {
+        format!("{name}: {near} of {solved} within twice the land margin")
     });
 }

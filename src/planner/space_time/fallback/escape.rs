@@ -12,7 +12,7 @@ use crate::frame::{Pose, Side, Vector};
 use crate::numerics::bisected;
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
+use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls, depth_step};
 use crate::planner::space_time::land;
 use crate::planner::space_time::motion::{part, pose_at, until};
 use crate::planner::space_time::piece::pieces as parts_of;
@@ -47,7 +47,7 @@ const EXIT_HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 /// Seconds for which a turn is held where own ship is in no set and there is no plan.
 const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
-/// Exits from which plans are sought, least harm first.
+/// Exits from which plans are sought, least harm first, and as many of the soonest ones.
 const MAX_EXITS: usize = 4;
 
 /// Motions that are compared even after the deadline.
@@ -61,7 +61,7 @@ const MIN_COMPARED: usize = 12;
 /// path is too long for the horizon or leads onto land. The caller determines from when on the
 /// motion is clear of which sets.
 ///
-/// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
+/// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
 /// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
@@ -209,9 +209,12 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
 }
 
 /// Motion that is outside the sets from a time on, for as long as it is held.
+#[derive(Clone)]
 struct Exit {
     motion: Vec<Segment>,
     out: f64,
+    /// When it meets another set, seconds; infinite if it meets none.
+    clear_until: f64,
     harm: Harm,
 }
 
@@ -240,9 +243,10 @@ fn exits(
         -slacks.fold(f64::INFINITY, f64::min)
     };
     let fastest = held.iter().map(|h| h.speed()).fold(0.0, f64::max);
-    let meets = |any: &[&Proxy], motion: &[Segment]| {
-        let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
-        pairs.any(|(h, s)| h.first_contact(s).is_some())
+    let met = |any: &[&Proxy], motion: &[Segment]| {
+        let pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
+        let times = pairs.filter_map(|(h, s)| h.first_contact(s));
+        times.fold(f64::INFINITY, f64::min)
     };
     let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
@@ -254,28 +258,56 @@ fn exits(
             let Some(out) = exit_time(&motion, problem.horizon, speed + fastest, depth) else {
                 continue;
             };
-            let before = until(&motion, out);
+            let clear_until = met(&others, &motion);
             // own ship may enter a growing set again: then it has not left for good
-            if meets(&others, &before)
-                || meets(&held, &part(&motion, out, f64::INFINITY))
-                || land::meets(problem.land_obstacle, &before)
+            if clear_until <= out
+                || met(&held, &part(&motion, out, f64::INFINITY)).is_finite()
+                || land::meets(problem.land_obstacle, &until(&motion, out))
             {
                 continue;
             }
-            let harm = Harm::of(own, nominal_hulls, &motion, out, depth);
-            exits.push((harm, out, turn, speed));
+            exits.push(Exit {
+                harm: Harm::of(own, nominal_hulls, &motion, out, depth),
+                motion,
+                out,
+                clear_until,
+            });
         }
     }
-    exits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    exits.truncate(MAX_EXITS);
-    exits
+    least_harmful(own, nominal_hulls, exits)
+}
+
+/// The [`MAX_EXITS`] exits with the least harm, then as many of the soonest ones: there may be a
+/// plan from these alone. The soonest of the least deep ones sets the limits: slower ones may take
+/// hardly longer, and come hardly nearer to a nominal hull.
+fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
+    exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+    let Some(first) = exits.first() else {
+        return exits;
+    };
+    let soonest = first.out;
+    let nearest = nominal_hulls.nearest(own, &first.motion, soonest, f64::INFINITY);
+    let nearest = nearest - depth_step(own);
+    let soonest_exits: Vec<Exit> = exits.iter().take(MAX_EXITS).cloned().collect();
+    for exit in &mut exits {
+        exit.harm = exit.harm.with_delay(own, exit.out, soonest);
+    }
+    exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+    let keeps_off = |exit: &Exit| {
+        !exit.harm.is_soon()
+            || nominal_hulls.nearest(own, &exit.motion, exit.out, nearest) >= nearest
+    };
+    let mut found: Vec<Exit> = exits
         .into_iter()
-        .map(|(harm, out, turn, speed)| Exit {
-            motion: turned(own, speed, turn, problem.horizon),
-            out,
-            harm,
-        })
-        .collect()
+        .filter(keeps_off)
+        .take(MAX_EXITS)
+        .collect();
+    for exit in soonest_exits {
+        if found.iter().all(|other| other.motion != exit.motion) {
+            found.push(exit);
+        }
+    }
+    found
 }
 
 /// Candidate turns, radians, to port positive, each once, and whether it is one of the coarsest.
@@ -300,15 +332,19 @@ fn turns() -> impl Iterator<Item = (f64, bool)> {
     })
 }
 
-/// Initial motions: every exit held for a while; none where own ship is in no set.
+/// Initial motions: every exit held for a while, those first that meet no other set meanwhile; none
+/// where own ship is in no set.
 fn exit_motions(exits: &[Exit]) -> Vec<Vec<Segment>> {
     if exits.is_empty() {
         return vec![Vec::new()];
     }
     let held = exits
         .iter()
-        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, hold)));
-    held.map(|(exit, hold)| until(&exit.motion, exit.out + hold))
+        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, exit.out + hold)));
+    let (clear, others): (Vec<_>, Vec<_>) = held.partition(|(exit, end)| *end <= exit.clear_until);
+    let motions = clear.into_iter().chain(others);
+    motions
+        .map(|(exit, end)| until(&exit.motion, end))
         .collect()
 }
 

@@ -26,14 +26,26 @@ const SAMPLE_BEAMS: f64 = 0.25;
 const MANY: u32 = 1000;
 const MANY_WHEN_LATE: u32 = 50;
 
+/// Resolution of depths and distances, metres.
+pub(crate) fn depth_step(own: &OwnShip) -> f64 {
+    (DEPTH_STEP * own.hull.length).max(LEAST_STEP_M)
+}
+
+/// Logarithm of a ratio of times, in steps.
+fn time_steps(ratio: f64) -> f64 {
+    ratio.ln() / (1.0 + TIME_STEP).ln()
+}
+
 /// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
-/// time in the sets, speed, turn.
+/// delay, speed, time in the sets, turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Harm {
     /// Depth in nominal hulls, in steps; 0 where none is met.
     hulls: f64,
     /// Depth in the sets beyond that at the start, in steps.
     sets: f64,
+    /// Logarithm of the delay, in steps; 0 for an exit that is about as soon as the soonest.
+    delay: f64,
     /// Logarithm of the time in the sets, in steps.
     time: f64,
     /// m/s.
@@ -51,7 +63,7 @@ impl Harm {
         out: f64,
         depth: impl Fn(&Pose, f64) -> f64,
     ) -> Self {
-        let step = (DEPTH_STEP * own.hull.length).max(LEAST_STEP_M);
+        let step = depth_step(own);
         let steps = |metres: f64| (metres / step).ceil();
         let start = depth(&own.pose, 0.0);
         let mut deepest = start;
@@ -65,10 +77,28 @@ impl Harm {
         Self {
             hulls: steps(nominal_hulls.depth(own, motion, out)),
             sets: ((deepest - start) / step).floor(),
-            time: (out.ln() / (1.0 + TIME_STEP).ln()).floor(),
+            delay: time_steps(out).floor(),
+            time: time_steps(out).floor(),
             speed: first.speed,
             turn: first.turn_rate.abs() * first.duration,
         }
+    }
+
+    /// Counts the delay from another exit on, which leaves the sets at `soonest`. This one is about
+    /// as soon where it takes at most a step longer, or at most the time in which own ship sails
+    /// its length: own hull needs as long to cross the edge of a set.
+    pub(crate) fn with_delay(self, own: &OwnShip, out: f64, soonest: f64) -> Self {
+        let length = own.hull.length / own.max_speed();
+        let soon = (soonest * (1.0 + TIME_STEP)).max(soonest + length);
+        Self {
+            delay: time_steps(out / soon).ceil().max(0.0),
+            ..self
+        }
+    }
+
+    /// True where the exit is about as soon as the soonest.
+    pub(crate) fn is_soon(&self) -> bool {
+        self.delay == 0.0
     }
 
     /// True where no nominal hull is met.
@@ -77,7 +107,7 @@ impl Harm {
     }
 
     pub(crate) fn total_cmp(&self, other: &Self) -> Ordering {
-        let key = |h: &Self| [h.hulls, h.sets, h.time, h.speed, h.turn];
+        let key = |h: &Self| [h.hulls, h.sets, h.delay, h.speed, h.time, h.turn];
         let both = key(self).into_iter().zip(key(other));
         both.map(|(a, b)| a.total_cmp(&b))
             .find(|order| order.is_ne())
@@ -103,15 +133,26 @@ impl<'a> NominalHulls<'a> {
         }
     }
 
-    /// Largest depth of own hull in one of them until a time, metres; 0 where it meets none. The
-    /// sampling interval follows from the largest closing speed.
+    /// Largest depth of own hull in one of them until a time, metres; 0 where it meets none.
     pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
+        0.0 - self.nearest(own, motion, until, 0.0)
+    }
+
+    /// Least distance of own hull from them until a time, metres, negative where it meets one; at
+    /// most `enough`. The sampling interval follows from the largest closing speed.
+    pub(crate) fn nearest(
+        &self,
+        own: &OwnShip,
+        motion: &[Segment],
+        until: f64,
+        enough: f64,
+    ) -> f64 {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
         let many = match self.clock.is_up() {
             true => MANY_WHEN_LATE,
             false => MANY,
         };
-        let mut deepest: f64 = 0.0;
+        let mut nearest = enough;
         for (proxy, hull) in &self.hulls {
             let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
             let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
@@ -130,8 +171,8 @@ impl<'a> NominalHulls<'a> {
                 let apart = proxy
                     .clearance_of(hull, &segment.pose_at(time), time)
                     .unwrap_or(f64::INFINITY);
-                deepest = deepest.max(-apart);
-                let next = time + (apart + deepest).max(least) / closing;
+                nearest = nearest.min(apart);
+                let next = time + (apart - nearest).max(least) / closing;
                 // the next segment may be faster
                 time = if next > segment.end_time() && time < segment.end_time() {
                     segment.end_time()
@@ -143,6 +184,6 @@ impl<'a> NominalHulls<'a> {
                 }
             }
         }
-        deepest
+        nearest
     }
 }
