@@ -94,23 +94,19 @@ impl<'a> Table<'a> {
         self.require(key, range)?.number(range)
     }
 
-    /// The value of a key, or `default` where the key is absent; `None` for a fault.
+    /// The value of a key, or `default` where the key is absent or its value is a fault.
     pub(crate) fn read_or<T>(
         &mut self,
         key: &str,
         default: T,
         read: impl FnOnce(&Field<'a>) -> Option<T>,
-    ) -> Option<T> {
-        self.take(key).map_or(Some(default), |field| read(&field))
+    ) -> T {
+        let found = self.take(key).and_then(|field| read(&field));
+        found.unwrap_or(default)
     }
 
-    /// A number that may be absent; the outer `None` is a fault.
-    pub(crate) fn optional_number(&mut self, key: &str, range: Range) -> Option<Option<f64>> {
-        self.read_or(key, None, |field| field.number(range).map(Some))
-    }
-
-    /// A number, or `default` where the key is absent; `None` for a fault.
-    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> Option<f64> {
+    /// A number, or `default` where the key is absent or its value is a fault.
+    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> f64 {
         self.read_or(key, default, |field| field.number(range))
     }
 
