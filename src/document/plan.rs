@@ -138,7 +138,7 @@ impl PlanDocument {
             violations: (run.evaluation.as_ref())
                 .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
             cost: cost(run),
-            search_stats: stats(run),
+            search_stats: run.planned.stats,
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
@@ -322,14 +322,6 @@ fn turn(turn: Alteration) -> TurnDocument {
         side: turn.side.to_string(),
         turn_deg: turn.degrees,
         t_s: turn.start,
-    }
-}
-
-pub(crate) fn stats(run: &Run) -> SearchStatsDocument {
-    SearchStatsDocument {
-        expanded: run.planned.stats.expanded,
-        generated: run.planned.stats.generated,
-        edges_checked: run.planned.stats.edges_checked,
     }
 }
 

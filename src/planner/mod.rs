@@ -241,7 +241,7 @@ impl<'a> Problem<'a> {
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// Search statistics up to the cheapest plan on the graph.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SearchStats {
     /// Expanded nodes.
     pub expanded: usize,
