@@ -37,7 +37,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> 
 fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
     let scenario = open_one(&args.scenario, &args.assumed, output)
-        .and_then(|scene| scene.scenario().map_err(|error| error.to_string()))
+        .and_then(|scene| scene.scenario().map_err(|refused| refused.error))
         .map_err(|error| errors.push(error));
     let mut points = args.at.clone();
     if let Some(file) = &args.points {

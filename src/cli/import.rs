@@ -33,7 +33,7 @@ pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> 
     for scene in scenes {
         let reached = match scene {
             Ok(scene) => one(&scene, args, output),
-            Err(unread) => output.refuse(&unread.error),
+            Err(refused) => output.refused(&refused),
         };
         status = status.max(reached);
     }
@@ -50,7 +50,7 @@ fn one(scene: &Scene, args: &ImportArgs, output: &Output) -> ExitStatus {
             return ExitStatus::Good;
         }
         Some(Ok(imported)) => imported,
-        Some(Err(error)) => return output.refuse(&error),
+        Some(Err(refused)) => return output.refused(&refused),
     };
     let file = args.out.join(format!("{}.toml", scene.found.stem));
     match write_atomically(&file, imported.text.as_bytes()) {

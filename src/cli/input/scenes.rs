@@ -8,7 +8,7 @@ use searoom::scenario::{FILE_MEBIBYTES, Fault, Scenario, ScenarioError};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
-use super::files::{self, Found, SEPARATOR, Unread};
+use super::files::{self, Found, Refused, SEPARATOR};
 
 /// Scenario whose text is read but not yet checked.
 #[derive(Debug)]
@@ -36,7 +36,7 @@ pub struct Made {
 
 impl Scene {
     /// Builds the scenario.
-    pub fn scenario(&self) -> Result<Made, ScenarioError> {
+    pub fn scenario(&self) -> Result<Made, Refused> {
         let made = match &self.source {
             Source::Situation(situation, assumed) => situation.scenario(assumed).map(|i| Made {
                 scenario: i.scenario,
@@ -53,12 +53,13 @@ impl Scene {
         made.map_err(|faults| self.refused(faults))
     }
 
-    fn refused(&self, faults: Vec<Fault>) -> ScenarioError {
-        ScenarioError::faults(&self.found.file, faults)
+    fn refused(&self, faults: Vec<Fault>) -> Refused {
+        let file = &self.found.file;
+        Refused::unreadable(file, ScenarioError::faults(file, faults))
     }
 
     /// Builds the scenario of an imported file with its text; `None` for a scenario file.
-    pub fn imported(&self) -> Option<Result<Imported, ScenarioError>> {
+    pub fn imported(&self) -> Option<Result<Imported, Refused>> {
         let Source::Situation(situation, assumed) = &self.source else {
             return None;
         };
@@ -91,20 +92,20 @@ pub fn open(
     paths: &[PathBuf],
     assumed: &AssumedArgs,
     output: &Output,
-) -> Vec<Result<Scene, Unread>> {
+) -> Vec<Result<Scene, Refused>> {
     let assumed = assumed.assumed();
     let mut scenes = Vec::new();
     for entry in files::find(paths, &files::SCENARIOS, output) {
         match entry {
             Ok(found) => of_file(&found, &assumed, output, &mut scenes),
-            Err(unread) => scenes.push(Err(unread)),
+            Err(refused) => scenes.push(Err(refused)),
         }
     }
     scenes
 }
 
 /// The files of the scenes.
-pub fn found(scenes: &[Result<Scene, Unread>]) -> Vec<Found> {
+pub fn found(scenes: &[Result<Scene, Refused>]) -> Vec<Found> {
     scenes.iter().flatten().map(|s| s.found.clone()).collect()
 }
 
@@ -112,18 +113,17 @@ fn of_file(
     found: &Found,
     assumed: &Assumed,
     output: &Output,
-    scenes: &mut Vec<Result<Scene, Unread>>,
+    scenes: &mut Vec<Result<Scene, Refused>>,
 ) {
     let file = &found.file;
-    let unread = |error: String| Unread {
-        file: file.clone(),
-        error,
-    };
     let text = match read_text(file, FILE_MEBIBYTES, "a scenario file") {
         Ok(text) => text,
-        Err(error) => return scenes.push(Err(unread(error.to_string()))),
+        Err(error) => return scenes.push(Err(Refused::unreadable(file, error))),
     };
-    let wrong = |faults| Err(unread(ScenarioError::faults(file, faults).to_string()));
+    let wrong = |faults| {
+        let error = ScenarioError::faults(file, faults);
+        Err(Refused::unreadable(file, error))
+    };
     match Contents::parse(&text, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),
@@ -143,8 +143,8 @@ fn of_file(
             output.note(&format_args!("{}: {what}, left out", file.display()));
         }
         Ok(Contents::Other(what)) => {
-            let error = format!("{}: {what}; no scenario in it", file.display());
-            scenes.push(Err(unread(error)));
+            let error = format_args!("{}: {what}; no scenario in it", file.display());
+            scenes.push(Err(Refused::unreadable(file, error)));
         }
         Err(faults) => scenes.push(wrong(faults)),
     }
@@ -161,7 +161,7 @@ pub fn open_one(file: &Path, assumed: &AssumedArgs, output: &Output) -> Result<S
     let mut scenes = open(&[file.to_owned()], assumed, output);
     match (scenes.pop(), scenes.len()) {
         (Some(Ok(scene)), 0) => Ok(scene),
-        (Some(Err(unread)), 0) => Err(unread.error),
+        (Some(Err(refused)), 0) => Err(refused.error),
         (None, _) => Err(format!("{name}: no scenario in it")),
         (_, more) => Err(format!(
             "{name}: {} situations; `searoom suite` runs them",

@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
+use super::input::files::Refused;
 use products::Failure;
 use status::ExitStatus;
 
@@ -110,6 +111,12 @@ impl Output {
     pub fn refuse(&self, error: &impl Display) -> ExitStatus {
         self.error(error);
         ExitStatus::BadInput
+    }
+
+    /// Prints why a file has no result.
+    pub fn refused(&self, refused: &Refused) -> ExitStatus {
+        self.error(&refused.error);
+        refused.status()
     }
 
     /// Prints an internal fault.

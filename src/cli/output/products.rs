@@ -13,7 +13,7 @@ use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
-use super::super::input::files::{Found, refuse_clashes, shown};
+use super::super::input::files::{Found, Refused, refuse_clashes, shown};
 use super::super::runner::guarded;
 use super::status::ExitStatus;
 use super::{Output, json};
@@ -317,8 +317,9 @@ pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// Adds a failure to a report, which shows files without the folders of this machine.
-pub fn report_failure(report: &mut HtmlReport, file: &Path, outcome: &str, error: &str) {
+pub fn report_failure(report: &mut HtmlReport, refused: &Refused) {
+    let Refused { file, error, .. } = refused;
     let name = shown(file);
     let error = error.replace(&file.display().to_string(), &name);
-    report.add_failure(&name, outcome, &error);
+    report.add_failure(&name, refused.outcome, &error);
 }
