@@ -19,8 +19,6 @@ macro_rules! words {
 
 /// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
-
-/// Most characters of a line.
 const CHARS: usize = 200;
 
 /// True for a text of allowed length that is not blank and has no control characters.

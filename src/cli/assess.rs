@@ -16,7 +16,6 @@ use super::output::products::prepare_figure;
 use super::output::status::ExitStatus;
 use super::runner::guarded;
 
-/// Assesses one file.
 pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
     args.figure.as_deref().map_or(Ok(()), prepare_figure)?;

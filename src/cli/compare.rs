@@ -18,7 +18,6 @@ use super::output::status::ExitStatus;
 use super::output::{Output, csv};
 use super::runner::{guarded, guarded_on};
 
-/// Scenario with its candidates and their results.
 struct Compared {
     file: PathBuf,
     stem: String,
@@ -117,7 +116,6 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-/// Runs all candidates of all scenarios in parallel.
 fn run(asked: &mut [Result<Compared, Refused>], output: &Output) {
     let jobs: Vec<(usize, &Compared, Candidate)> = (asked.iter().enumerate())
         .filter_map(|(index, compared)| Some((index, compared.as_ref().ok()?)))
@@ -147,7 +145,6 @@ fn run(asked: &mut [Result<Compared, Refused>], output: &Output) {
     }
 }
 
-/// Builds the part of the document for one file.
 fn document(compared: &Result<Compared, Refused>) -> ScenarioComparisonDocument {
     match compared {
         Ok(c) => {
@@ -178,7 +175,6 @@ impl Compared {
     }
 }
 
-/// Writes the requested files.
 fn write(
     args: &CompareArgs,
     asked: &[Result<Compared, Refused>],

@@ -24,7 +24,6 @@ use clap::Parser;
 use args::{Arguments, Command};
 use output::Output;
 
-/// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     runner::keep_panics_quiet();
     let arguments = match Arguments::try_parse() {

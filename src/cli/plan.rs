@@ -19,7 +19,6 @@ use super::output::products::{Failure, Products, make_parent};
 use super::output::status::ExitStatus;
 use super::runner::{Previous, attempt};
 
-/// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
@@ -73,7 +72,6 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     })
 }
 
-/// A route that is asked for.
 struct Route<'a> {
     file: &'a Path,
     format: RouteFormat,

@@ -78,7 +78,6 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// A plan that own ship follows.
 pub struct Previous {
     pub file: PathBuf,
     pub plan: PlanDocument,

@@ -141,7 +141,6 @@ impl StartDocument {
     }
 }
 
-/// The segment of a document.
 pub(crate) fn segment(document: &SegmentDocument) -> Segment {
     Segment::new(
         document.start.pose(),

@@ -290,7 +290,6 @@ pub(crate) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluatio
     }
 }
 
-/// Costs of any motion.
 pub(crate) fn cost_of(
     trajectory: &Trajectory,
     evaluation: &Evaluation,
@@ -369,7 +368,6 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     }
 }
 
-/// Node at exactly this time.
 fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     let node = motion.node_at(time);
     (node.time == time).then(|| NodeDocument {

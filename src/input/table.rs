@@ -55,7 +55,6 @@ impl<'a> Table<'a> {
         self.take(key).is_some()
     }
 
-    /// The value of a key that may be absent.
     pub(crate) fn take(&mut self, key: &str) -> Option<Field<'a>> {
         if !self.known.iter().any(|known| known == key) {
             self.known.push(key.to_owned());
@@ -63,7 +62,6 @@ impl<'a> Table<'a> {
         self.field.get(key)
     }
 
-    /// The value of a key that must be there.
     pub(crate) fn require(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
         let field = self.take(key);
         if field.is_none() {
@@ -79,17 +77,14 @@ impl<'a> Table<'a> {
         self.field.require(key, allowed)
     }
 
-    /// The table at a key that must be there.
     pub(crate) fn required_table(&mut self, key: &str) -> Option<Table<'a>> {
         self.require(key, "a table")?.table("a table")
     }
 
-    /// A number that may be absent.
     pub(crate) fn number(&mut self, key: &str, range: Range) -> Option<f64> {
         self.take(key)?.number(range)
     }
 
-    /// A number that must be there.
     pub(crate) fn required_number(&mut self, key: &str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }

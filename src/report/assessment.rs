@@ -171,7 +171,6 @@ fn number(value: f64) -> String {
     (value + 0.0).to_string()
 }
 
-/// Formats a table without colours.
 fn table(
     header: &'static str,
     numbers: std::ops::Range<usize>,

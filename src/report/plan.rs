@@ -14,14 +14,10 @@ use crate::text::{counted, printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
-
-/// Maximum number of legs that are listed.
 const MOST_LEGS: usize = 40;
 
 /// Least turn that a table of legs shows, degrees.
 const LEAST_TURN_DEG: f64 = 0.05;
-
-/// Column name of the planning time.
 pub(super) const TIME_COLUMN: &str = "time\n[ms]";
 
 /// Formats a table with one row per scenario. Colour only when `colour`.
@@ -112,7 +108,6 @@ pub(super) fn milliseconds(timing: TimingDocument) -> String {
     format!("{:.2}", 1e3 * timing.plan_s)
 }
 
-/// The broken rules of both judges.
 pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
     match broken {
         None => or_dash(None),

@@ -7,7 +7,6 @@ use crate::document::{
 };
 use crate::text::tenths;
 
-/// Name of the line with the planning times.
 pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.

@@ -13,7 +13,6 @@ pub(super) enum Tone {
     Bad,
 }
 
-/// Text with its rating.
 pub(super) type Styled = (String, Tone);
 
 /// Column names of a table, from a text with `, ` between them.
@@ -21,7 +20,6 @@ pub(super) fn columns(names: &'static str) -> Vec<&'static str> {
     names.split(", ").collect()
 }
 
-/// Rows under named columns.
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
@@ -81,7 +79,6 @@ impl Grid {
     }
 }
 
-/// Escapes a text for a markdown cell.
 pub(super) fn in_cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
@@ -97,12 +94,10 @@ fn cell((text, tone): &Styled) -> Cell {
     }
 }
 
-/// Text without a rating.
 pub(super) fn plain(text: impl Into<String>) -> Styled {
     (text.into(), Tone::Plain)
 }
 
-/// Text, or a dash if there is none.
 pub(super) fn or_dash(text: Option<String>) -> Styled {
     plain(text.unwrap_or_else(|| "–".to_owned()))
 }

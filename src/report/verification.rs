@@ -5,7 +5,6 @@ use crate::evaluation::{Violation, facts, outcome_word, skipped_waypoints};
 use crate::text::{counted, printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
 
-/// Maximum number of violations listed; the rest is counted.
 const LISTED: usize = 20;
 
 /// The first violations, one line each, and the number of the others.

@@ -237,7 +237,6 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-/// The desired trajectory and the alternative paths.
 struct Mission {
     desired: DesiredTrajectory,
     alternatives: Vec<Vec<Vector>>,

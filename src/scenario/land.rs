@@ -13,8 +13,6 @@ use crate::vessel::{Hull, OwnShip};
 
 /// Metres: resolution of the room for a turn on the spot, which is never overestimated.
 const TURN_SETTLED_M: f64 = 1e-3;
-
-/// Faults of a path that are listed.
 const MAX_LISTED: usize = 20;
 
 /// Land, and the margin that own ship keeps from it.

@@ -137,7 +137,6 @@ fn force_limits(field: &Field) -> Option<ForceVector> {
     Some(ForceVector::new(surge?, sway?, yaw?))
 }
 
-/// A list of exactly `N` weights.
 fn weights<const N: usize>(field: &Field, range: Range) -> Option<[f64; N]> {
     let numbers = field.numbers(range)?;
     let count = numbers.len();

@@ -331,7 +331,6 @@ pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> Sim
 }
 
 fn vessel(field: &Field) -> Option<VesselModel> {
-    /// Reads the other keys of a kind.
     type Read = fn(&mut Table) -> VesselModel;
     const KINDS: [(&str, Read); 3] = [
         ("kinematic", |_| VesselModel::Kinematic),
@@ -495,9 +494,7 @@ fn not_reported(field: &Field) -> Option<NotReported> {
     Some(found)
 }
 
-/// The table `behaviour` of a target.
 fn behaviour(field: &Field, plane: &Plane) -> Option<Behaviour> {
-    /// Reads the other keys of a kind.
     type Read = fn(&mut Table, &Plane) -> Option<Behaviour>;
     const KINDS: [(&str, Read); 7] = [
         ("constant", |_, _| Some(Behaviour::Constant)),

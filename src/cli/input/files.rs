@@ -14,10 +14,8 @@ use super::super::output::status::ExitStatus;
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";
 
-/// Requested file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// File path.
     pub file: PathBuf,
     /// Name of its outputs without extension: the path relative to the argument with "/" as "__".
     pub stem: String,
@@ -71,13 +69,11 @@ pub struct FileKind {
     endings: &'static [&'static str],
 }
 
-/// Scenario files, and files of imported formats.
 pub const SCENARIOS: FileKind = FileKind {
     name: "scenarios (.toml, .json or .xml files)",
     endings: &["toml", "json", "xml"],
 };
 
-/// Plan documents, and recordings that hold one.
 pub const PLANS: FileKind = FileKind {
     name: "plan documents (.json or .rrd files)",
     endings: &["json", "rrd"],

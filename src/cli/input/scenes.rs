@@ -13,20 +13,17 @@ use super::files::{self, Found, Refused, SEPARATOR};
 /// Scenario whose text is read but not yet checked.
 #[derive(Debug)]
 pub struct Scene {
-    /// File and output name.
     pub found: Found,
     source: Source,
 }
 
 #[derive(Debug)]
 enum Source {
-    /// Text of a scenario file.
     Text(String),
     /// Situation of an imported file, with assumptions for the values missing from it.
     Situation(Box<Situation>, Assumed),
 }
 
-/// Scenario with notes.
 #[derive(Debug)]
 pub struct Made {
     pub scenario: Scenario,
@@ -35,7 +32,6 @@ pub struct Made {
 }
 
 impl Scene {
-    /// Builds the scenario.
     pub fn scenario(&self) -> Result<Made, Refused> {
         let made = match &self.source {
             Source::Situation(situation, assumed) => situation.scenario(assumed).map(|i| Made {
@@ -104,7 +100,6 @@ pub fn open(
     scenes
 }
 
-/// The files of the scenes.
 pub fn found(scenes: &[Result<Scene, Refused>]) -> Vec<Found> {
     scenes.iter().flatten().map(|s| s.found.clone()).collect()
 }

@@ -26,10 +26,8 @@ const COLOURS: [&str; 5] = [
     "\u{1b}[0m",
 ];
 
-/// Standard output and standard error.
 #[derive(Debug)]
 pub struct Output {
-    /// True if results may be coloured.
     pub colour: bool,
 }
 
@@ -78,7 +76,6 @@ impl Output {
         out + &printable_lines(rest)
     }
 
-    /// Prints a document.
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
             Ok(text) => self.result(text.trim_end()),
@@ -86,7 +83,6 @@ impl Output {
         }
     }
 
-    /// Prints a result as a document, or as text.
     pub fn show(
         &self,
         json: bool,
@@ -100,7 +96,6 @@ impl Output {
         }
     }
 
-    /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         // an error of standard error cannot be reported
         let error = printable_lines(&error.to_string());
@@ -113,13 +108,11 @@ impl Output {
         ExitStatus::BadInput
     }
 
-    /// Prints why a file has no result.
     pub fn refused(&self, refused: &Refused) -> ExitStatus {
         self.error(&refused.error);
         refused.status()
     }
 
-    /// Prints an internal fault.
     pub fn fault(&self, fault: &impl Display) -> ExitStatus {
         self.error(fault);
         ExitStatus::InternalFault
@@ -136,13 +129,11 @@ impl Output {
         )
     }
 
-    /// Prints a note.
     pub fn note(&self, note: &impl Display) {
         let note = printable_lines(&note.to_string());
         let _ = writeln!(std::io::stderr(), "note: {note}");
     }
 
-    /// Notes that a file was written.
     pub fn wrote(&self, file: &Path) {
         self.note(&format_args!("wrote {}", file.display()));
     }
@@ -157,12 +148,10 @@ impl Output {
     }
 }
 
-/// Serialises a document to JSON.
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
 }
 
-/// Formats rows as CSV.
 pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
@@ -171,7 +160,6 @@ pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
     writer.into_inner().context("the rows cannot be written")
 }
 
-/// Prints help, the version, or an argument error.
 pub fn usage(error: &clap::Error) -> ExitCode {
     // an error of this stream cannot be reported
     let _ = error.print();

@@ -27,7 +27,6 @@ pub struct Products {
     report: Option<PathBuf>,
 }
 
-/// Requested paths.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
@@ -89,7 +88,6 @@ impl Products {
         })
     }
 
-    /// Writes the requested recording, figure and plan document.
     pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
         attempt(|| {
             #[cfg(feature = "recording")]
@@ -152,12 +150,10 @@ impl Products {
         }
     }
 
-    /// True if a report is requested.
     pub fn wants_report(&self) -> bool {
         self.report.is_some()
     }
 
-    /// Writes the report, if requested.
     pub fn write_report(
         &self,
         report: &HtmlReport,

@@ -19,7 +19,6 @@ struct SetKeys {
 }
 
 impl SetKeys {
-    /// How many keys are given.
     fn count(&self) -> usize {
         let given = [
             self.vertices_m.is_some(),

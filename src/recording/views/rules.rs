@@ -43,10 +43,8 @@ impl Lane {
     }
 }
 
-/// A violation of a rule or of a monitor.
 struct Violated {
     time: f64,
-    /// Short name of the rule.
     rule: String,
 }
 
@@ -116,7 +114,6 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
     lanes
 }
 
-/// The number of lanes of the view.
 pub fn height(model: &ViewModel) -> usize {
     lanes(model).len()
 }

@@ -95,7 +95,6 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     layout::of_simulation(&model)
 }
 
-/// How to read the chart.
 fn key(model: &ClosedLoop) -> String {
     format!(
         "Chart at the cursor: own ship is white, and so is its plan where it has the desired speed; \
@@ -109,14 +108,12 @@ fn key(model: &ClosedLoop) -> String {
     )
 }
 
-/// Something that happened.
 struct Event {
     time: f64,
     level: &'static str,
     text: String,
 }
 
-/// Logs what happened, in order of time.
 fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> Logged {
     let mut events = outcomes(document);
     events.extend(alarms(document));

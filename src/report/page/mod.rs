@@ -30,10 +30,7 @@ use crate::study::compare::Entry;
 
 pub use link::link_from;
 
-/// File name of the page.
 const INDEX: &str = "index.html";
-
-/// Style sheet.
 const STYLE: &str = include_str!("style.css");
 
 /// One scenario of a report: its file names and links to other results.
@@ -207,7 +204,6 @@ impl HtmlReport {
     }
 }
 
-/// Scenario file and links to other results.
 fn origin(subject: &Subject) -> Markup {
     html! {
         p.quiet {

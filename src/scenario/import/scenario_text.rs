@@ -54,7 +54,6 @@ impl Situation {
     }
 }
 
-/// The text so far.
 struct Writing<'a> {
     assumed: &'a Assumed,
     text: String,

@@ -20,7 +20,6 @@ const MOST_CHANGES: usize = 1000;
 /// Metres: least length of a straight, so that two turns never share a point.
 const NO_LENGTH: f64 = 1e-3;
 
-/// A point of a route.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RoutePoint {
     /// Metres.
@@ -92,7 +91,6 @@ pub(super) struct Spread {
     pub(super) course: f64,
 }
 
-/// One constant course and speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Steady {
     /// Position at t = 0, and course.
@@ -108,7 +106,6 @@ pub(super) struct Steady {
 pub(super) enum TrackError {
     /// The turn at a point does not fit into the legs beside it.
     Turn {
-        /// Index of the point.
         point: usize,
         /// Metres from the point at which the turn would begin.
         begins: f64,
@@ -342,7 +339,6 @@ impl Track {
     }
 }
 
-/// Joins consecutive stretches that hardly differ.
 fn joined_stretches(stretches: Vec<Stretch>) -> Vec<Stretch> {
     let mut joined: Vec<Stretch> = Vec::new();
     for stretch in stretches {

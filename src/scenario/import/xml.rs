@@ -68,7 +68,6 @@ pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
 /// Letters of an id in a message.
 const ID_LETTERS: usize = 40;
 
-/// An id on one line.
 fn short(id: &str) -> String {
     let kept: String = id.chars().take(ID_LETTERS).collect();
     printable(&kept).replace('\n', " ")
@@ -83,7 +82,6 @@ pub(in crate::scenario) struct Xml<'a> {
 }
 
 impl<'a> Xml<'a> {
-    /// The outermost element of a file.
     pub(in crate::scenario) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
         let node = document.root_element();
         Self {
@@ -93,7 +91,6 @@ impl<'a> Xml<'a> {
         }
     }
 
-    /// The name of the element.
     pub(in crate::scenario) fn name(&self) -> &'a str {
         self.node.tag_name().name()
     }
@@ -103,7 +100,6 @@ impl<'a> Xml<'a> {
         &self.path
     }
 
-    /// Notes a fault at this place.
     pub(in crate::scenario) fn fault(&self, found: impl Display, allowed: impl Display) {
         let at = self.node.document().text_pos_at(self.node.range().start);
         let fault = Fault::new(self.path.as_str(), found, allowed);
@@ -120,7 +116,6 @@ impl<'a> Xml<'a> {
         None
     }
 
-    /// The elements in it, in the order of the file.
     pub(in crate::scenario) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
         let (path, faults) = (self.path.clone(), self.faults);
         self.node
@@ -136,13 +131,11 @@ impl<'a> Xml<'a> {
             })
     }
 
-    /// Those of one name.
     pub(in crate::scenario) fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
         self.elements()
             .filter(move |element| element.name() == name)
     }
 
-    /// The first of one name.
     pub(in crate::scenario) fn take(&self, name: &str) -> Option<Xml<'a>> {
         self.all(name).next()
     }
@@ -163,7 +156,6 @@ impl<'a> Xml<'a> {
         found
     }
 
-    /// An attribute.
     pub(in crate::scenario) fn attribute(&self, name: &str) -> Option<&'a str> {
         self.node.attribute(name)
     }
@@ -173,7 +165,6 @@ impl<'a> Xml<'a> {
         self.node.text().unwrap_or_default().trim()
     }
 
-    /// The number in it.
     pub(in crate::scenario) fn number(&self, range: Range) -> Option<f64> {
         self.parsed(self.text(), range)
     }

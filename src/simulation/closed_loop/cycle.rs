@@ -14,7 +14,6 @@ use crate::tolerance::TOUCH_M;
 /// m/s and metres: rounding of a target's state.
 const ROUNDING: f64 = 1e-6;
 
-/// A plan and its record.
 pub(super) struct Cycle {
     pub run: Run,
     pub replan: ReplanDocument,

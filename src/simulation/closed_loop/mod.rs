@@ -59,7 +59,6 @@ const SHORT_STEP: f64 = 1e-6;
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
-    /// The scenario at t = 0.
     scenario: Scenario,
     measured_delay: bool,
     /// Seconds since the scenario's time.
@@ -72,7 +71,6 @@ pub struct Simulation {
     pending: Option<Active>,
     next_cycle: f64,
     first_cost: Option<f64>,
-    /// Own ship's motion so far.
     sailed: Vec<Segment>,
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
@@ -296,7 +294,6 @@ impl Simulation {
             .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
     }
 
-    /// Takes in the reports of the present time.
     fn observe(&mut self) {
         let exact = self.settings().sensor.kind == SensorKind::Exact;
         let stale = self.settings().sensor.stale;
@@ -400,7 +397,6 @@ impl Simulation {
         self.active = plan;
     }
 
-    /// Moves all ships.
     fn advance(&mut self, step: f64) {
         let time = self.time;
         let in_plan = time - self.active.start;
@@ -464,7 +460,6 @@ impl Simulated {
     }
 }
 
-/// Refuses what the loop cannot sail.
 fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
     let settings = &scenario.simulation;
     let facts = scenario.planner.facts();

@@ -29,7 +29,6 @@ pub struct ComparedMotion {
 }
 
 impl ComparedMotion {
-    /// The plan of a run, if it has one.
     pub(super) fn of(run: &Run) -> Option<Self> {
         Some(Self {
             trajectory: run.planned.outcome.plan()?.trajectory.clone(),

@@ -97,7 +97,6 @@ fn declared(title: &str) -> Declared {
     }
 }
 
-/// Notes every unknown key.
 fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
     for key in field.keys().filter(|key| !known.contains(key)) {
         let dot = if field.path().is_empty() { "" } else { "." };
@@ -301,7 +300,6 @@ fn along(
 /// Nautical miles: radii of turns, distances over which the speed changes.
 const MILES: Range = Range::between(0.0, 100.0);
 
-/// Points of a route and the speeds between them.
 #[derive(Debug, Default)]
 struct Route {
     points: Vec<RoutePoint>,

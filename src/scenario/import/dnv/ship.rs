@@ -63,7 +63,6 @@ pub(super) fn initial(
     })
 }
 
-/// Static data of a ship.
 #[derive(Debug, Clone)]
 pub(super) struct Static {
     pub(super) name: Option<String>,
