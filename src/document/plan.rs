@@ -210,7 +210,7 @@ pub(crate) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
+pub(crate) fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
     let (kind, target, amount, unit, until_s) = match relaxation {
         Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
         Relaxation::Risk {

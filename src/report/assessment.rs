@@ -1,6 +1,6 @@
 //! Text of an assessment.
 
-use super::table::{Grid, columns, plain};
+use super::table::{Grid, plain};
 use crate::document::{AssessmentDocument, InitialSetDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
@@ -176,12 +176,6 @@ fn table(
     numbers: std::ops::Range<usize>,
     rows: impl Iterator<Item = Vec<String>>,
 ) -> String {
-    let grid = Grid {
-        header: columns(header),
-        numbers,
-        rows: rows
-            .map(|row| row.into_iter().map(plain).collect())
-            .collect(),
-    };
-    grid.text(false)
+    let rows = rows.map(|row| row.into_iter().map(plain).collect());
+    Grid::new(header, numbers, rows).text(false)
 }

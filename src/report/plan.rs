@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
     EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
     headline, met, passing, plan_lines, turn,
@@ -26,16 +26,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
-    Grid {
-        header: columns(
-            "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], clearance\n[m], \
-             risk, breaks, nodes, time\n[ms], verified, safe",
-        ),
-        numbers: 5..12,
-        rows: (runs.iter().zip(row_names(runs)))
-            .map(|(run, name)| suite_row(run, name))
-            .collect(),
-    }
+    let header = "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], \
+                  clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
+    let rows = runs.iter().zip(row_names(runs));
+    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name)))
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -177,13 +171,9 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
             plain(leg.events.join("\n")),
         ]
     };
-    Grid {
-        header: columns(
-            "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens",
-        ),
-        numbers: 0..6,
-        rows: plan.legs().into_iter().enumerate().map(row).collect(),
-    }
+    let header =
+        "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens";
+    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row))
 }
 
 /// Formats the line for the time of no return.

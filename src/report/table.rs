@@ -15,11 +15,6 @@ pub(super) enum Tone {
 
 pub(super) type Styled = (String, Tone);
 
-/// Column names of a table, from a text with `, ` between them.
-pub(super) fn columns(names: &'static str) -> Vec<&'static str> {
-    names.split(", ").collect()
-}
-
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
@@ -29,6 +24,19 @@ pub(super) struct Grid {
 }
 
 impl Grid {
+    /// Rows under columns whose names have `, ` between them.
+    pub fn new(
+        names: &'static str,
+        numbers: std::ops::Range<usize>,
+        rows: impl IntoIterator<Item = Vec<Styled>>,
+    ) -> Self {
+        Self {
+            header: names.split(", ").collect(),
+            numbers,
+            rows: rows.into_iter().collect(),
+        }
+    }
+
     /// Removes one numeric column.
     pub fn without(mut self, name: &str) -> Self {
         if let Some(column) = self.header.iter().position(|n| *n == name) {

@@ -176,14 +176,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_decides() {
-        let of = |name: &str| FigureFormat::of(Path::new(name));
-        assert_eq!(of("a.svg"), Some(FigureFormat::Svg));
-        assert_eq!(of("b/a.PNG"), Some(FigureFormat::Png));
-        assert_eq!((of("a"), of("a.pdf"), of(".svg")), (None, None, None));
-    }
-
-    #[test]
     fn clip_paths_are_counted_from_zero() {
         let svg = "a kuva-clip-17 b kuva-clip-4\" kuva-clip-17";
         assert_eq!(
