@@ -54,7 +54,8 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
     };
     if let Some(other) = other {
         bail!(
-            "{}: the recording of a {other}, which holds no plan document; `searoom inspect --json` prints its own",
+            "{}: the recording of a {other}, which holds no plan document; \
+             `searoom inspect --json` prints its own",
             path.display()
         );
     }

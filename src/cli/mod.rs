@@ -44,7 +44,8 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(args, &output),
         #[cfg(not(feature = "recording"))]
         Command::Inspect(_) => anyhow::bail!(
-            "inspect: this program was built without recordings; build it with its default features, `cargo build`"
+            "inspect: this program was built without recordings; \
+             build it with its default features, `cargo build`"
         ),
         Command::Verify(args) => Ok(verify::verify(args, &output)),
         Command::Completions(args) => Ok(shell::completions(args, &output)),

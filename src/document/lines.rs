@@ -18,8 +18,8 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
     format!("{}: {}", printable(&plan.scenario), verdict_line(plan))
 }
 
-/// Outcome, whether the plan is verified and safe, the rules that it breaks and the waypoints that it
-/// skips.
+/// Outcome, whether the plan is verified and safe, the rules that it breaks, and the waypoints that
+/// it skips.
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
@@ -164,7 +164,8 @@ fn stand_on(escape: &EscapeDocument) -> String {
         }
     };
     format!(
-        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: {turn}{speed_mps:.2} m/s"
+        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: \
+         {turn}{speed_mps:.2} m/s"
     )
 }
 

@@ -99,7 +99,8 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     let mut lines = Vec::new();
     if entries.iter().any(|e| e.cost.is_some()) {
         lines.push(
-            "J is counted until own ship's length from the last waypoint; a motion that does not come so near is counted to the end of the desired time"
+            "J is counted until own ship's length from the last waypoint; a motion that does not \
+             come so near is counted to the end of the desired time"
                 .to_owned(),
         );
     }

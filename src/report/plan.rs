@@ -184,8 +184,8 @@ pub fn no_return_line(found: NoReturn) -> String {
             "past: no plan clear of every hard set was found even from the start".to_owned()
         }
         NoReturn::At(time) => format!(
-            "{time:.0} s, to {NO_RETURN_STEP_S} s: the last time until which own ship can hold on and still \
-             find a plan clear of every hard set"
+            "{time:.0} s, to {NO_RETURN_STEP_S} s: the last time until which own ship can hold on \
+             and still find a plan clear of every hard set"
         ),
     };
     format!("  {:<13}{text}", "no return")

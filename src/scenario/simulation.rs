@@ -30,8 +30,8 @@ pub struct SimulationSettings {
     pub sensor: Sensor,
     /// True motion of each target, in the scenario's order; constant where there is none.
     pub behaviours: Vec<Behaviour>,
-    /// Fields that the reports of each target leave out, in the scenario's order; none where there is
-    /// none.
+    /// Fields that the reports of each target leave out, in the scenario's order; none where there
+    /// is none.
     pub not_reported: Vec<NotReported>,
 }
 

@@ -249,8 +249,8 @@ fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> 
 }
 
 fn text(table: &str, graphs: &[String]) -> String {
-    let key = "The plots name the colours; point at a line for its name. Grey sets are those of the \
-               scenario. A method that avoids others (ellipses around them, level sets of an \
+    let key = "The plots name the colours; point at a line for its name. Grey sets are those of \
+               the scenario. A method that avoids others (ellipses around them, level sets of an \
                accepted risk) has them in its colour.";
     let mut parts = vec![table.to_owned(), key.to_owned()];
     if !graphs.is_empty() {

@@ -48,7 +48,10 @@ impl FigureFormat {
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// Unsupported file extension.
-    #[error("{}: found a name that ends neither in .svg nor in .png; allowed: one of the two", file.display())]
+    #[error(
+        "{}: found a name that ends neither in .svg nor in .png; allowed: one of the two",
+        file.display()
+    )]
     Format {
         /// File path.
         file: PathBuf,

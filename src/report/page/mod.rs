@@ -180,9 +180,14 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    @if !self.runs.is_empty() { (table(suite_grid(&self.runs), &self.run_sections)) }
+                    @if !self.runs.is_empty() {
+                        (table(suite_grid(&self.runs), &self.run_sections))
+                    }
                     @for section in &self.sections { (section) }
-                    p.quiet { "Lengths in metres, times in seconds from the start, courses clockwise from true north." }
+                    p.quiet {
+                        "Lengths in metres, times in seconds from the start, \
+                         courses clockwise from true north."
+                    }
                 }
             }
         };
@@ -249,8 +254,9 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
                     @for (index, row) in rows.iter().enumerate() {
                         tr {
                             @for (i, (cell, name)) in row.iter().zip(&header).enumerate() {
+                                @let name = name.replace('\n', " ");
                                 @if i > 0 {
-                                    td data-name=(name.replace('\n', " ")) class=[class(cell, number(i))] {
+                                    td data-name=(name) class=[class(cell, number(i))] {
                                         span { (cell.0) }
                                     }
                                 } @else if let Some(section) = sections.get(index) {

@@ -263,9 +263,9 @@ impl Track {
         })
     }
 
-    /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of every
-    /// ship that follows the track within the spread. Its position is then in the start ⊕ their
-    /// sum.
+    /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of
+    /// every ship that follows the track within the spread. Its position is then in the start ⊕
+    /// their sum.
     ///
     /// A stretch is entered at the earliest on the shortest way at the greatest speed, and left at
     /// the latest on the longest way at the least speed made good. Each set is the hull of the

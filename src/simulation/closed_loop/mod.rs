@@ -40,7 +40,8 @@ const SHORT_STEP: f64 = 1e-6;
 /// Within a step the order is: the current changes, the sensors report, the tracker takes in what
 /// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made
 /// from the data of its time, and own ship follows it from `delay` seconds later on. It begins
-/// where the last plan has own ship then. Contacts with hulls and land are tested in continuous time.
+/// where the last plan has own ship then. Contacts with hulls and land are tested in continuous
+/// time.
 ///
 /// Equal scenarios give equal motions, unless the delay is measured.
 ///

@@ -157,7 +157,8 @@ fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> 
     let shallows = root.all("shallow").count() + root.all("draft").count();
     if shallows > 0 {
         notes.push(format!(
-            "{shallows} shallows: own draught is not in the file, so all are kept out of, whatever their depth"
+            "{shallows} shallows: own draught is not in the file, so all are kept out of, \
+             whatever their depth"
         ));
     }
     if others.len() > limits::SHIPS {

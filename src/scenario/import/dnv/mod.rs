@@ -164,7 +164,8 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
     }
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
         notes.push(format!(
-            "{}: turn radii of own ship's waypoints not used; its radius is {TURNING_LENGTHS} lengths",
+            "{}: turn radii of own ship's waypoints not used; \
+             its radius is {TURNING_LENGTHS} lengths",
             field.path()
         ));
     }
