@@ -6,11 +6,12 @@ use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::figure::assessment_figure;
 use searoom::scenario::Scenario;
+use searoom::scenario::import::Imported;
 use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
 use super::input::rows;
-use super::input::scenes::{Made, open_one};
+use super::input::scenes::open_one;
 use super::output::Output;
 use super::output::products::prepare_figure;
 use super::output::status::ExitStatus;
@@ -67,7 +68,9 @@ fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<Str
             .collect(),
     };
     match scenario {
-        Ok(Made { scenario, notes }) if errors.is_empty() => {
+        Ok(Imported {
+            scenario, notes, ..
+        }) if errors.is_empty() => {
             notes.iter().for_each(|note| output.note(note));
             Ok((scenario, query))
         }
@@ -83,14 +86,7 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
             false => sets.hard,
         })
         .collect();
-    let own = &scenario.own_ship;
-    let situation = OwnSituation {
-        pose: own.pose,
-        speed: own.speed,
-        max_speed: own.max_speed(),
-        horizon: scenario.horizon,
-        obstacles: &obstacles,
-    };
+    let situation = OwnSituation::of(scenario, &obstacles);
     let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = args.figure.as_ref().map(|path| {

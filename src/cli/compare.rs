@@ -8,11 +8,12 @@ use searoom::report::figure::comparison_figure;
 use searoom::report::page::HtmlReport;
 use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
 use searoom::scenario::Scenario;
+use searoom::scenario::import::Imported;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
 use super::input::files::{Refused, shown};
-use super::input::scenes::{self, Made, Scene};
+use super::input::scenes::{self, Scene};
 use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, csv};
@@ -81,7 +82,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
 
 fn ask(scene: &Scene, args: &CompareArgs) -> Result<Compared, Refused> {
     let file = &scene.found.file;
-    let Made { mut scenario, .. } = guarded_on(file, || scene.scenario())?;
+    let Imported { mut scenario, .. } = guarded_on(file, || scene.scenario())?;
     args.asked.apply_rules(&mut scenario);
     let risks = if args.max_risk.is_empty() {
         vec![scenario.max_risk]

@@ -11,12 +11,13 @@ use searoom::document::{NOT_APPLICABLE, PLAN_MEBIBYTES, PlanDocument};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::replanning::remember;
+use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
 use super::args::Shared;
 use super::input::files::Refused;
-use super::input::scenes::{Made, Scene};
+use super::input::scenes::Scene;
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -120,9 +121,10 @@ pub fn attempt(
 ) -> Result<(Run, Vec<String>), Refused> {
     let file = &scene.found.file;
     guarded_on(file, || {
-        let Made {
+        let Imported {
             mut scenario,
             mut notes,
+            ..
         } = scene.scenario()?;
         let unfit = |scenario: &Scenario, wrong: &Path, faults| Refused {
             title: Some(scenario.title.clone()),

@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use searoom::document::{NOT_APPLICABLE, SimulationDocument, SimulationsDocument};
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
+use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
 use super::input::files::{Refused, shown};
-use super::input::scenes::{self, Made, Scene};
+use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
@@ -119,7 +120,7 @@ fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
 
 fn sail(
     scene: &Scene,
-    made: Made,
+    made: Imported,
     args: &SimulateArgs,
     interrupted: &AtomicBool,
     products: &Products,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use searoom::input::read_text;
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
-use searoom::scenario::{FILE_MEBIBYTES, Fault, Scenario, ScenarioError};
+use searoom::scenario::{FILE_MEBIBYTES, Scenario, ScenarioError};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
@@ -24,42 +24,27 @@ enum Source {
     Situation(Box<Situation>, Assumed),
 }
 
-#[derive(Debug)]
-pub struct Made {
-    pub scenario: Scenario,
-    /// Assumptions, and unused parts of the file.
-    pub notes: Vec<String>,
-}
-
 impl Scene {
-    pub fn scenario(&self) -> Result<Made, Refused> {
+    /// The scenario, and the text of its scenario file.
+    pub fn scenario(&self) -> Result<Imported, Refused> {
+        let file = &self.found.file;
         let made = match &self.source {
-            Source::Situation(situation, assumed) => situation.scenario(assumed).map(|i| Made {
-                scenario: i.scenario,
-                notes: i.notes,
-            }),
+            Source::Situation(situation, assumed) => situation.scenario(assumed),
             Source::Text(text) => {
-                let folder = self.found.file.parent().unwrap_or(Path::new(""));
-                Scenario::parse_beside(text, folder).map(|scenario| Made {
+                let folder = file.parent().unwrap_or(Path::new(""));
+                Scenario::parse_beside(text, folder).map(|scenario| Imported {
                     scenario,
+                    text: text.clone(),
                     notes: Vec::new(),
                 })
             }
         };
-        made.map_err(|faults| self.refused(faults))
+        made.map_err(|faults| Refused::unreadable(file, ScenarioError::faults(file, faults)))
     }
 
-    fn refused(&self, faults: Vec<Fault>) -> Refused {
-        let file = &self.found.file;
-        Refused::unreadable(file, ScenarioError::faults(file, faults))
-    }
-
-    /// Builds the scenario of an imported file with its text; `None` for a scenario file.
-    pub fn imported(&self) -> Option<Result<Imported, Refused>> {
-        let Source::Situation(situation, assumed) = &self.source else {
-            return None;
-        };
-        Some(situation.scenario(assumed).map_err(|f| self.refused(f)))
+    /// True for a situation of another format.
+    pub fn is_imported(&self) -> bool {
+        matches!(self.source, Source::Situation(..))
     }
 
     /// Further facts that an imported file declares about its situation.

@@ -91,25 +91,12 @@ pub(super) struct Spread {
     pub(super) course: f64,
 }
 
+/// The turn at a point does not fit into the legs beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Steady {
-    /// Position at t = 0, and course.
-    pub(super) pose: Pose,
-    /// m/s.
-    pub(super) speed: f64,
-    /// The spreads, widened by the variation of the track itself.
-    pub(super) spread: Spread,
-}
-
-/// Reason why a route is not a track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum TrackError {
-    /// The turn at a point does not fit into the legs beside it.
-    Turn {
-        point: usize,
-        /// Metres from the point at which the turn would begin.
-        begins: f64,
-    },
+pub(super) struct TightTurn {
+    pub(super) point: usize,
+    /// Metres from the point at which the turn would begin.
+    pub(super) begins: f64,
 }
 
 /// A declared track. The ship rests at its start until `appears`, follows the track, and continues
@@ -153,7 +140,7 @@ impl Track {
         legs: &[RouteLeg],
         usual_radius: f64,
         heading: Option<f64>,
-    ) -> Result<Self, TrackError> {
+    ) -> Result<Self, TightTurn> {
         let ways: Vec<Vector> = points
             .windows(2)
             .map(|pair| pair[1].position - pair[0].position)
@@ -183,7 +170,7 @@ impl Track {
                 let asked = points[index + 1].turn_radius;
                 let wanted = asked.unwrap_or(usual_radius) * half.min(FRAC_PI_2).tan();
                 if asked.is_some() && !(wanted <= length - begun && wanted <= next_way.norm()) {
-                    return Err(TrackError::Turn {
+                    return Err(TightTurn {
                         point: index + 1,
                         begins: wanted,
                     });
@@ -243,24 +230,17 @@ impl Track {
         self.appears + self.stretches.iter().map(took).sum::<f64>()
     }
 
-    /// Constant course and speed, if the track is a single stretch that begins at t = 0. The
-    /// velocities within the widened spreads contain those of the stretch.
-    pub(super) fn steady(&self, spread: &Spread) -> Option<Steady> {
-        let [only] = self.stretches.as_slice() else {
-            return None;
-        };
-        if self.appears > 0.0 {
-            return None;
+    /// A ship of constant course and speed, if the track is a single stretch that begins at t = 0.
+    /// The velocities within its spreads contain those of the stretch; it has no hull.
+    pub(super) fn steady(&self, spread: &Spread) -> Option<ShipTrack> {
+        match self.stretches.as_slice() {
+            [only] if self.appears <= 0.0 => {
+                let mut ship = only.ship(spread);
+                ship.pose.position = self.start;
+                Some(ship)
+            }
+            _ => None,
         }
-        let ship = only.ship(spread);
-        Some(Steady {
-            pose: Pose::new(self.start, only.course),
-            speed: ship.speed,
-            spread: Spread {
-                speed: ship.speed_spread,
-                course: ship.course_spread,
-            },
-        })
     }
 
     /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of

@@ -74,9 +74,7 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<ComparedMotion> {
             let situation = OwnSituation {
                 pose: Pose::new(own.pose.position, heading),
                 speed,
-                max_speed: own.max_speed(),
-                horizon: scenario.horizon,
-                obstacles: &sets.level,
+                ..OwnSituation::of(scenario, &sets.level)
             };
             let least = least_alteration(&situation);
             candidates.extend(least.starboard.map(|turn| (heading - turn, speed)));

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::track::{RouteLeg, RoutePoint, Track, TrackError};
+use super::track::{RouteLeg, RoutePoint, TightTurn, Track};
 use crate::frame::{
     Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
@@ -288,7 +288,7 @@ fn along(
     let start = initial.heading.filter(turned);
     match Track::along(&route.points, &legs, TURNING_LENGTHS * length, start) {
         Ok(track) => Some(track),
-        Err(TrackError::Turn { point, begins }) => {
+        Err(TightTurn { point, begins }) => {
             let place = fields.get(point).unwrap_or(field);
             place.reject(
                 format_args!("a turnRadius whose turn begins {begins:.0} m before the waypoint"),
