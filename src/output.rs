@@ -55,7 +55,6 @@ pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Prefix of temporary files.
 const PREFIX: &str = ".searoom-";
 
 /// A locked temporary file: the lock tells other processes that it is in use. One of them may
@@ -94,7 +93,6 @@ fn remove_left_over(folder: &Path) {
     }
 }
 
-/// The folder of a file.
 pub(crate) fn folder_of(file: &Path) -> PathBuf {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),

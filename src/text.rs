@@ -21,8 +21,6 @@ macro_rules! words {
 
 /// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
-
-/// Most characters of a line.
 const CHARS: usize = 200;
 
 /// True for a text of allowed length that is not blank and has no control characters.
@@ -33,8 +31,13 @@ pub(crate) fn is_line(text: &str) -> bool {
 /// True for control characters, for those that break a line or change its direction, and for those
 /// that XML forbids.
 pub(crate) fn is_unprintable(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{061c}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{fffe}' | '\u{ffff}')
+    let breaks_lines = matches!(c, '\u{2028}' | '\u{2029}');
+    let turns_text = matches!(
+        c,
+        '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    let no_xml = matches!(c, '\u{fffe}' | '\u{ffff}');
+    c.is_control() || breaks_lines || turns_text || no_xml
 }
 
 /// An untrusted text on one line: control characters appear as their codes, `\u001b` as in JSON.

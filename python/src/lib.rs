@@ -129,14 +129,7 @@ fn py_assess<'py>(
             .into_iter()
             .map(|sets| if domains { sets.with_domain } else { sets.hard })
             .collect();
-        let own = &scenario.own_ship;
-        let situation = OwnSituation {
-            pose: own.pose,
-            speed: own.speed,
-            max_speed: own.max_speed(),
-            horizon: scenario.horizon,
-            obstacles: &obstacles,
-        };
+        let situation = OwnSituation::of(scenario, &obstacles);
         let sets = if domains { "domains" } else { "hard" };
         searoom::study::assess::assess(&scenario.title, sets, &situation, &query)
     })?;

@@ -114,7 +114,8 @@ pub struct PlanArgs {
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
-    /// Also find the last time at which own ship can still avoid every hard set (space-time planner)
+    /// Also find the last time at which own ship can still avoid every hard set (space-time
+    /// planner)
     #[arg(long)]
     pub no_return: bool,
     /// Write the legs: a file ending in .csv, .geojson or .rtz; the last two need an origin
@@ -144,7 +145,10 @@ pub struct SuiteArgs {
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
     /// Plan nothing: report where ships would meet, and errors in the scenarios
-    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds", "strict"])]
+    #[arg(long, conflicts_with_all = [
+        "plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk",
+        "thresholds", "strict",
+    ])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
     #[command(flatten)]
@@ -153,8 +157,13 @@ pub struct SuiteArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario: a file ending in .rrd, or a folder")),
-    mut_arg("figure", |arg| arg.help("Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, or a folder")),
+    mut_arg("rrd", |arg| arg.help(
+        "Write one Rerun recording per scenario: a file ending in .rrd, or a folder"
+    )),
+    mut_arg("figure", |arg| arg.help(
+        "Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, \
+         or a folder"
+    )),
 )]
 pub struct SimulateArgs {
     /// Scenario files, files of other formats, or folders of them
@@ -194,8 +203,13 @@ pub struct ImportArgs {
 #[command(
     mut_arg("planner", |arg| arg.help(planners("Only this planner, beside the baselines"))),
     mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra, thorough")),
-    mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
-    mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
+    mut_arg("rrd", |arg| arg.help(
+        "Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, \
+         or a folder"
+    )),
+    mut_arg("figure", |arg| arg.value_name("FILE").help(
+        "Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png"
+    )),
 )]
 pub struct CompareArgs {
     /// Scenario files, files of other formats, or folders of them
@@ -238,7 +252,8 @@ pub struct VerifyArgs {
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
     /// Seconds for each document; a check that takes longer counts as not verified
-    #[arg(long, value_name = "S", default_value = "10", value_parser = budget, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value = "10", value_parser = budget)]
+    #[arg(allow_negative_numbers = true)]
     pub budget_s: Duration,
     /// Print one JSON document instead of text
     #[arg(long)]
@@ -262,7 +277,8 @@ pub struct Asked {
         help = planners("Planner instead of the scenario's")
     )]
     pub planner: Option<&'static dyn Planner>,
-    /// Search instead of the scenario's: a-star, dijkstra, thorough (several targets: slower, cheaper)
+    /// Search instead of the scenario's: a-star, dijkstra, thorough (several targets: slower,
+    /// cheaper)
     #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
     pub search: Option<SearchKind>,
     /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (domains
@@ -319,7 +335,8 @@ pub struct AssumedArgs {
     #[arg(long, value_name = "DEG", value_parser = assumption(Assumption::CourseSpread))]
     pub course_spread_deg: Option<f64>,
     /// Distance kept between the hulls, metres [default: own length]
-    #[arg(long, value_name = "M", visible_alias = "margin-m", value_parser = assumption(Assumption::SafetyMargin))]
+    #[arg(long, value_name = "M", visible_alias = "margin-m")]
+    #[arg(value_parser = assumption(Assumption::SafetyMargin))]
     pub safety_margin_m: Option<f64>,
     /// Length of ships without one, metres [default: 100 if the format has none, else required]
     #[arg(long, value_name = "M", value_parser = assumption(Assumption::Length))]

@@ -6,17 +6,17 @@ use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::figure::assessment_figure;
 use searoom::scenario::Scenario;
+use searoom::scenario::import::Imported;
 use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
 use super::input::rows;
-use super::input::scenes::{Made, open_one};
+use super::input::scenes::open_one;
 use super::output::Output;
 use super::output::products::prepare_figure;
 use super::output::status::ExitStatus;
 use super::runner::guarded;
 
-/// Assesses one file.
 pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
     args.figure.as_deref().map_or(Ok(()), prepare_figure)?;
@@ -37,7 +37,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> 
 fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
     let scenario = open_one(&args.scenario, &args.assumed, output)
-        .and_then(|scene| scene.scenario().map_err(|error| error.to_string()))
+        .and_then(|scene| scene.scenario().map_err(|refused| refused.error))
         .map_err(|error| errors.push(error));
     let mut points = args.at.clone();
     if let Some(file) = &args.points {
@@ -68,7 +68,9 @@ fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<Str
             .collect(),
     };
     match scenario {
-        Ok(Made { scenario, notes }) if errors.is_empty() => {
+        Ok(Imported {
+            scenario, notes, ..
+        }) if errors.is_empty() => {
             notes.iter().for_each(|note| output.note(note));
             Ok((scenario, query))
         }
@@ -84,14 +86,7 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
             false => sets.hard,
         })
         .collect();
-    let own = &scenario.own_ship;
-    let situation = OwnSituation {
-        pose: own.pose,
-        speed: own.speed,
-        max_speed: own.max_speed(),
-        horizon: scenario.horizon,
-        obstacles: &obstacles,
-    };
+    let situation = OwnSituation::of(scenario, &obstacles);
     let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = args.figure.as_ref().map(|path| {

@@ -9,21 +9,17 @@ use super::output::status::ExitStatus;
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     for scene in scenes::open(&args.paths, &args.assumed, output) {
-        let failed = match scene {
-            Ok(scene) => match scene.scenario() {
-                Ok(made) => {
-                    status = status.max(output.result(&format!("{}: ok", scene.label())));
-                    for note in made.notes {
-                        output.note(&format_args!("{}: {note}", scene.label()));
-                    }
-                    continue;
+        let made = scene.and_then(|scene| Ok((scene.label(), scene.scenario()?)));
+        status = status.max(match made {
+            Ok((label, made)) => {
+                let shown = output.result(&format!("{label}: ok"));
+                for note in made.notes {
+                    output.note(&format_args!("{label}: {note}"));
                 }
-                Err(error) => error.to_string(),
-            },
-            Err(unread) => unread.error,
-        };
-        output.error(&failed);
-        status = status.max(ExitStatus::BadInput);
+                shown
+            }
+            Err(refused) => output.refused(&refused),
+        });
     }
     status
 }

@@ -3,42 +3,37 @@
 use std::path::PathBuf;
 
 use rayon::prelude::*;
-use searoom::document::{
-    ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
-};
+use searoom::document::{ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument};
 use searoom::report::figure::comparison_figure;
 use searoom::report::page::HtmlReport;
 use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
 use searoom::scenario::Scenario;
+use searoom::scenario::import::Imported;
 use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
-use super::input::files::shown;
-use super::input::scenes::{self, Made, Scene};
+use super::input::files::{Refused, shown};
+use super::input::scenes::{self, Scene};
 use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, csv};
-use super::runner::guarded;
+use super::runner::{guarded, guarded_on};
 
-/// Scenario with its candidates and their results, or the error.
 struct Compared {
     file: PathBuf,
     stem: String,
-    scenario: Result<Scenario, String>,
+    scenario: Scenario,
     candidates: Vec<Candidate>,
     inapplicable: Vec<Inapplicable>,
     entries: Vec<Entry>,
-    /// Internal faults.
-    faults: Vec<String>,
+    faults: Vec<Refused>,
 }
 
 /// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
-    args.written
-        .figure
-        .as_deref()
-        .map_or(Ok(()), prepare_figure)?;
+    let figure = args.written.figure.as_deref();
+    figure.map_or(Ok(()), prepare_figure)?;
     let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
@@ -46,21 +41,21 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         ..args.written.wanted()
     };
     let products = Products::prepare(&scenes::found(&all), wanted)?;
-    let asked = all.into_iter().map(|scene| match scene {
-        Ok(scene) => ask(&scene, args),
-        Err(unread) => Compared::refused(unread.file, unread.error),
-    });
-    let mut compared: Vec<Compared> = asked.collect();
-    run(&mut compared, output);
+    let asked = all.into_iter().map(|scene| ask(&scene?, args));
+    let mut asked: Vec<Result<Compared, Refused>> = asked.collect();
+    run(&mut asked, output);
     let mut status = ExitStatus::Good;
-    for c in &compared {
-        for error in c.scenario.as_ref().err().into_iter().chain(&c.faults) {
-            output.error(error);
+    for compared in &asked {
+        let faults = compared
+            .as_ref()
+            .map_or_else(std::slice::from_ref, |c| &c.faults);
+        for refused in faults {
+            status = status.max(output.refused(refused));
         }
-        status = status.max(c.status());
+        status = status.max(compared.as_ref().map_or(ExitStatus::Good, Compared::status));
     }
-    let documents: Vec<_> = compared.iter().map(Compared::document).collect();
-    match write(args, &compared, &documents) {
+    let documents: Vec<_> = asked.iter().map(document).collect();
+    match write(args, &asked, &documents) {
         Ok(()) => {
             let files = args.csv.iter().chain(&args.written.figure);
             files
@@ -70,32 +65,24 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         Err(error) => status = status.max(output.refuse(&format_args!("{error:#}"))),
     }
     let mut written = ExitStatus::Good;
-    for (c, document) in compared.iter().zip(&documents) {
-        let Ok(scenario) = &c.scenario else {
-            continue;
-        };
-        let result = products.write_comparison(&c.stem, scenario, &c.entries, document);
-        written = written.max(output.written(result));
+    for (compared, document) in asked.iter().zip(&documents) {
+        if let Ok(c) = compared {
+            let result = products.write_comparison(&c.stem, &c.scenario, &c.entries, document);
+            written = written.max(output.written(result));
+        }
     }
     if products.wants_report() {
-        written = written.max(output.written(report(&compared, &documents, &products)));
+        written = written.max(output.written(report(&asked, &documents, &products)));
     }
-    if compared.iter().any(|c| c.scenario.is_ok()) {
+    if asked.iter().any(Result::is_ok) {
         products.announce(written, output);
     }
     Ok(status.max(written).max(show(args, documents, output)))
 }
 
-fn ask(scene: &Scene, args: &CompareArgs) -> Compared {
-    let file = scene.found.file.clone();
-    let mut scenario = match guarded(|| scene.scenario()) {
-        Ok(Ok(Made { scenario, .. })) => scenario,
-        Ok(Err(error)) => return Compared::refused(file, error.to_string()),
-        Err(fault) => {
-            let error = format!("{}: {fault}", file.display());
-            return Compared::refused(file, error);
-        }
-    };
+fn ask(scene: &Scene, args: &CompareArgs) -> Result<Compared, Refused> {
+    let file = &scene.found.file;
+    let Imported { mut scenario, .. } = guarded_on(file, || scene.scenario())?;
     args.asked.apply_rules(&mut scenario);
     let risks = if args.max_risk.is_empty() {
         vec![scenario.max_risk]
@@ -107,15 +94,15 @@ fn ask(scene: &Scene, args: &CompareArgs) -> Compared {
     found
         .inapplicable
         .retain(|other| is_wanted(&other.method, args));
-    Compared {
-        file,
+    Ok(Compared {
+        file: file.clone(),
         stem: scene.found.stem.clone(),
         candidates: candidates(&found.methods, &risks),
         inapplicable: found.inapplicable,
-        scenario: Ok(scenario),
+        scenario,
         entries: Vec::new(),
         faults: Vec::new(),
-    }
+    })
 }
 
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
@@ -130,21 +117,19 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-/// Runs all candidates of all scenarios in parallel.
-fn run(compared: &mut [Compared], output: &Output) {
-    let jobs: Vec<(usize, &Scenario, Candidate)> = compared
-        .iter()
-        .enumerate()
-        .filter_map(|(index, c)| Some((index, c.scenario.as_ref().ok()?, &c.candidates)))
-        .flat_map(|(index, scenario, all)| all.iter().map(move |c| (index, scenario, *c)))
+fn run(asked: &mut [Result<Compared, Refused>], output: &Output) {
+    let jobs: Vec<(usize, &Compared, Candidate)> = (asked.iter().enumerate())
+        .filter_map(|(index, compared)| Some((index, compared.as_ref().ok()?)))
+        .flat_map(|(index, c)| c.candidates.iter().map(move |found| (index, c, *found)))
         .collect();
     let bar = output.progress(jobs.len());
-    let results: Vec<(usize, Result<Entry, String>)> = jobs
+    let results: Vec<(usize, Result<Entry, Refused>)> = jobs
         .into_par_iter()
-        .map(|(index, scenario, candidate)| {
-            let entry = guarded(|| candidate.run(scenario)).map_err(|fault| {
-                let file = compared[index].file.display();
-                format!("{file}, {}: {fault}", candidate.method)
+        .map(|(index, c, candidate)| {
+            let entry = guarded(|| candidate.run(&c.scenario)).map_err(|fault| {
+                let (file, method) = (c.file.display(), candidate.method);
+                let error = format_args!("{file}, {method}: {fault}");
+                Refused::new(&c.file, INTERNAL_FAULT, error)
             });
             bar.inc(1);
             (index, entry)
@@ -152,46 +137,32 @@ fn run(compared: &mut [Compared], output: &Output) {
         .collect();
     bar.finish_and_clear();
     for (index, result) in results {
-        match result {
-            Ok(entry) => compared[index].entries.push(entry),
-            Err(fault) => compared[index].faults.push(fault),
+        match (&mut asked[index], result) {
+            (Ok(compared), Ok(entry)) => compared.entries.push(entry),
+            (Ok(compared), Err(fault)) => compared.faults.push(fault),
+            // only scenarios are run
+            (Err(_), _) => {}
+        }
+    }
+}
+
+fn document(compared: &Result<Compared, Refused>) -> ScenarioComparisonDocument {
+    match compared {
+        Ok(c) => {
+            let file = c.file.display().to_string();
+            ScenarioComparisonDocument::of(file, &c.scenario, &c.entries, &c.inapplicable)
+        }
+        Err(refused) => {
+            let file = refused.file.display().to_string();
+            ScenarioComparisonDocument::failed(file, refused.error.clone())
         }
     }
 }
 
 impl Compared {
-    fn refused(file: PathBuf, error: String) -> Self {
-        Self {
-            file,
-            stem: String::new(),
-            scenario: Err(error),
-            candidates: Vec::new(),
-            inapplicable: Vec::new(),
-            entries: Vec::new(),
-            faults: Vec::new(),
-        }
-    }
-
-    /// Builds this scenario's part of the document.
-    fn document(&self) -> ScenarioComparisonDocument {
-        let file = self.file.display().to_string();
-        match &self.scenario {
-            Ok(scenario) => {
-                ScenarioComparisonDocument::of(file, scenario, &self.entries, &self.inapplicable)
-            }
-            Err(error) => ScenarioComparisonDocument::failed(file, error.clone()),
-        }
-    }
-
     /// Good if some planner has a clear plan. A plan that fails its verification is an internal
     /// fault.
     fn status(&self) -> ExitStatus {
-        if self.scenario.is_err() {
-            return ExitStatus::BadInput;
-        }
-        if !self.faults.is_empty() {
-            return ExitStatus::InternalFault;
-        }
         let of_planners: Vec<ExitStatus> = self
             .entries
             .iter()
@@ -205,10 +176,9 @@ impl Compared {
     }
 }
 
-/// Writes the requested files.
 fn write(
     args: &CompareArgs,
-    compared: &[Compared],
+    asked: &[Result<Compared, Refused>],
     documents: &[ScenarioComparisonDocument],
 ) -> anyhow::Result<()> {
     if let Some(file) = &args.csv {
@@ -220,10 +190,9 @@ fn write(
         write_atomically(file, &csv(rows)?)?;
     }
     if let Some(file) = &args.written.figure {
-        let drawn: Vec<(&Scenario, &[Entry])> = compared
-            .iter()
-            .filter_map(|c| Some((c.scenario.as_ref().ok()?, c.entries.as_slice())))
-            .collect();
+        let drawn = asked.iter().flatten();
+        let drawn: Vec<(&Scenario, &[Entry])> =
+            drawn.map(|c| (&c.scenario, c.entries.as_slice())).collect();
         if !drawn.is_empty() {
             comparison_figure(&drawn).write(file)?;
         }
@@ -233,21 +202,21 @@ fn write(
 
 /// Builds the report of all scenarios, including unreadable ones.
 fn report(
-    compared: &[Compared],
+    asked: &[Result<Compared, Refused>],
     documents: &[ScenarioComparisonDocument],
     products: &Products,
 ) -> Result<(), Failure> {
     let mut report = HtmlReport::new();
-    for (c, document) in compared.iter().zip(documents) {
-        match &c.scenario {
-            Ok(scenario) => {
+    for (compared, document) in asked.iter().zip(documents) {
+        match compared {
+            Ok(c) => {
                 let subject = products.subject(&c.stem, shown(&c.file));
-                report.add_comparison(&subject, document, scenario, &c.entries);
+                report.add_comparison(&subject, document, &c.scenario, &c.entries);
+                for fault in &c.faults {
+                    report_failure(&mut report, fault);
+                }
             }
-            Err(error) => report_failure(&mut report, &c.file, UNREADABLE, error),
-        }
-        for fault in &c.faults {
-            report_failure(&mut report, &c.file, INTERNAL_FAULT, fault);
+            Err(refused) => report_failure(&mut report, refused),
         }
     }
     let lead = "Every planner that applies and two baselines on the same targets.";

@@ -33,7 +33,7 @@ pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> 
     for scene in scenes {
         let reached = match scene {
             Ok(scene) => one(&scene, args, output),
-            Err(unread) => output.refuse(&unread.error),
+            Err(refused) => output.refused(&refused),
         };
         status = status.max(reached);
     }
@@ -41,16 +41,14 @@ pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> 
 }
 
 fn one(scene: &Scene, args: &ImportArgs, output: &Output) -> ExitStatus {
-    let imported = match scene.imported() {
-        None => {
-            output.note(&format_args!(
-                "{}: a scenario file already, left out",
-                scene.label()
-            ));
-            return ExitStatus::Good;
-        }
-        Some(Ok(imported)) => imported,
-        Some(Err(error)) => return output.refuse(&error),
+    if !scene.is_imported() {
+        let label = scene.label();
+        output.note(&format_args!("{label}: a scenario file already, left out"));
+        return ExitStatus::Good;
+    }
+    let imported = match scene.scenario() {
+        Ok(imported) => imported,
+        Err(refused) => return output.refused(&refused),
     };
     let file = args.out.join(format!("{}.toml", scene.found.stem));
     match write_atomically(&file, imported.text.as_bytes()) {

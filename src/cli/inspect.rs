@@ -18,7 +18,6 @@ use super::runner::guarded;
 /// Maximum number of similar entity names suggested for a missing one.
 const OFFERED: usize = 3;
 
-/// Shows a recording, or a part of it.
 pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let recorded = read(&args.recording)?;
     if args.plan {
@@ -43,7 +42,6 @@ fn read(path: &Path) -> anyhow::Result<Recorded> {
     }
 }
 
-/// Reads the plan document of a recording.
 pub fn plan_document(path: &Path) -> anyhow::Result<String> {
     document_of(&read(path)?, path)
 }
@@ -56,7 +54,8 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
     };
     if let Some(other) = other {
         bail!(
-            "{}: the recording of a {other}, which holds no plan document; `searoom inspect --json` prints its own",
+            "{}: the recording of a {other}, which holds no plan document; \
+             `searoom inspect --json` prints its own",
             path.display()
         );
     }
@@ -91,7 +90,6 @@ fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<Entit
     )
 }
 
-/// Contents of a recording.
 #[derive(Debug, Serialize)]
 struct Contents {
     file: String,

@@ -24,7 +24,6 @@ use clap::Parser;
 use args::{Arguments, Command};
 use output::Output;
 
-/// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     runner::keep_panics_quiet();
     let arguments = match Arguments::try_parse() {
@@ -45,7 +44,8 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(args, &output),
         #[cfg(not(feature = "recording"))]
         Command::Inspect(_) => anyhow::bail!(
-            "inspect: this program was built without recordings; build it with its default features, `cargo build`"
+            "inspect: this program was built without recordings; \
+             build it with its default features, `cargo build`"
         ),
         Command::Verify(args) => Ok(verify::verify(args, &output)),
         Command::Completions(args) => Ok(shell::completions(args, &output)),

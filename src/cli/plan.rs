@@ -17,9 +17,8 @@ use super::input::scenes;
 use super::output::Output;
 use super::output::products::{Failure, Products, make_parent};
 use super::output::status::ExitStatus;
-use super::runner::{Attempt, Previous, attempt};
+use super::runner::{Previous, attempt};
 
-/// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
@@ -30,7 +29,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
-        Attempt::Run(run, notes) => {
+        Ok((run, notes)) => {
             for note in notes {
                 output.note(&note);
             }
@@ -69,12 +68,10 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 .max(routed)
                 .max(args.shared.status(&run, &document))
         }
-        Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => output.refuse(&error),
-        Attempt::Fault(fault) => output.fault(&fault),
+        Err(refused) => output.refused(&refused),
     })
 }
 
-/// A route that is asked for.
 struct Route<'a> {
     file: &'a Path,
     format: RouteFormat,

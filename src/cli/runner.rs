@@ -7,34 +7,20 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use searoom::document::{PLAN_MEBIBYTES, PlanDocument};
+use searoom::document::{NOT_APPLICABLE, PLAN_MEBIBYTES, PlanDocument};
 use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::replanning::remember;
+use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
 use super::args::Shared;
-use super::input::scenes::{Made, Scene};
+use super::input::files::Refused;
+use super::input::scenes::Scene;
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
-}
-
-/// Result of one file.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one per file, and nearly always the large one"
-)]
-pub enum Attempt {
-    /// Run, with or without a plan, and notes on assumptions and unused parts of its file.
-    Run(Run, Vec<String>),
-    /// The file contains no scenario.
-    Unreadable(ScenarioError),
-    /// Title of a valid scenario that is not supported as requested, with the reason.
-    NotApplicable(String, ScenarioError),
-    /// Internal fault with its location.
-    Fault(String),
 }
 
 /// Suppresses panic messages on standard error; [`guarded`] returns them instead.
@@ -53,6 +39,11 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
             .unwrap_or_else(|| "an unknown place".to_owned());
         format!("internal fault at {place}: {}", message(payload.as_ref()))
     })
+}
+
+/// Runs `work` on a file; a panic is an internal fault of that file.
+pub fn guarded_on<T>(file: &Path, work: impl FnOnce() -> Result<T, Refused>) -> Result<T, Refused> {
+    guarded(work).unwrap_or_else(|fault| Err(Refused::fault(file, &fault)))
 }
 
 /// Runs [`guarded`] on a separate thread; `None` if it exceeds `time`. The thread continues until
@@ -88,7 +79,6 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// A plan that own ship follows.
 pub struct Previous {
     pub file: PathBuf,
     pub plan: PlanDocument,
@@ -123,34 +113,34 @@ impl Previous {
     }
 }
 
-/// Reads, plans and evaluates one scene.
-pub fn attempt(scene: &Scene, shared: &Shared, previous: Option<&Previous>) -> Attempt {
+/// Reads, plans and evaluates one scene; with notes on assumptions and unused parts of its file.
+pub fn attempt(
+    scene: &Scene,
+    shared: &Shared,
+    previous: Option<&Previous>,
+) -> Result<(Run, Vec<String>), Refused> {
     let file = &scene.found.file;
-    let work = || match scene.scenario() {
-        Ok(Made {
+    guarded_on(file, || {
+        let Imported {
             mut scenario,
             mut notes,
-        }) => {
-            if let Err(faults) = shared.apply(&mut scenario) {
-                return Attempt::NotApplicable(scenario.title, ScenarioError::faults(file, faults));
-            }
-            if let Some(previous) = previous {
-                match previous.remember(&mut scenario) {
-                    Ok(note) => notes.extend(note),
-                    Err(fault) => {
-                        let error = ScenarioError::faults(&previous.file, vec![fault]);
-                        return Attempt::NotApplicable(scenario.title, error);
-                    }
-                }
-            }
-            Attempt::Run(pipeline::run(scenario), notes)
+            ..
+        } = scene.scenario()?;
+        let unfit = |scenario: &Scenario, wrong: &Path, faults| Refused {
+            title: Some(scenario.title.clone()),
+            ..Refused::new(file, NOT_APPLICABLE, ScenarioError::faults(wrong, faults))
+        };
+        if let Err(faults) = shared.apply(&mut scenario) {
+            return Err(unfit(&scenario, file, faults));
         }
-        Err(error) => Attempt::Unreadable(error),
-    };
-    match guarded(work) {
-        Ok(attempt) => attempt,
-        Err(fault) => Attempt::Fault(format!("{}: {fault}", file.display())),
-    }
+        if let Some(previous) = previous {
+            match previous.remember(&mut scenario) {
+                Ok(note) => notes.extend(note),
+                Err(fault) => return Err(unfit(&scenario, &previous.file, vec![fault])),
+            }
+        }
+        Ok((pipeline::run(scenario), notes))
+    })
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use super::args::{Arguments, CompletionsArgs};
 use super::output::Output;
 use super::output::status::ExitStatus;
 
-/// Prints the completions of a shell.
 pub fn completions(args: &CompletionsArgs, output: &Output) -> ExitStatus {
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();

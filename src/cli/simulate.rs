@@ -4,21 +4,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use searoom::document::{
-    INTERNAL_FAULT, NOT_APPLICABLE, SimulationDocument, SimulationsDocument, UNREADABLE,
-};
+use searoom::document::{NOT_APPLICABLE, SimulationDocument, SimulationsDocument};
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
+use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::input::files::shown;
-use super::input::scenes::{self, Made, Scene};
+use super::input::files::{Refused, shown};
+use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
-use super::runner::guarded;
+use super::runner::guarded_on;
 
 /// Sails every file, one after another; a broken one does not stop the others.
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {
@@ -36,27 +35,24 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let several = scenes.len() > 1;
     let mut all_written = ExitStatus::Good;
     for scene in scenes {
-        let (file, sailed) = match &scene {
-            Ok(scene) => (
-                &scene.found.file,
-                guarded(|| match scene.scenario() {
-                    Ok(made) => sail(
-                        scene,
-                        made,
-                        args,
-                        &interrupted,
-                        &products,
-                        &mut report,
-                        output,
-                    )
-                    .map_err(|error| (NOT_APPLICABLE, format!("{error:#}"))),
-                    Err(error) => Err((UNREADABLE, error.to_string())),
-                }),
-            ),
-            Err(unread) => (&unread.file, Ok(Err((UNREADABLE, unread.error.clone())))),
-        };
+        let sailed = scene.and_then(|scene| {
+            let file = &scene.found.file;
+            guarded_on(file, || {
+                let made = scene.scenario()?;
+                sail(
+                    &scene,
+                    made,
+                    args,
+                    &interrupted,
+                    &products,
+                    &mut report,
+                    output,
+                )
+                .map_err(|error| Refused::new(file, NOT_APPLICABLE, format_args!("{error:#}")))
+            })
+        });
         status = status.max(match sailed {
-            Ok(Ok((document, written))) => {
+            Ok((document, written)) => {
                 let shown = if args.written.json {
                     ExitStatus::Good
                 } else {
@@ -71,15 +67,10 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 all_written = all_written.max(written);
                 shown.max(written).max(reached)
             }
-            Ok(Err((outcome, error))) => {
+            Err(refused) => {
                 failed += 1;
-                report_failure(&mut report, file, outcome, &error);
-                output.refuse(&error)
-            }
-            Err(fault) => {
-                failed += 1;
-                report_failure(&mut report, file, INTERNAL_FAULT, &fault);
-                output.fault(&fault)
+                report_failure(&mut report, &refused);
+                output.refused(&refused)
             }
         });
         if interrupted.load(Ordering::Relaxed) {
@@ -129,7 +120,7 @@ fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
 
 fn sail(
     scene: &Scene,
-    made: Made,
+    made: Imported,
     args: &SimulateArgs,
     interrupted: &AtomicBool,
     products: &Products,

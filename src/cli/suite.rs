@@ -1,21 +1,17 @@
 //! `searoom suite`: many scenarios, one row each.
 
-use std::path::Path;
-
-use searoom::document::{
-    INTERNAL_FAULT, NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument, UNREADABLE,
-};
+use searoom::document::{NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument};
 use searoom::report::page::HtmlReport;
 use searoom::report::{counted, printable, suite_table};
 
 use super::args::SuiteArgs;
-use super::input::files::shown;
+use super::input::files::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
-use super::runner::{Attempt, attempt};
+use super::runner::attempt;
 
 /// Document entries and messages so far, in the order of the files.
 #[derive(Default)]
@@ -33,24 +29,18 @@ impl Tally {
         self.status = self.status.max(status);
     }
 
-    /// Adds a valid scenario that the requested planner or rules do not support.
-    fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
-        report_failure(&mut self.report, file, NOT_APPLICABLE, &reason);
-        let file = file.display().to_string();
-        self.runs
-            .push(SuiteRunDocument::not_applicable(file, title, reason));
-    }
-
-    fn failed(&mut self, file: &Path, outcome: &'static str, error: String) {
-        self.reach(match outcome {
-            INTERNAL_FAULT => ExitStatus::InternalFault,
-            _ => ExitStatus::BadInput,
+    /// Adds a file without a run. A scenario that does not apply is no fault of it.
+    fn refused(&mut self, refused: Refused) {
+        report_failure(&mut self.report, &refused);
+        if refused.title.is_none() {
+            self.reach(refused.status());
+            self.errors.push(refused.error.clone());
+        }
+        let (file, error) = (refused.file.display().to_string(), refused.error);
+        self.runs.push(match refused.title {
+            Some(title) => SuiteRunDocument::not_applicable(file, title, error),
+            None => SuiteRunDocument::failed(file, refused.outcome, error),
         });
-        self.errors.push(error.clone());
-        report_failure(&mut self.report, file, outcome, &error);
-        let file = file.display().to_string();
-        self.runs
-            .push(SuiteRunDocument::failed(file, outcome, error));
     }
 }
 
@@ -73,7 +63,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 bar.set_message(printable(&scene.label()));
                 one(&scene, args, &products, &mut tally);
             }
-            Err(unread) => tally.failed(&unread.file, UNREADABLE, unread.error),
+            Err(refused) => tally.refused(refused),
         }
         bar.inc(1);
     }
@@ -92,7 +82,8 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     if let Some(scenarios) = count(|run| run.outcome == NOT_APPLICABLE) {
         output.note(&format_args!(
-            "{scenarios} not applicable, skipped: \"reason\" with --json, and `searoom plan`, say why"
+            "{scenarios} not applicable, skipped: \"reason\" with --json, and `searoom plan`, \
+             say why"
         ));
     }
     let document = SuiteDocument::of(tally.runs);
@@ -112,7 +103,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
 fn one(scene: &Scene, args: &SuiteArgs, products: &Products, tally: &mut Tally) {
     let file = scene.found.file.as_path();
     match attempt(scene, &args.shared, None) {
-        Attempt::Run(run, notes) => {
+        Ok((run, notes)) => {
             let plan = PlanDocument::of(&run);
             let name = file.display().to_string();
             tally.reach(args.shared.status(&run, &plan));
@@ -127,10 +118,6 @@ fn one(scene: &Scene, args: &SuiteArgs, products: &Products, tally: &mut Tally) 
                 tally.report.add_run(&subject, &plan, &run);
             }
         }
-        Attempt::Unreadable(error) => tally.failed(file, UNREADABLE, error.to_string()),
-        Attempt::NotApplicable(title, reason) => {
-            tally.not_applicable(file, title, reason.to_string());
-        }
-        Attempt::Fault(fault) => tally.failed(file, INTERNAL_FAULT, fault),
+        Err(refused) => tally.refused(refused),
     }
 }

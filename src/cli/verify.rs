@@ -11,7 +11,7 @@ use searoom::verification::{
 };
 
 use super::args::VerifyArgs;
-use super::input::files::{self, Unread};
+use super::input::files;
 use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded_within;
@@ -25,10 +25,10 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     for found in files {
         let path = match found {
             Ok(found) => found.file,
-            Err(Unread { file, error }) => {
-                let name = file.display().to_string();
-                documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
-                status = status.max(output.refuse(&error));
+            Err(refused) => {
+                status = status.max(output.refused(&refused));
+                let name = refused.file.display().to_string();
+                documents.push(VerifiedPlanDocument::unreadable(name, refused.error));
                 continue;
             }
         };

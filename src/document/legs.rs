@@ -117,7 +117,6 @@ fn are_one(last: &Segment, next: &Segment) -> bool {
         && (last.turn_rate - next.turn_rate).abs() <= SAME_SPEED * turns
 }
 
-/// The closest approach that the plan leaves.
 fn closest_approach(encounter: &EncounterDocument) -> Option<(f64, String)> {
     let (distance, time) = (encounter.dcpa_m?, encounter.tcpa_s?);
     let (target, distance) = (&encounter.target, tenths(distance));

@@ -8,13 +8,9 @@ use super::{
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::text::{printable, signed, square_metres, tenths};
 
-/// Maximum number of passing sides that are listed; the rest is counted.
 const LISTED: usize = 3;
-
-/// Name of the line with the planning time.
 pub(crate) const TIME_LINE: &str = "time";
 
-/// Adds a named line.
 type Add<'a> = dyn FnMut(&'static str, String) + 'a;
 
 /// Title and [`verdict_line`].
@@ -22,8 +18,8 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
     format!("{}: {}", printable(&plan.scenario), verdict_line(plan))
 }
 
-/// Outcome, whether the plan is verified and safe, the rules that it breaks and the waypoints that it
-/// skips.
+/// Outcome, whether the plan is verified and safe, the rules that it breaks, and the waypoints that
+/// it skips.
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
@@ -129,7 +125,6 @@ fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     }
 }
 
-/// Relaxation as a sentence, and the name of its line.
 fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
     let text = match relaxation.kind.as_str() {
@@ -169,7 +164,8 @@ fn stand_on(escape: &EscapeDocument) -> String {
         }
     };
     format!(
-        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: {turn}{speed_mps:.2} m/s"
+        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: \
+         {turn}{speed_mps:.2} m/s"
     )
 }
 
@@ -331,7 +327,6 @@ fn risk(plan: &PlanDocument, largest: f64) -> String {
     text
 }
 
-/// Lines on the solution of a plan under forces.
 fn control_lines(plan: &PlanDocument, control: &ControlDocument, add: &mut Add) {
     if !control.enclosed_targets.is_empty() {
         let names = control.enclosed_targets.join("', '");

@@ -1,5 +1,5 @@
-//! Memory that a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles, and the
-//! plan that own ship follows.
+//! Memory that a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles,
+//! and the plan that own ship follows.
 
 use serde::{Deserialize, Serialize};
 

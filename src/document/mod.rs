@@ -20,45 +20,22 @@ mod targets;
 mod verification;
 
 pub use assessment::*;
-pub use comparison::{
-    ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
-    TrackPointDocument,
-};
-pub use encounter::{
-    ConductDocument, EncounterDocument, ManoeuvreDocument, MonitorDocument, RoleDocument,
-    RuleViolationDocument, breaks, conduct_breaks,
-};
+pub use comparison::*;
+pub use encounter::*;
 pub use legs::PlannedLeg;
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
-pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
-pub use memory::{
-    KnownRoleDocument, MemoryDocument, PlannedManoeuvreDocument, StateDocument,
-    TargetMemoryDocument,
-};
-pub(crate) use memory::{state_document, steady};
-pub(crate) use parts::segment;
+pub use lint::*;
+pub use memory::*;
 pub use parts::*;
-pub use phases::{Phase, PhaseDocument};
-pub use plan::control::{
-    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
-};
-pub(crate) use plan::path_time::paths;
-pub use plan::path_time::{
-    PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument,
-};
-pub use plan::{PLAN_FORMAT, PLAN_MEBIBYTES, PlanDocument};
-pub(crate) use plan::{
-    cost_of, finite, minimised, objective, planner_names, position, segment_document, stats,
-    timing, violations,
-};
+pub use phases::*;
+pub use plan::control::*;
+pub use plan::path_time::*;
+pub use plan::*;
 pub use simulation::*;
-pub use suite::{
-    INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
-    UNREADABLE,
-};
+pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument};
-pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
-pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};
+pub use targets::*;
+pub use verification::*;
 
 fn is_zero(value: &f64) -> bool {
     *value == 0.0

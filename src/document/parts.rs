@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::targets::sets::{InitialSetDocument, VelocitySetDocument};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
+pub use crate::planner::SearchStats as SearchStatsDocument;
 use crate::trajectory::Segment;
 
 /// Point in the plane.
@@ -109,14 +110,6 @@ pub struct TurnDocument {
     pub t_s: f64,
 }
 
-/// Statistics of the search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SearchStatsDocument {
-    pub expanded: usize,
-    pub generated: usize,
-    pub edges_checked: usize,
-}
-
 /// Planning time, the only value that differs between two runs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TimingDocument {
@@ -148,7 +141,6 @@ impl StartDocument {
     }
 }
 
-/// The segment of a document.
 pub(crate) fn segment(document: &SegmentDocument) -> Segment {
     Segment::new(
         document.start.pose(),

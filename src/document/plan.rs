@@ -138,7 +138,7 @@ impl PlanDocument {
             violations: (run.evaluation.as_ref())
                 .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
             cost: cost(run),
-            search_stats: stats(run),
+            search_stats: run.planned.stats,
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
@@ -210,7 +210,7 @@ pub(crate) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
+pub(crate) fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
     let (kind, target, amount, unit, until_s) = match relaxation {
         Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
         Relaxation::Risk {
@@ -290,7 +290,6 @@ pub(crate) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluatio
     }
 }
 
-/// Costs of any motion.
 pub(crate) fn cost_of(
     trajectory: &Trajectory,
     evaluation: &Evaluation,
@@ -322,14 +321,6 @@ fn turn(turn: Alteration) -> TurnDocument {
         side: turn.side.to_string(),
         turn_deg: turn.degrees,
         t_s: turn.start,
-    }
-}
-
-pub(crate) fn stats(run: &Run) -> SearchStatsDocument {
-    SearchStatsDocument {
-        expanded: run.planned.stats.expanded,
-        generated: run.planned.stats.generated,
-        edges_checked: run.planned.stats.edges_checked,
     }
 }
 
@@ -377,7 +368,6 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     }
 }
 
-/// Node at exactly this time.
 fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     let node = motion.node_at(time);
     (node.time == time).then(|| NodeDocument {

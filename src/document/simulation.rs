@@ -127,7 +127,7 @@ pub struct SailedLandDocument {
 }
 
 /// Own ship's conduct over the whole simulation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SailedDocument {
     /// Space-time error of the sailed motion and of the first plan.
     pub cost_m2: f64,

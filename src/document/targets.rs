@@ -60,7 +60,6 @@ pub struct TimedSetDocument {
     pub set: VelocitySetDocument,
 }
 
-/// Builds the document of a target.
 pub(super) fn target(target: &Target) -> TargetDocument {
     let timed = |timed: &TimedVelocitySet| TimedSetDocument {
         until_s: timed.until.is_finite().then_some(timed.until),

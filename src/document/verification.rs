@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::ViolationDocument;
 
-/// Outcome of a file that is not a plan document.
 const UNREADABLE: &str = "unreadable";
 /// Outcome of a document whose check exceeded the time limit.
 const UNPROVEN: &str = "unproven";

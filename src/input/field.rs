@@ -105,7 +105,6 @@ pub(crate) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The outermost value of a file.
     pub(crate) fn root(node: &'a Node, faults: &'a Faults) -> Self {
         Self {
             faults,
@@ -136,7 +135,6 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Notes a fault here.
     pub(crate) fn fault(&self, found: impl Display, allowed: impl Display) {
         let fault = Fault::new(self.path.as_str(), found, allowed);
         self.faults.note(fault.at_line(self.node.line));
@@ -182,7 +180,6 @@ impl<'a> Field<'a> {
         found
     }
 
-    /// The number at a key that must be there.
     pub(crate) fn required_number(&self, key: &str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }
@@ -222,7 +219,6 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A whole number in a range.
     pub(crate) fn whole_number(&self, range: Range) -> Option<usize> {
         match self.any_number() {
             Some(value) if range.contains(value) && value.fract() == 0.0 => Some(value as usize),
@@ -297,7 +293,6 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// True or false.
     pub(crate) fn truth(&self) -> Option<bool> {
         match self.node.value {
             Value::Bool(truth) => Some(truth),

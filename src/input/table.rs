@@ -55,7 +55,6 @@ impl<'a> Table<'a> {
         self.take(key).is_some()
     }
 
-    /// The value of a key that may be absent.
     pub(crate) fn take(&mut self, key: &str) -> Option<Field<'a>> {
         if !self.known.iter().any(|known| known == key) {
             self.known.push(key.to_owned());
@@ -63,7 +62,6 @@ impl<'a> Table<'a> {
         self.field.get(key)
     }
 
-    /// The value of a key that must be there.
     pub(crate) fn require(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
         let field = self.take(key);
         if field.is_none() {
@@ -79,38 +77,31 @@ impl<'a> Table<'a> {
         self.field.require(key, allowed)
     }
 
-    /// The table at a key that must be there.
     pub(crate) fn required_table(&mut self, key: &str) -> Option<Table<'a>> {
         self.require(key, "a table")?.table("a table")
     }
 
-    /// A number that may be absent.
     pub(crate) fn number(&mut self, key: &str, range: Range) -> Option<f64> {
         self.take(key)?.number(range)
     }
 
-    /// A number that must be there.
     pub(crate) fn required_number(&mut self, key: &str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }
 
-    /// The value of a key, or `default` where the key is absent; `None` for a fault.
+    /// The value of a key, or `default` where the key is absent or its value is a fault.
     pub(crate) fn read_or<T>(
         &mut self,
         key: &str,
         default: T,
         read: impl FnOnce(&Field<'a>) -> Option<T>,
-    ) -> Option<T> {
-        self.take(key).map_or(Some(default), |field| read(&field))
+    ) -> T {
+        let found = self.take(key).and_then(|field| read(&field));
+        found.unwrap_or(default)
     }
 
-    /// A number that may be absent; the outer `None` is a fault.
-    pub(crate) fn optional_number(&mut self, key: &str, range: Range) -> Option<Option<f64>> {
-        self.read_or(key, None, |field| field.number(range).map(Some))
-    }
-
-    /// A number, or `default` where the key is absent; `None` for a fault.
-    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> Option<f64> {
+    /// A number, or `default` where the key is absent or its value is a fault.
+    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> f64 {
         self.read_or(key, default, |field| field.number(range))
     }
 

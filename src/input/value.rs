@@ -38,7 +38,6 @@ impl Node {
             .filter(|node| !matches!(node.value, Value::Null))
     }
 
-    /// The text, if the value is one.
     pub(crate) fn as_text(&self) -> Option<&str> {
         match &self.value {
             Value::Text(text) => Some(text),

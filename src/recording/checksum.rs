@@ -14,10 +14,7 @@ use rerun::external::re_log_types::{
 
 use super::APPLICATION;
 
-/// Prefix of the checksum in the name of its store.
 const PREFIX: &str = "checksum_";
-
-/// Length of the checksum in hexadecimal.
 const DIGITS: usize = 16;
 
 /// The first message ends within these bytes.
@@ -31,7 +28,6 @@ pub fn checksum(parts: &[&[u8]]) -> u64 {
     })
 }
 
-/// The message that opens a store.
 pub fn opening(store_id: StoreId) -> LogMsg {
     let source = StoreSource::Other(APPLICATION.to_owned());
     SetStoreInfo {
@@ -60,7 +56,6 @@ pub fn is_sealed(bytes: &[u8]) -> bool {
     place(bytes).is_some_and(|place| digits(bytes, &place).as_bytes() == &bytes[place])
 }
 
-/// Where the checksum is.
 fn place(bytes: &[u8]) -> Option<Range<usize>> {
     let mut head = bytes.get(..HEAD)?.windows(PREFIX.len());
     let start = head.position(|part| part == PREFIX.as_bytes())? + PREFIX.len();

@@ -28,7 +28,6 @@ pub use write::{Compared, RecordingError, Simulated, write, write_comparison, wr
 
 use rerun::{EntityPath, EntityPathPart, RecordingStreamResult};
 
-/// Result of logging a part of a recording.
 type Logged<T = ()> = RecordingStreamResult<T>;
 
 const APPLICATION: &str = "searoom";

@@ -254,7 +254,6 @@ fn recorded_comparison(scenario: &Scenario, entries: &[Entry], path: &Path) -> R
     Recorded::read(path).expect("whole")
 }
 
-/// Labels of an entity.
 fn labels(recorded: &Recorded, entity: &str) -> Vec<String> {
     let table = recorded.table(entity).expect(entity);
     let is_label = |c: &String| c.ends_with(":labels");

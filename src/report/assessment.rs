@@ -1,6 +1,6 @@
 //! Text of an assessment.
 
-use super::table::{Grid, columns, plain};
+use super::table::{Grid, plain};
 use crate::document::{AssessmentDocument, InitialSetDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
@@ -171,18 +171,11 @@ fn number(value: f64) -> String {
     (value + 0.0).to_string()
 }
 
-/// Formats a table without colours.
 fn table(
     header: &'static str,
     numbers: std::ops::Range<usize>,
     rows: impl Iterator<Item = Vec<String>>,
 ) -> String {
-    let grid = Grid {
-        header: columns(header),
-        numbers,
-        rows: rows
-            .map(|row| row.into_iter().map(plain).collect())
-            .collect(),
-    };
-    grid.text(false)
+    let rows = rows.map(|row| row.into_iter().map(plain).collect());
+    Grid::new(header, numbers, rows).text(false)
 }

@@ -1,12 +1,11 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
 use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
-use super::table::{Grid, Styled, columns, in_cell, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
 
-/// True if several risk levels were requested.
 pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
 }
@@ -38,14 +37,9 @@ pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
 
 /// Builds one row per entry; in a sweep, with the accepted risk.
 pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
-    let mut grid = Grid {
-        header: columns(
-            "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
-             clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks",
-        ),
-        numbers: 2..12,
-        rows: entries.iter().map(row).collect(),
-    };
+    let header = "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
+                  clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks";
+    let mut grid = Grid::new(header, 2..12, entries.iter().map(row));
     if is_sweep(entries) {
         grid.header.insert(2, "accepted\nrisk");
         grid.numbers.end += 1;
@@ -105,7 +99,8 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     let mut lines = Vec::new();
     if entries.iter().any(|e| e.cost.is_some()) {
         lines.push(
-            "J is counted until own ship's length from the last waypoint; a motion that does not come so near is counted to the end of the desired time"
+            "J is counted until own ship's length from the last waypoint; a motion that does not \
+             come so near is counted to the end of the desired time"
                 .to_owned(),
         );
     }

@@ -1,16 +1,13 @@
 //! Text of scenario faults.
 
-use super::table::{Grid, columns, or_dash, plain};
+use super::table::{Grid, or_dash, plain};
 use crate::document::LintDocument;
 use crate::text::{counted, tenths};
 
 /// Formats one row per target, then every finding and a summary.
 pub fn lint_text(document: &LintDocument, colour: bool) -> String {
-    let mut grid = Grid {
-        header: columns("scenario, target, role, dCPA\n[m], tCPA\n[s], to set\n[m], matters"),
-        numbers: 3..6,
-        rows: Vec::new(),
-    };
+    let header = "scenario, target, role, dCPA\n[m], tCPA\n[s], to set\n[m], matters";
+    let mut grid = Grid::new(header, 3..6, []);
     let mut findings = Vec::new();
     for scenario in &document.scenarios {
         let name = scenario.scenario.as_deref().unwrap_or(&scenario.file);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::table::{Grid, Styled, Tone, columns, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
     EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
     headline, met, passing, plan_lines, turn,
@@ -14,14 +14,10 @@ use crate::text::{counted, printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
-
-/// Maximum number of legs that are listed.
 const MOST_LEGS: usize = 40;
 
 /// Least turn that a table of legs shows, degrees.
 const LEAST_TURN_DEG: f64 = 0.05;
-
-/// Column name of the planning time.
 pub(super) const TIME_COLUMN: &str = "time\n[ms]";
 
 /// Formats a table with one row per scenario. Colour only when `colour`.
@@ -30,16 +26,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
-    Grid {
-        header: columns(
-            "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], clearance\n[m], \
-             risk, breaks, nodes, time\n[ms], verified, safe",
-        ),
-        numbers: 5..12,
-        rows: (runs.iter().zip(row_names(runs)))
-            .map(|(run, name)| suite_row(run, name))
-            .collect(),
-    }
+    let header = "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], \
+                  clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
+    let rows = runs.iter().zip(row_names(runs));
+    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name)))
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -112,7 +102,6 @@ pub(super) fn milliseconds(timing: TimingDocument) -> String {
     format!("{:.2}", 1e3 * timing.plan_s)
 }
 
-/// The broken rules of both judges.
 pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
     match broken {
         None => or_dash(None),
@@ -182,13 +171,9 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
             plain(leg.events.join("\n")),
         ]
     };
-    Grid {
-        header: columns(
-            "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens",
-        ),
-        numbers: 0..6,
-        rows: plan.legs().into_iter().enumerate().map(row).collect(),
-    }
+    let header =
+        "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens";
+    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row))
 }
 
 /// Formats the line for the time of no return.
@@ -199,8 +184,8 @@ pub fn no_return_line(found: NoReturn) -> String {
             "past: no plan clear of every hard set was found even from the start".to_owned()
         }
         NoReturn::At(time) => format!(
-            "{time:.0} s, to {NO_RETURN_STEP_S} s: the last time until which own ship can hold on and still \
-             find a plan clear of every hard set"
+            "{time:.0} s, to {NO_RETURN_STEP_S} s: the last time until which own ship can hold on \
+             and still find a plan clear of every hard set"
         ),
     };
     format!("  {:<13}{text}", "no return")

@@ -1,13 +1,12 @@
 //! Text of a simulation.
 
-use super::table::{Grid, Tone, columns, or_dash, plain, verdict};
+use super::table::{Grid, Tone, or_dash, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
 };
 use crate::text::tenths;
 
-/// Name of the line with the planning times.
 pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.
@@ -113,14 +112,9 @@ pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             or_dash((!broken.is_empty()).then(|| broken.join(" "))),
         ]
     });
-    Grid {
-        header: columns(
-            "target, behaviour, role, clearance\n[m], at\n[s], acts before\n[s], \
-             outside\nits set, breaks",
-        ),
-        numbers: 3..7,
-        rows: rows.collect(),
-    }
+    let header = "target, behaviour, role, clearance\n[m], at\n[s], acts before\n[s], \
+                  outside\nits set, breaks";
+    Grid::new(header, 3..7, rows)
 }
 
 /// Named lines of what was sailed and of the plans.
@@ -220,11 +214,8 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             lines(monitors(MonitorVerdict::Violated.word()), Tone::Bad),
         ]
     });
-    Grid {
-        header: columns("target, scores, rules broken, monitors satisfied, monitors violated"),
-        numbers: 0..0,
-        rows: rows.collect(),
-    }
+    let header = "target, scores, rules broken, monitors satisfied, monitors violated";
+    Grid::new(header, 0..0, rows)
 }
 
 /// Degrees. A smaller difference between the turns of two plans does not count.
@@ -275,11 +266,7 @@ pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
             or_dash((!remarks.is_empty()).then(|| remarks.join("\n"))),
         ]);
     }
-    Grid {
-        header: columns("planned at, turn, J\n[m²], outcome, remarks"),
-        numbers: 1..3,
-        rows,
-    }
+    Grid::new("planned at, turn, J\n[m²], outcome, remarks", 1..3, rows)
 }
 
 fn turn_text(degrees: f64) -> String {

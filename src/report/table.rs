@@ -13,15 +13,8 @@ pub(super) enum Tone {
     Bad,
 }
 
-/// Text with its rating.
 pub(super) type Styled = (String, Tone);
 
-/// Column names of a table, from a text with `, ` between them.
-pub(super) fn columns(names: &'static str) -> Vec<&'static str> {
-    names.split(", ").collect()
-}
-
-/// Rows under named columns.
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
@@ -31,6 +24,19 @@ pub(super) struct Grid {
 }
 
 impl Grid {
+    /// Rows under columns whose names have `, ` between them.
+    pub fn new(
+        names: &'static str,
+        numbers: std::ops::Range<usize>,
+        rows: impl IntoIterator<Item = Vec<Styled>>,
+    ) -> Self {
+        Self {
+            header: names.split(", ").collect(),
+            numbers,
+            rows: rows.into_iter().collect(),
+        }
+    }
+
     /// Removes one numeric column.
     pub fn without(mut self, name: &str) -> Self {
         if let Some(column) = self.header.iter().position(|n| *n == name) {
@@ -81,7 +87,6 @@ impl Grid {
     }
 }
 
-/// Escapes a text for a markdown cell.
 pub(super) fn in_cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
@@ -97,12 +102,10 @@ fn cell((text, tone): &Styled) -> Cell {
     }
 }
 
-/// Text without a rating.
 pub(super) fn plain(text: impl Into<String>) -> Styled {
     (text.into(), Tone::Plain)
 }
 
-/// Text, or a dash if there is none.
 pub(super) fn or_dash(text: Option<String>) -> Styled {
     plain(text.unwrap_or_else(|| "–".to_owned()))
 }

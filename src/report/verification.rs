@@ -1,11 +1,10 @@
 //! Text of a plan document's verification.
 
-use super::table::{Grid, Tone, columns, or_dash, plain};
+use super::table::{Grid, Tone, or_dash, plain};
 use crate::evaluation::{Violation, facts, outcome_word, skipped_waypoints};
 use crate::text::{counted, printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
 
-/// Maximum number of violations listed; the rest is counted.
 const LISTED: usize = 20;
 
 /// The first violations, one line each, and the number of the others.
@@ -128,12 +127,8 @@ fn margins(checked: &Verification, colour: bool) -> String {
                 plain(tenths(passage.tcpa)),
             ]
         });
-    let grid = Grid {
-        header: columns("target, margin\n[m], at\n[s], clearance\n[m], dCPA\n[m], tCPA\n[s]"),
-        numbers: 1..6,
-        rows: rows.collect(),
-    };
-    grid.text(colour)
+    let header = "target, margin\n[m], at\n[s], clearance\n[m], dCPA\n[m], tCPA\n[s]";
+    Grid::new(header, 1..6, rows).text(colour)
 }
 
 /// Formats three decimals; values that round to zero have no sign.

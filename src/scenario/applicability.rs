@@ -102,7 +102,8 @@ fn for_paths(scenario: &Scenario) -> Vec<Fault> {
         Err(NetworkError::NoWayThrough { alternative: index }) => faults.push(Fault::new(
             alternative(index),
             "a path on no way from the first waypoint to the last",
-            "a path that is met first where it can be reached, and later where another path goes on",
+            "a path that is met first where it can be reached, and later where another path goes \
+             on",
         )),
         Err(NetworkError::EmptyLeg { path, leg }) => faults.push(Fault::new(
             match path.checked_sub(1) {
@@ -153,8 +154,8 @@ fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec
                 format!("a turn on the spot that takes own hull to {least:.1} m from land")
             };
             let allowed = format!(
-                "at least {} m of water around own hull on every heading between the legs that meet \
-                 here, or the space-time planner",
+                "at least {} m of water around own hull on every heading between the legs that \
+                 meet here, or the space-time planner",
                 land.margin
             );
             faults.push(Fault::new(field, found, allowed));

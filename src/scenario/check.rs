@@ -47,7 +47,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .require("title", LINE)
         .and_then(|field| field.line_of_text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
-    let time = root.number_or("time_s", limits::CLOCK, 0.0);
+    let time = root
+        .take("time_s")
+        .map_or(Some(0.0), |field| field.number(limits::CLOCK));
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
@@ -121,7 +123,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
             targets: if known_any { known } else { Vec::new() },
             ..Memory::default()
         },
-        simulation: simulation?,
+        simulation,
     })
 }
 
@@ -235,7 +237,6 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-/// The desired trajectory and the alternative paths.
 struct Mission {
     desired: DesiredTrajectory,
     alternatives: Vec<Vec<Vector>>,
@@ -284,7 +285,7 @@ fn mission(
         } else {
             desired
         },
-        alternatives: alternatives?,
+        alternatives,
     })
 }
 

@@ -10,7 +10,6 @@ use crate::target::{TimedVelocitySet, Uncertainty};
 /// Allowed values of the keys of a tracked ship beside explicit sets.
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
-/// Keys of a tracked ship.
 const SHIP_KEYS: [&str; 16] = [
     "position",
     "course_deg",
@@ -30,7 +29,6 @@ const SHIP_KEYS: [&str; 16] = [
     "speed_spread_kn",
 ];
 
-/// The keys of an explicit set.
 struct SetKeys {
     vertices: &'static str,
     center: &'static str,
@@ -179,7 +177,6 @@ fn set_of(table: &mut Table, keys: &SetKeys) -> Option<ConvexSet> {
     }
 }
 
-/// Allowed shape matrices.
 const SHAPES: &str =
     "[[a, b], [b, c]], symmetric and positive semidefinite: a >= 0, c >= 0, a c >= b²";
 

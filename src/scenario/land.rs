@@ -13,8 +13,6 @@ use crate::vessel::{Hull, OwnShip};
 
 /// Metres: resolution of the room for a turn on the spot, which is never overestimated.
 const TURN_SETTLED_M: f64 = 1e-3;
-
-/// Faults of a path that are listed.
 const MAX_LISTED: usize = 20;
 
 /// Land, and the margin that own ship keeps from it.
@@ -145,15 +143,16 @@ fn check_path(fields: &[Field], path: &[Vector], land: &Land, plane: &Plane, hul
         });
         field.fault(
             format_args!(
-                "leg {}, which {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are missing at \
-                 east {:.1} m, north {:.1} m{place}",
+                "leg {}, which {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are \
+                 missing at east {:.1} m, north {:.1} m{place}",
                 crossing.leg + 1,
                 crossing.missing,
                 at.x,
                 at.y
             ),
             format_args!(
-                "at least {clearance:.1} m from the leg to land: half of own beam, and land_margin_m"
+                "at least {clearance:.1} m from the leg to land: half of own beam, and \
+                 land_margin_m"
             ),
         );
     }

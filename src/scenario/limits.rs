@@ -9,10 +9,7 @@ pub const FILE_MEBIBYTES: u64 = 16;
 
 /// Waypoints of a ship of an imported file: each leg of a target adds a velocity set.
 pub(super) const ROUTE_POINTS: usize = 200;
-
-/// Points of one recorded track.
 pub(super) const TRACK_POINTS: usize = 20_000;
-/// Ships of one imported situation.
 pub(super) const SHIPS: usize = 1000;
 
 /// Waypoints of a mission: the cost of a plan grows with their square.
@@ -91,5 +88,4 @@ pub(super) const FORCE: Range = Range::between(1e-6, 1e12);
 pub(super) const STATE_WEIGHT: Range = Range::between(0.0, 1e9);
 /// Weight of a force in the stage cost: with 0 the force would not be determined.
 pub(super) const FORCE_WEIGHT: Range = Range::between(1e-24, 1e9);
-/// Intervals of an optimal control problem.
 pub(super) const INTERVALS: Range = Range::between(1.0, 2000.0);

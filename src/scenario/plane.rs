@@ -6,10 +6,7 @@ use super::limits;
 use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
 use crate::input::{Field, Range, Table};
 
-/// Allowed positions.
 const POSITION: &str = "a table { east_m, north_m } or { lat_deg, lon_deg }";
-
-/// Allowed origins.
 const ORIGIN: &str = "a table { lat_deg, lon_deg }";
 
 /// Place of the plane on the earth, if the file has one.
@@ -23,7 +20,6 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Reads the key `origin`.
     pub(super) fn new(root: &mut Table) -> Self {
         let field = root.take("origin");
         Self {
@@ -33,7 +29,6 @@ impl Plane {
         }
     }
 
-    /// The georeference, if it is known.
     pub(super) fn earth(&self) -> Option<Georeference> {
         self.earth
     }
@@ -44,7 +39,6 @@ impl Plane {
         self.earth
     }
 
-    /// The point at the key `position`, which must be there.
     pub(super) fn required_position(&self, table: &mut Table) -> Option<Vector> {
         self.position(&table.require("position", POSITION)?)
     }
@@ -73,7 +67,6 @@ impl Plane {
         point
     }
 
-    /// Notes a missing origin that some field needs.
     pub(super) fn finish(&self, root: &mut Table) {
         if self.wanted.get() && !self.given {
             root.require(

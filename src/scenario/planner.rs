@@ -108,32 +108,25 @@ fn control_settings(planner: &mut Table, length: f64) -> Option<ControlSettings>
         return Some(ControlSettings::at_length(VesselKind::CyberShip2, length));
     };
     let mut table = field.table("a table")?;
-    let vessel = table.read_or("vessel", VesselKind::CyberShip2, |field| {
-        field.choice(&VesselKind::WORDS)
-    });
-    let vessel_kind = vessel.unwrap_or(VesselKind::CyberShip2);
-    let default = ControlSettings::at_length(vessel_kind, length);
-    let force_limits = table.read_or("force_limits", default.force_limits, force_limits);
-    let intervals = table.read_or("intervals", default.intervals, |field| {
-        field.whole_number(limits::INTERVALS)
-    });
-    let state = table.read_or("state_weights", default.state_weights, |field| {
-        let weights = weights::<6>(field, limits::STATE_WEIGHT)?;
-        some_weight(field, weights).map(StateVector::from)
-    });
-    // sway and yaw are positive to starboard in files, which a square does not see
-    let force = table.read_or("control_weights", default.force_weights, |field| {
-        weights::<3>(field, limits::FORCE_WEIGHT).map(ForceVector::from)
-    });
-    table.finish();
-    vessel?;
-    Some(ControlSettings {
-        force_limits: force_limits?,
-        intervals: intervals?,
-        state_weights: state?,
-        force_weights: force?,
+    let vessel = table.choice("vessel", &VesselKind::WORDS);
+    let default = ControlSettings::at_length(vessel.unwrap_or(VesselKind::CyberShip2), length);
+    let settings = ControlSettings {
+        force_limits: table.read_or("force_limits", default.force_limits, force_limits),
+        intervals: table.read_or("intervals", default.intervals, |field| {
+            field.whole_number(limits::INTERVALS)
+        }),
+        state_weights: table.read_or("state_weights", default.state_weights, |field| {
+            let weights = weights::<6>(field, limits::STATE_WEIGHT)?;
+            some_weight(field, weights).map(StateVector::from)
+        }),
+        // sway and yaw are positive to starboard in files, which a square does not see
+        force_weights: table.read_or("control_weights", default.force_weights, |field| {
+            weights::<3>(field, limits::FORCE_WEIGHT).map(ForceVector::from)
+        }),
         ..default
-    })
+    };
+    table.finish();
+    Some(settings)
 }
 
 fn force_limits(field: &Field) -> Option<ForceVector> {
@@ -144,7 +137,6 @@ fn force_limits(field: &Field) -> Option<ForceVector> {
     Some(ForceVector::new(surge?, sway?, yaw?))
 }
 
-/// A list of exactly `N` weights.
 fn weights<const N: usize>(field: &Field, range: Range) -> Option<[f64; N]> {
     let numbers = field.numbers(range)?;
     let count = numbers.len();

@@ -11,7 +11,6 @@ use crate::input::{Fault, Faults, InputError, abbreviated, every, read_text};
 /// The elements of a schedule that give speeds, the first before the second at each waypoint.
 const SCHEDULES: [&str; 2] = ["calculated", "manual"];
 
-/// A route.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Route {
     /// The waypoints, in the order of the file.

@@ -30,8 +30,8 @@ pub struct SimulationSettings {
     pub sensor: Sensor,
     /// True motion of each target, in the scenario's order; constant where there is none.
     pub behaviours: Vec<Behaviour>,
-    /// Fields that the reports of each target leave out, in the scenario's order; none where there is
-    /// none.
+    /// Fields that the reports of each target leave out, in the scenario's order; none where there
+    /// is none.
     pub not_reported: Vec<NotReported>,
 }
 
@@ -297,111 +297,92 @@ const TURN_DEG: Range = Range::within(180.0);
 const SILENT_TIMES: usize = 1000;
 
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
-pub(super) fn simulation(
-    root: &mut Table,
-    targets: Vec<SimulatedTarget>,
-) -> Option<SimulationSettings> {
+pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> SimulationSettings {
     let (behaviours, not_reported) = targets.into_iter().unzip();
     let standard = SimulationSettings {
         behaviours,
         not_reported,
         ..SimulationSettings::default()
     };
-    let Some(field) = root.take("simulation") else {
-        return Some(standard);
+    let field = root.take("simulation");
+    let Some(mut table) = field.and_then(|field| field.table("a table")) else {
+        return standard;
     };
-    let mut table = field.table("a table")?;
-    let step = table.number_or("step_s", STEP, standard.step);
-    let replan = table.number_or("replan_s", limits::DURATION, standard.replan);
-    let replan_on_events = table.read_or("replan", standard.replan_on_events, |field| {
-        field.choice(&[("period", false), ("events", true)])
-    });
-    let delay = table.number_or("delay_s", DELAY, standard.delay);
-    let duration = table.optional_number("duration_s", limits::DURATION);
-    let seed = table.read_or("seed", standard.seed, |field| {
-        field.whole_number(SEED).map(|seed| seed as u64)
-    });
-    let vessel = table.read_or("vessel", standard.vessel, vessel);
-    let current = table.read_or("current", standard.current, |field| {
-        current(field, standard.current)
-    });
-    let sensor = table.read_or("sensor", standard.sensor.clone(), sensor);
-    table.finish();
-    Some(SimulationSettings {
-        step: step?,
-        replan: replan?,
-        replan_on_events: replan_on_events?,
-        delay: delay?,
-        duration: duration?,
-        seed: seed?,
-        vessel: vessel?,
-        current: current?,
-        sensor: sensor?,
+    let settings = SimulationSettings {
+        step: table.number_or("step_s", STEP, standard.step),
+        replan: table.number_or("replan_s", limits::DURATION, standard.replan),
+        replan_on_events: table.read_or("replan", standard.replan_on_events, |field| {
+            field.choice(&[("period", false), ("events", true)])
+        }),
+        delay: table.number_or("delay_s", DELAY, standard.delay),
+        duration: table.number("duration_s", limits::DURATION),
+        seed: table.read_or("seed", standard.seed, |field| {
+            field.whole_number(SEED).map(|seed| seed as u64)
+        }),
+        vessel: table.read_or("vessel", standard.vessel, vessel),
+        current: table.read_or("current", standard.current, |field| {
+            current(field, standard.current)
+        }),
+        sensor: table.read_or("sensor", standard.sensor, sensor),
         ..standard
-    })
+    };
+    table.finish();
+    settings
 }
 
 fn vessel(field: &Field) -> Option<VesselModel> {
-    /// Reads the other keys of a kind.
-    type Read = fn(&mut Table) -> Option<VesselModel>;
+    type Read = fn(&mut Table) -> VesselModel;
     const KINDS: [(&str, Read); 3] = [
-        ("kinematic", |_| Some(VesselModel::Kinematic)),
-        ("first-order", |table| {
-            Some(VesselModel::FirstOrder {
-                course_time: table.number_or("course_time_s", TIME_CONSTANT, 3.0)?,
-                speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0)?,
-            })
+        ("kinematic", |_| VesselModel::Kinematic),
+        ("first-order", |table| VesselModel::FirstOrder {
+            course_time: table.number_or("course_time_s", TIME_CONSTANT, 3.0),
+            speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0),
         }),
-        ("nomoto", |table| {
-            Some(VesselModel::Nomoto {
-                gain: table.number_or("gain", NOMOTO, 1.0)?,
-                time: table.number_or("time", NOMOTO, 1.0)?,
-                rudder: radians_from_deg(table.number_or("rudder_deg", RUDDER_DEG, 35.0)?),
-                rudder_rate: {
-                    let rate = table.number_or("rudder_rate_deg_per_s", RUDDER_DEG, 5.0)?;
-                    radians_from_deg(rate)
-                },
-                speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0)?,
-            })
+        ("nomoto", |table| VesselModel::Nomoto {
+            gain: table.number_or("gain", NOMOTO, 1.0),
+            time: table.number_or("time", NOMOTO, 1.0),
+            rudder: radians_from_deg(table.number_or("rudder_deg", RUDDER_DEG, 35.0)),
+            rudder_rate: radians_from_deg(table.number_or(
+                "rudder_rate_deg_per_s",
+                RUDDER_DEG,
+                5.0,
+            )),
+            speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0),
         }),
     ];
     let mut table = field.table("a table with the key kind")?;
     let kind = table
         .require_first("kind", "\"kinematic\", \"first-order\" or \"nomoto\"")?
-        .choice(&KINDS);
-    let model = kind?(&mut table)?;
+        .choice(&KINDS)?;
+    let model = kind(&mut table);
     table.finish();
     Some(model)
 }
 
 fn current(field: &Field, standard: Current) -> Option<Current> {
     let mut table = field.table("a table")?;
-    let speed = table.speed("speed", CURRENT);
+    let speed = table.speed("speed", CURRENT).unwrap_or(0.0);
     let toward = table.number_or("toward_deg", limits::COURSE, 0.0);
-    let std = table.number_or("std_mps", CURRENT, standard.std);
-    let time = table.number_or("time_s", TIME_CONSTANT, standard.time);
-    let known = table.choice("known", &[("yes", true), ("no", false)]);
+    let current = Current {
+        mean: crate::frame::direction(heading_from_course_deg(toward)) * speed,
+        std: table.number_or("std_mps", CURRENT, standard.std),
+        time: table.number_or("time_s", TIME_CONSTANT, standard.time),
+        known: table.read_or("known", false, |field| {
+            field.choice(&[("yes", true), ("no", false)])
+        }),
+    };
     table.finish();
-    let heading = heading_from_course_deg(toward?);
-    Some(Current {
-        mean: crate::frame::direction(heading) * speed.unwrap_or(0.0),
-        std: std?,
-        time: time?,
-        known: known.unwrap_or(false),
-    })
+    Some(current)
 }
 
-fn noise(table: &mut Table, standard: Noise) -> Option<Noise> {
-    let position = table.number_or("position_std_m", limits::DISTANCE, standard.position);
-    let course = table.read_or("course_std_deg", standard.course, |field| {
-        field.number(ANGLE_STD_DEG).map(radians_from_deg)
-    });
-    let speed = table.number_or("speed_std_mps", limits::SPEED, standard.speed);
-    Some(Noise {
-        position: position?,
-        course: course?,
-        speed: speed?,
-    })
+fn noise(table: &mut Table, standard: Noise) -> Noise {
+    Noise {
+        position: table.number_or("position_std_m", limits::DISTANCE, standard.position),
+        course: table.read_or("course_std_deg", standard.course, |field| {
+            field.number(ANGLE_STD_DEG).map(radians_from_deg)
+        }),
+        speed: table.number_or("speed_std_mps", limits::SPEED, standard.speed),
+    }
 }
 
 fn sensor(field: &Field) -> Option<Sensor> {
@@ -415,79 +396,72 @@ fn sensor(field: &Field) -> Option<Sensor> {
     let mut kind = table
         .require_first("kind", "\"exact\", \"ais\" or \"radar\"")?
         .choice(&KINDS)?;
-    if kind == SensorKind::Exact {
-        table.finish();
-        return Some(Sensor::EXACT);
-    }
-    let interval;
-    let mut default_hull = Some(Sensor::EXACT.default_hull);
-    if kind == AIS {
-        let Hull { length, beam } = Sensor::EXACT.default_hull;
-        let length = table.number_or("default_length_m", limits::SHIP_LENGTH, length);
-        let beam = table.number_or("default_beam_m", limits::SHIP_LENGTH, beam);
-        default_hull = length
-            .zip(beam)
-            .map(|(length, beam)| Hull::new(length, beam));
-        let class = table.choice("class", &[("a", true), ("b", false)]);
-        let class_a = class.unwrap_or(true);
-        kind = SensorKind::Ais { class_a };
-        interval = table.optional_number("interval_s", TIME_CONSTANT);
-    } else {
-        interval = table.number_or("interval_s", TIME_CONSTANT, 3.0).map(Some);
-    }
-    let standard = match kind {
-        SensorKind::Radar => Noise {
-            position: 20.0,
-            ..Noise::NONE
-        },
-        _ => Noise {
-            position: 10.0,
-            course: radians_from_deg(2.0),
-            speed: 0.3,
-        },
+    let mut default_hull = Sensor::EXACT.default_hull;
+    let (interval, standard) = match kind {
+        SensorKind::Exact => {
+            table.finish();
+            return Some(Sensor::EXACT);
+        }
+        SensorKind::Ais { .. } => {
+            let Hull { length, beam } = &mut default_hull;
+            *length = table.number_or("default_length_m", limits::SHIP_LENGTH, *length);
+            *beam = table.number_or("default_beam_m", limits::SHIP_LENGTH, *beam);
+            let class_a = table.choice("class", &[("a", true), ("b", false)]);
+            let class_a = class_a.unwrap_or(true);
+            kind = SensorKind::Ais { class_a };
+            let standard = Noise {
+                position: 10.0,
+                course: radians_from_deg(2.0),
+                speed: 0.3,
+            };
+            (table.number("interval_s", TIME_CONSTANT), standard)
+        }
+        SensorKind::Radar => {
+            let position = 20.0;
+            let standard = Noise {
+                position,
+                ..Noise::NONE
+            };
+            let interval = table.number_or("interval_s", TIME_CONSTANT, 3.0);
+            (Some(interval), standard)
+        }
     };
     let found = noise(&mut table, standard);
-    let assumed = match table.take("assumed") {
-        Some(field) => {
-            let mut table = field.table("a table")?;
-            let assumed = noise(&mut table, found.unwrap_or(standard));
-            table.finish();
-            assumed
-        }
-        None => found,
-    };
+    let assumed = table.read_or("assumed", found, |field| {
+        let mut table = field.table("a table")?;
+        let assumed = noise(&mut table, found);
+        table.finish();
+        Some(assumed)
+    });
     let acceleration = table.number_or("acceleration", CURRENT, 0.02);
     let latency = table.number_or("latency_s", DELAY, 0.0);
     let detection = table.number_or("detection", DETECTION, 1.0);
     let silent = table.read_or("silent_s", Vec::new(), silent);
-    let (every, lasts) = match table.take("dropout") {
-        Some(field) => {
-            let mut table = field.table("a table")?;
-            let every = table.required_number("every_s", TIME_CONSTANT);
-            let lasts = table.required_number("lasts_s", TIME_CONSTANT);
-            table.finish();
-            (every, lasts)
-        }
-        None => (Some(f64::INFINITY), Some(0.0)),
-    };
-    let settle = table.number_or("settle_s", DELAY, 60.0);
-    let stale = table.number_or("stale_s", TIME_CONSTANT, 180.0);
-    table.finish();
-    Some(Sensor {
+    let never = (f64::INFINITY, 0.0);
+    let (dropout_every, dropout_lasts) = table.read_or("dropout", never, |field| {
+        let mut table = field.table("a table")?;
+        let every = table.required_number("every_s", TIME_CONSTANT);
+        let lasts = table.required_number("lasts_s", TIME_CONSTANT);
+        table.finish();
+        every.zip(lasts)
+    });
+    let sensor = Sensor {
         kind,
-        noise: found?,
-        assumed: assumed?,
-        acceleration: acceleration?,
-        interval: interval?,
-        latency: latency?,
-        detection: detection?,
-        silent: silent?,
-        dropout_every: every?,
-        dropout_lasts: lasts?,
-        settle: settle?,
-        stale: stale?,
-        default_hull: default_hull?,
-    })
+        noise: found,
+        assumed,
+        acceleration,
+        interval,
+        latency,
+        detection,
+        silent,
+        dropout_every,
+        dropout_lasts,
+        settle: table.number_or("settle_s", DELAY, 60.0),
+        stale: table.number_or("stale_s", TIME_CONSTANT, 180.0),
+        default_hull,
+    };
+    table.finish();
+    Some(sensor)
 }
 
 fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
@@ -500,10 +474,12 @@ fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
 pub(super) type SimulatedTarget = (Behaviour, NotReported);
 
 /// The keys of a target for the simulation, all of which may be absent.
-pub(super) fn simulated(target: &mut Table, plane: &Plane) -> Option<SimulatedTarget> {
-    let behaviour = behaviour(target, plane);
+pub(super) fn simulated(target: &mut Table, plane: &Plane) -> SimulatedTarget {
+    let behaviour = target.read_or("behaviour", Behaviour::Constant, |field| {
+        behaviour(field, plane)
+    });
     let not_reported = target.read_or("not_reported", NotReported::default(), not_reported);
-    behaviour.zip(not_reported)
+    (behaviour, not_reported)
 }
 
 fn not_reported(field: &Field) -> Option<NotReported> {
@@ -518,29 +494,20 @@ fn not_reported(field: &Field) -> Option<NotReported> {
     Some(found)
 }
 
-/// The table `behaviour` of a target, which may be absent.
-fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
-    let Some(field) = target.take("behaviour") else {
-        return Some(Behaviour::Constant);
-    };
-    /// Reads the other keys of a kind.
+fn behaviour(field: &Field, plane: &Plane) -> Option<Behaviour> {
     type Read = fn(&mut Table, &Plane) -> Option<Behaviour>;
     const KINDS: [(&str, Read); 7] = [
         ("constant", |_, _| Some(Behaviour::Constant)),
         ("random", |table, _| {
-            Some(Behaviour::Random {
-                every: table.number_or("every_s", TIME_CONSTANT, 20.0)?,
-                factor: table.number_or("factor", FACTOR, 1.0)?,
-            })
+            let (every, factor) = every_and_factor(table);
+            Some(Behaviour::Random { every, factor })
         }),
         ("extremes", |table, _| {
-            Some(Behaviour::Extremes {
-                every: table.number_or("every_s", TIME_CONSTANT, 20.0)?,
-                factor: table.number_or("factor", FACTOR, 1.0)?,
-            })
+            let (every, factor) = every_and_factor(table);
+            Some(Behaviour::Extremes { every, factor })
         }),
         ("pursuit", |table, _| {
-            let every = table.number_or("every_s", TIME_CONSTANT, 5.0)?;
+            let every = table.number_or("every_s", TIME_CONSTANT, 5.0);
             Some(Behaviour::Pursuit { every })
         }),
         ("track", |table, plane| {
@@ -551,10 +518,10 @@ fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
         ("gives-way", |table, _| {
             let mut number = |key, range, default| table.number_or(key, range, default);
             Some(Behaviour::GivesWay {
-                turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)?),
-                before: number("before_cpa_s", limits::DURATION, 240.0)?,
-                probability: number("probability", PROBABILITY, 1.0)?,
-                turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)?),
+                turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)),
+                before: number("before_cpa_s", limits::DURATION, 240.0),
+                probability: number("probability", PROBABILITY, 1.0),
+                turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)),
             })
         }),
         ("mutual", |_, _| Some(Behaviour::Mutual)),
@@ -566,6 +533,11 @@ fn behaviour(target: &mut Table, plane: &Plane) -> Option<Behaviour> {
     let behaviour = kind(&mut table, plane)?;
     table.finish();
     Some(behaviour)
+}
+
+fn every_and_factor(table: &mut Table) -> (f64, f64) {
+    let every = table.number_or("every_s", TIME_CONSTANT, 20.0);
+    (every, table.number_or("factor", FACTOR, 1.0))
 }
 
 fn track(points: &[Field], plane: &Plane) -> Option<Vec<(f64, Vector)>> {

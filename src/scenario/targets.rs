@@ -68,13 +68,13 @@ pub(super) fn targets(
                 for key in ["behaviour", "not_reported"] {
                     table.forbid(key, "nothing: only a tracked ship has one");
                 }
-                Some((Behaviour::Constant, NotReported::default()))
+                (Behaviour::Constant, NotReported::default())
             }
             _ => simulated(&mut table, plane),
         };
         table.finish();
-        let found = text.zip(motion).zip(role).zip(simulated);
-        targets.push(found.map(|(((name, motion), role), simulated)| {
+        let found = text.zip(motion).zip(role);
+        targets.push(found.map(|((name, motion), role)| {
             let target = Target {
                 name: name.to_owned(),
                 motion: motion.0,
@@ -109,7 +109,7 @@ fn role(
     let since = table
         .take(MORE[0])
         .map_or(time, |field| field.number(limits::until(time?)));
-    let course = table.optional_number(MORE[1], limits::COURSE)?;
+    let course = table.number(MORE[1], limits::COURSE);
     let role = field.choice(&Role::with_rule().collect::<Vec<_>>())?;
     let Some(ship) = ship else {
         return field.refuse("nothing: only a tracked ship has a role");
@@ -188,7 +188,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         course_spread: radians_from_deg(course_spread.unwrap_or(0.0)),
         starboard_turn: radians_from_deg(starboard_turn.unwrap_or(0.0)),
         turn_rate: radians_from_deg(turn_rate.unwrap_or(0.0)),
-        domain: domain?,
+        domain,
         ..ShipTrack::exact(pose?, speed?, hull?)
     };
     let Some(given) = given else {

@@ -108,7 +108,7 @@ pub enum Stop {
 }
 
 /// Counters of a search.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
     /// Expanded nodes.
     pub expanded: usize,

@@ -9,7 +9,6 @@ use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 
-/// Number of instants at which sets and own ship are compared.
 const INSTANTS: usize = 400;
 
 /// Angle in radians (2°): a target closer to dead ahead or dead astern is on neither side.

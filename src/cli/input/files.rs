@@ -1,20 +1,21 @@
 //! Files at the paths of a command, and the names of their results.
 
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use searoom::document::{INTERNAL_FAULT, UNREADABLE};
 
 use super::super::output::Output;
+use super::super::output::status::ExitStatus;
 
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";
 
-/// Requested file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// File path.
     pub file: PathBuf,
     /// Name of its outputs without extension: the path relative to the argument with "/" as "__".
     pub stem: String,
@@ -22,13 +23,44 @@ pub struct Found {
     pub in_folder: bool,
 }
 
-/// File, a part of it, or a folder that cannot be read as what is asked for.
+/// File, a part of it, or a folder without a result.
 #[derive(Debug)]
-pub struct Unread {
-    /// File path.
+pub struct Refused {
     pub file: PathBuf,
+    /// Title of a valid scenario that is not supported as requested.
+    pub title: Option<String>,
+    /// Word of the outcome in documents.
+    pub outcome: &'static str,
     /// Error that includes the file name.
     pub error: String,
+}
+
+impl Refused {
+    pub fn new(file: &Path, outcome: &'static str, error: impl Display) -> Self {
+        Self {
+            file: file.to_owned(),
+            title: None,
+            outcome,
+            error: error.to_string(),
+        }
+    }
+
+    pub fn unreadable(file: &Path, error: impl Display) -> Self {
+        Self::new(file, UNREADABLE, error)
+    }
+
+    /// An internal fault, whose text does not include the file name.
+    pub fn fault(file: &Path, fault: &str) -> Self {
+        let error = format_args!("{}: {fault}", file.display());
+        Self::new(file, INTERNAL_FAULT, error)
+    }
+
+    pub fn status(&self) -> ExitStatus {
+        match self.outcome {
+            INTERNAL_FAULT => ExitStatus::InternalFault,
+            _ => ExitStatus::BadInput,
+        }
+    }
 }
 
 /// What is looked for in a folder.
@@ -37,13 +69,11 @@ pub struct FileKind {
     endings: &'static [&'static str],
 }
 
-/// Scenario files, and files of imported formats.
 pub const SCENARIOS: FileKind = FileKind {
     name: "scenarios (.toml, .json or .xml files)",
     endings: &["toml", "json", "xml"],
 };
 
-/// Plan documents, and recordings that hold one.
 pub const PLANS: FileKind = FileKind {
     name: "plan documents (.json or .rrd files)",
     endings: &["json", "rrd"],
@@ -58,7 +88,7 @@ impl FileKind {
 
 /// Lists the files of a kind at `paths`, in the order of the arguments and sorted within each
 /// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
-pub fn find(paths: &[PathBuf], kind: &FileKind, output: &Output) -> Vec<Result<Found, Unread>> {
+pub fn find(paths: &[PathBuf], kind: &FileKind, output: &Output) -> Vec<Result<Found, Refused>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
     for found in meant(paths, kind) {
@@ -75,7 +105,7 @@ pub fn find(paths: &[PathBuf], kind: &FileKind, output: &Output) -> Vec<Result<F
     all
 }
 
-fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Unread>> {
+fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Refused>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -87,12 +117,7 @@ fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Unread>> {
             }));
             continue;
         }
-        let unread = |error: String| {
-            Err(Unread {
-                file: path.clone(),
-                error,
-            })
-        };
+        let unread = |error: String| Err(Refused::unreadable(path, error));
         let mut files = Vec::new();
         match walk(path, kind, &mut files) {
             Ok(()) if files.is_empty() => {
@@ -163,7 +188,8 @@ pub fn refuse_clashes(found: &[Found]) -> anyhow::Result<()> {
     for (index, later) in found.iter().enumerate() {
         if let Some(earlier) = found[..index].iter().find(|f| f.stem == later.stem) {
             bail!(
-                "{} and {} would both be written as '{}'; give the folder above them, or one of them",
+                "{} and {} would both be written as '{}'; \
+                 give the folder above them, or one of them",
                 earlier.file.display(),
                 later.file.display(),
                 later.stem

@@ -43,20 +43,17 @@ impl Column {
     }
 }
 
-/// Position and time.
 pub const POINT: [Column; 3] = [
     Column::new("east_m", -1e7, 1e7),
     Column::new("north_m", -1e7, 1e7),
     Column::new("t_s", 0.0, 1e6),
 ];
 
-/// Velocity of own ship.
 pub const VELOCITY: [Column; 2] = [
     Column::new("east_mps", -100.0, 100.0),
     Column::new("north_mps", -100.0, 100.0),
 ];
 
-/// Time.
 pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 
 /// Parses the comma-separated numbers of one option.

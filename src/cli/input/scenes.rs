@@ -4,65 +4,47 @@ use std::path::{Path, PathBuf};
 
 use searoom::input::read_text;
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
-use searoom::scenario::{FILE_MEBIBYTES, Fault, Scenario, ScenarioError};
+use searoom::scenario::{FILE_MEBIBYTES, Scenario, ScenarioError};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
-use super::files::{self, Found, SEPARATOR, Unread};
+use super::files::{self, Found, Refused, SEPARATOR};
 
 /// Scenario whose text is read but not yet checked.
 #[derive(Debug)]
 pub struct Scene {
-    /// File and output name.
     pub found: Found,
     source: Source,
 }
 
 #[derive(Debug)]
 enum Source {
-    /// Text of a scenario file.
     Text(String),
     /// Situation of an imported file, with assumptions for the values missing from it.
     Situation(Box<Situation>, Assumed),
 }
 
-/// Scenario with notes.
-#[derive(Debug)]
-pub struct Made {
-    pub scenario: Scenario,
-    /// Assumptions, and unused parts of the file.
-    pub notes: Vec<String>,
-}
-
 impl Scene {
-    /// Builds the scenario.
-    pub fn scenario(&self) -> Result<Made, ScenarioError> {
+    /// The scenario, and the text of its scenario file.
+    pub fn scenario(&self) -> Result<Imported, Refused> {
+        let file = &self.found.file;
         let made = match &self.source {
-            Source::Situation(situation, assumed) => situation.scenario(assumed).map(|i| Made {
-                scenario: i.scenario,
-                notes: i.notes,
-            }),
+            Source::Situation(situation, assumed) => situation.scenario(assumed),
             Source::Text(text) => {
-                let folder = self.found.file.parent().unwrap_or(Path::new(""));
-                Scenario::parse_beside(text, folder).map(|scenario| Made {
+                let folder = file.parent().unwrap_or(Path::new(""));
+                Scenario::parse_beside(text, folder).map(|scenario| Imported {
                     scenario,
+                    text: text.clone(),
                     notes: Vec::new(),
                 })
             }
         };
-        made.map_err(|faults| self.refused(faults))
+        made.map_err(|faults| Refused::unreadable(file, ScenarioError::faults(file, faults)))
     }
 
-    fn refused(&self, faults: Vec<Fault>) -> ScenarioError {
-        ScenarioError::faults(&self.found.file, faults)
-    }
-
-    /// Builds the scenario of an imported file with its text; `None` for a scenario file.
-    pub fn imported(&self) -> Option<Result<Imported, ScenarioError>> {
-        let Source::Situation(situation, assumed) = &self.source else {
-            return None;
-        };
-        Some(situation.scenario(assumed).map_err(|f| self.refused(f)))
+    /// True for a situation of another format.
+    pub fn is_imported(&self) -> bool {
+        matches!(self.source, Source::Situation(..))
     }
 
     /// Further facts that an imported file declares about its situation.
@@ -91,20 +73,19 @@ pub fn open(
     paths: &[PathBuf],
     assumed: &AssumedArgs,
     output: &Output,
-) -> Vec<Result<Scene, Unread>> {
+) -> Vec<Result<Scene, Refused>> {
     let assumed = assumed.assumed();
     let mut scenes = Vec::new();
     for entry in files::find(paths, &files::SCENARIOS, output) {
         match entry {
             Ok(found) => of_file(&found, &assumed, output, &mut scenes),
-            Err(unread) => scenes.push(Err(unread)),
+            Err(refused) => scenes.push(Err(refused)),
         }
     }
     scenes
 }
 
-/// The files of the scenes.
-pub fn found(scenes: &[Result<Scene, Unread>]) -> Vec<Found> {
+pub fn found(scenes: &[Result<Scene, Refused>]) -> Vec<Found> {
     scenes.iter().flatten().map(|s| s.found.clone()).collect()
 }
 
@@ -112,18 +93,17 @@ fn of_file(
     found: &Found,
     assumed: &Assumed,
     output: &Output,
-    scenes: &mut Vec<Result<Scene, Unread>>,
+    scenes: &mut Vec<Result<Scene, Refused>>,
 ) {
     let file = &found.file;
-    let unread = |error: String| Unread {
-        file: file.clone(),
-        error,
-    };
     let text = match read_text(file, FILE_MEBIBYTES, "a scenario file") {
         Ok(text) => text,
-        Err(error) => return scenes.push(Err(unread(error.to_string()))),
+        Err(error) => return scenes.push(Err(Refused::unreadable(file, error))),
     };
-    let wrong = |faults| Err(unread(ScenarioError::faults(file, faults).to_string()));
+    let wrong = |faults| {
+        let error = ScenarioError::faults(file, faults);
+        Err(Refused::unreadable(file, error))
+    };
     match Contents::parse(&text, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),
@@ -143,8 +123,8 @@ fn of_file(
             output.note(&format_args!("{}: {what}, left out", file.display()));
         }
         Ok(Contents::Other(what)) => {
-            let error = format!("{}: {what}; no scenario in it", file.display());
-            scenes.push(Err(unread(error)));
+            let error = format_args!("{}: {what}; no scenario in it", file.display());
+            scenes.push(Err(Refused::unreadable(file, error)));
         }
         Err(faults) => scenes.push(wrong(faults)),
     }
@@ -161,7 +141,7 @@ pub fn open_one(file: &Path, assumed: &AssumedArgs, output: &Output) -> Result<S
     let mut scenes = open(&[file.to_owned()], assumed, output);
     match (scenes.pop(), scenes.len()) {
         (Some(Ok(scene)), 0) => Ok(scene),
-        (Some(Err(unread)), 0) => Err(unread.error),
+        (Some(Err(refused)), 0) => Err(refused.error),
         (None, _) => Err(format!("{name}: no scenario in it")),
         (_, more) => Err(format!(
             "{name}: {} situations; `searoom suite` runs them",

@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
+use super::input::files::Refused;
 use products::Failure;
 use status::ExitStatus;
 
@@ -26,10 +27,8 @@ const COLOURS: [&str; 5] = [
     "\u{1b}[0m",
 ];
 
-/// Standard output and standard error.
 #[derive(Debug)]
 pub struct Output {
-    /// True if results may be coloured.
     pub colour: bool,
 }
 
@@ -78,7 +77,6 @@ impl Output {
         Cow::Owned(out + &printable_lines(rest))
     }
 
-    /// Prints a document.
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
             Ok(text) => self.result(text.trim_end()),
@@ -86,7 +84,6 @@ impl Output {
         }
     }
 
-    /// Prints a result as a document, or as text.
     pub fn show(
         &self,
         json: bool,
@@ -100,7 +97,6 @@ impl Output {
         }
     }
 
-    /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         // an error of standard error cannot be reported
         let error = error.to_string();
@@ -113,7 +109,11 @@ impl Output {
         ExitStatus::BadInput
     }
 
-    /// Prints an internal fault.
+    pub fn refused(&self, refused: &Refused) -> ExitStatus {
+        self.error(&refused.error);
+        refused.status()
+    }
+
     pub fn fault(&self, fault: &impl Display) -> ExitStatus {
         self.error(fault);
         ExitStatus::InternalFault
@@ -130,13 +130,11 @@ impl Output {
         )
     }
 
-    /// Prints a note.
     pub fn note(&self, note: &impl Display) {
         let note = note.to_string();
         let _ = writeln!(std::io::stderr(), "note: {}", printable_lines(&note));
     }
 
-    /// Notes that a file was written.
     pub fn wrote(&self, file: &Path) {
         self.note(&format_args!("wrote {}", file.display()));
     }
@@ -151,12 +149,10 @@ impl Output {
     }
 }
 
-/// Serialises a document to JSON.
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
 }
 
-/// Formats rows as CSV.
 pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
@@ -165,7 +161,6 @@ pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {
     writer.into_inner().context("the rows cannot be written")
 }
 
-/// Prints help, the version, or an argument error.
 pub fn usage(error: &clap::Error) -> ExitCode {
     // an error of this stream cannot be reported
     let _ = error.print();

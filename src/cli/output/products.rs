@@ -13,7 +13,7 @@ use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
-use super::super::input::files::{Found, refuse_clashes, shown};
+use super::super::input::files::{Found, Refused, refuse_clashes, shown};
 use super::super::runner::guarded;
 use super::status::ExitStatus;
 use super::{Output, json};
@@ -27,7 +27,6 @@ pub struct Products {
     report: Option<PathBuf>,
 }
 
-/// Requested paths.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
@@ -89,7 +88,6 @@ impl Products {
         })
     }
 
-    /// Writes the requested recording, figure and plan document.
     pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
         attempt(|| {
             #[cfg(feature = "recording")]
@@ -152,12 +150,10 @@ impl Products {
         }
     }
 
-    /// True if a report is requested.
     pub fn wants_report(&self) -> bool {
         self.report.is_some()
     }
 
-    /// Writes the report, if requested.
     pub fn write_report(
         &self,
         report: &HtmlReport,
@@ -317,8 +313,9 @@ pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// Adds a failure to a report, which shows files without the folders of this machine.
-pub fn report_failure(report: &mut HtmlReport, file: &Path, outcome: &str, error: &str) {
+pub fn report_failure(report: &mut HtmlReport, refused: &Refused) {
+    let Refused { file, error, .. } = refused;
     let name = shown(file);
     let error = error.replace(&file.display().to_string(), &name);
-    report.add_failure(&name, outcome, &error);
+    report.add_failure(&name, refused.outcome, &error);
 }

@@ -21,7 +21,6 @@ pub enum ExitStatus {
 }
 
 impl ExitStatus {
-    /// Exit status of one run.
     pub fn of(run: &Run) -> Self {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
@@ -39,7 +38,6 @@ impl ExitStatus {
         }
     }
 
-    /// Exit code of the process.
     pub fn code(self) -> u8 {
         match self {
             Self::Good => 0,

@@ -40,7 +40,6 @@ pub struct PathCornerDocument {
     pub turn_deg: f64,
 }
 
-/// Builds the diagram of a run.
 pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTimeDocument {
     // adding +0.0 converts a negative zero to zero
     let plain = |p: &PathTime| [p.distance + 0.0, p.time + 0.0];

@@ -7,32 +7,6 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::scenario::Fault;
 
-/// Convex set of positions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, try_from = "SetKeys")]
-pub enum InitialSetDocument {
-    Polygon {
-        vertices_m: Vec<[f64; 2]>,
-    },
-    Ellipse {
-        center_m: [f64; 2],
-        shape_m2: [[f64; 2]; 2],
-    },
-}
-
-/// Convex set of velocities.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, try_from = "SetKeys")]
-pub enum VelocitySetDocument {
-    Polygon {
-        vertices_mps: Vec<[f64; 2]>,
-    },
-    Ellipse {
-        center_mps: [f64; 2],
-        shape_m2_per_s2: [[f64; 2]; 2],
-    },
-}
-
 /// All keys of a set. An untagged enum is read from these so that an error names the wrong key.
 #[derive(Deserialize)]
 struct SetKeys {
@@ -44,108 +18,85 @@ struct SetKeys {
     shape_m2_per_s2: Option<[[f64; 2]; 2]>,
 }
 
-/// The keys of one unit: those of positions, or those of velocities.
-type Keys = (
-    Option<Vec<[f64; 2]>>,
-    Option<[f64; 2]>,
-    Option<[[f64; 2]; 2]>,
-);
-
 impl SetKeys {
-    fn of_positions(self) -> Keys {
-        match (self.vertices_mps, self.center_mps, self.shape_m2_per_s2) {
-            (None, None, None) => (self.vertices_m, self.center_m, self.shape_m2),
-            _ => (None, None, None),
-        }
-    }
-
-    fn of_velocities(self) -> Keys {
-        match (self.vertices_m, self.center_m, self.shape_m2) {
-            (None, None, None) => (self.vertices_mps, self.center_mps, self.shape_m2_per_s2),
-            _ => (None, None, None),
-        }
+    fn count(&self) -> usize {
+        let given = [
+            self.vertices_m.is_some(),
+            self.center_m.is_some(),
+            self.shape_m2.is_some(),
+            self.vertices_mps.is_some(),
+            self.center_mps.is_some(),
+            self.shape_m2_per_s2.is_some(),
+        ];
+        given.into_iter().filter(|given| *given).count()
     }
 }
 
 const NEITHER: &str = "found neither vertices alone nor centre and shape alone, in metres or in \
                        metres per second as the set asks; allowed: one of the two";
 
-impl TryFrom<SetKeys> for InitialSetDocument {
-    type Error = &'static str;
-
-    fn try_from(keys: SetKeys) -> Result<Self, Self::Error> {
-        match keys.of_positions() {
-            (Some(vertices_m), None, None) => Ok(Self::Polygon { vertices_m }),
-            (None, Some(center_m), Some(shape_m2)) => Ok(Self::Ellipse { center_m, shape_m2 }),
-            _ => Err(NEITHER),
-        }
-    }
-}
-
-impl TryFrom<SetKeys> for VelocitySetDocument {
-    type Error = &'static str;
-
-    fn try_from(keys: SetKeys) -> Result<Self, Self::Error> {
-        match keys.of_velocities() {
-            (Some(vertices_mps), None, None) => Ok(Self::Polygon { vertices_mps }),
-            (None, Some(center_mps), Some(shape_m2_per_s2)) => Ok(Self::Ellipse {
-                center_mps,
-                shape_m2_per_s2,
-            }),
-            _ => Err(NEITHER),
-        }
-    }
-}
-
-impl From<&ConvexSet> for InitialSetDocument {
-    fn from(set: &ConvexSet) -> Self {
-        match set {
-            ConvexSet::Polygon(set) => Self::Polygon {
-                vertices_m: vertices(set),
+/// Defines the document of a set with the keys of its unit.
+macro_rules! set_document {
+    ($(#[$doc:meta])* $name:ident { $vertices:ident, $center:ident, $shape:ident }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(untagged, try_from = "SetKeys")]
+        pub enum $name {
+            Polygon {
+                $vertices: Vec<[f64; 2]>,
             },
-            ConvexSet::Ellipse(set) => Self::Ellipse {
-                center_m: plain(set.center()),
-                shape_m2: rows(set),
+            Ellipse {
+                $center: [f64; 2],
+                $shape: [[f64; 2]; 2],
             },
         }
-    }
+
+        impl TryFrom<SetKeys> for $name {
+            type Error = &'static str;
+
+            fn try_from(keys: SetKeys) -> Result<Self, Self::Error> {
+                match (keys.count(), keys.$vertices, keys.$center, keys.$shape) {
+                    (1, Some($vertices), ..) => Ok(Self::Polygon { $vertices }),
+                    (2, _, Some($center), Some($shape)) => Ok(Self::Ellipse { $center, $shape }),
+                    _ => Err(NEITHER),
+                }
+            }
+        }
+
+        impl From<&ConvexSet> for $name {
+            fn from(set: &ConvexSet) -> Self {
+                match set {
+                    ConvexSet::Polygon(set) => Self::Polygon {
+                        $vertices: vertices(set),
+                    },
+                    ConvexSet::Ellipse(set) => Self::Ellipse {
+                        $center: plain(set.center()),
+                        $shape: rows(set),
+                    },
+                }
+            }
+        }
+
+        impl $name {
+            /// The set; the fault has no place.
+            pub(crate) fn set(&self) -> Result<ConvexSet, Fault> {
+                match self {
+                    Self::Polygon { $vertices } => polygon($vertices),
+                    Self::Ellipse { $center, $shape } => ellipse(*$center, $shape),
+                }
+            }
+        }
+    };
 }
 
-impl From<&ConvexSet> for VelocitySetDocument {
-    fn from(set: &ConvexSet) -> Self {
-        match set {
-            ConvexSet::Polygon(set) => Self::Polygon {
-                vertices_mps: vertices(set),
-            },
-            ConvexSet::Ellipse(set) => Self::Ellipse {
-                center_mps: plain(set.center()),
-                shape_m2_per_s2: rows(set),
-            },
-        }
-    }
+set_document! {
+    /// Convex set of positions.
+    InitialSetDocument { vertices_m, center_m, shape_m2 }
 }
 
-impl InitialSetDocument {
-    /// The set; the fault has no place.
-    pub(crate) fn set(&self) -> Result<ConvexSet, Fault> {
-        match self {
-            Self::Polygon { vertices_m } => polygon(vertices_m),
-            Self::Ellipse { center_m, shape_m2 } => ellipse(*center_m, shape_m2),
-        }
-    }
-}
-
-impl VelocitySetDocument {
-    /// The set; the fault has no place.
-    pub(crate) fn set(&self) -> Result<ConvexSet, Fault> {
-        match self {
-            Self::Polygon { vertices_mps } => polygon(vertices_mps),
-            Self::Ellipse {
-                center_mps,
-                shape_m2_per_s2,
-            } => ellipse(*center_mps, shape_m2_per_s2),
-        }
-    }
+set_document! {
+    /// Convex set of velocities.
+    VelocitySetDocument { vertices_mps, center_mps, shape_m2_per_s2 }
 }
 
 fn polygon(vertices: &[[f64; 2]]) -> Result<ConvexSet, Fault> {

@@ -27,7 +27,6 @@ pub struct ClosedLoop<'a> {
 pub struct FollowedPlan {
     pub from: f64,
     pub segments: Vec<Segment>,
-    /// The targets that it assumes.
     pub targets: Vec<AssumedTarget>,
 }
 

@@ -4,7 +4,6 @@ use rerun::{Color, LineStrips2D, LineStrips3D, Points2D, Radius};
 
 use super::style;
 
-/// Lines of one entity.
 #[derive(Debug, Default)]
 pub struct Lines<const AXES: usize> {
     strips: Vec<Vec<[f32; AXES]>>,

@@ -23,11 +23,7 @@ use crate::scenario::{Compliance, Scenario};
 
 /// Least time between two rows of what moves, seconds.
 const CURSOR_STEP_S: f64 = 2.0;
-
-/// Most rows of what moves.
 const CURSOR_TIMES: f64 = 120.0;
-
-/// Most samples of one curve.
 const CURVE_SAMPLES: f64 = 400.0;
 
 /// Things that colours distinguish.
@@ -50,7 +46,6 @@ pub struct Canvas<'a> {
     pub cursor_times: Vec<f64>,
     /// Seconds: the times at which curves are sampled.
     pub samples: Vec<f64>,
-    /// The part of the sea that is shown.
     pub bounds: Window,
     /// Metres of height per second in the space-time volume.
     pub metres_per_second: f64,
@@ -81,7 +76,6 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The colour of a target by its index.
     pub fn target_color(&self, index: usize) -> Color {
         match self.palette {
             Palette::Targets => style::target(index),
@@ -105,7 +99,6 @@ impl<'a> Canvas<'a> {
             .unwrap_or_else(|| self.scenario.own_ship.pose.ahead())
     }
 
-    /// The times of everything that moves.
     pub fn cursor_column(&self) -> TimeColumn {
         TimeColumn::new_duration_secs(TIMELINE, self.cursor_times.iter().copied())
     }
@@ -136,7 +129,6 @@ pub fn round_down(value: f64) -> f64 {
     rounded * power
 }
 
-/// `value` with one digit.
 fn one_digit(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     (value / power).round() * power

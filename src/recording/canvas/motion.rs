@@ -4,10 +4,8 @@ use crate::frame::{Pose, heading_of};
 use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
-/// The motion that the views show.
 #[derive(Debug, Clone, Copy)]
 pub enum ShownMotion<'a> {
-    /// The plan.
     Planned(&'a Trajectory),
     /// Without a plan: own ship as if it followed the desired trajectory. The views then show what
     /// is in its way.

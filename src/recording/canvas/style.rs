@@ -32,7 +32,6 @@ const fn rgb(digits: u32) -> Color {
     Color(Rgba32((digits << 8) | 0xff))
 }
 
-/// The colour of a target by its index in the scenario.
 pub fn target(index: usize) -> Color {
     TARGETS[index % TARGETS.len()]
 }
@@ -52,7 +51,6 @@ pub fn toward_background(color: Color, strength: f32) -> Color {
     Color::from_rgb(r, g, b)
 }
 
-/// Makes a colour translucent.
 pub fn translucent(color: Color, alpha: u8) -> Color {
     let [r, g, b, _] = color.to_array();
     Color::from_unmultiplied_rgba(r, g, b, alpha)
@@ -66,11 +64,8 @@ pub fn points(radius: f32) -> Radius {
 /// How a planned speed compares with the desired one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeedClass {
-    /// Below the desired speed.
     Slow,
-    /// At the desired speed.
     Desired,
-    /// Above the desired speed.
     Fast,
 }
 

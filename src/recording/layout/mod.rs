@@ -34,7 +34,6 @@ use crate::recording::{
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
-/// Lays out all views of a run.
 pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;

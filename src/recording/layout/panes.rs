@@ -15,7 +15,6 @@ use crate::recording::write::Recorder;
 /// The timeline of a layout: changes by the user come later on it.
 const TIMELINE: &str = "blueprint";
 
-/// A view or a container.
 #[derive(Debug)]
 pub struct Pane {
     /// Its entity in the layout.
@@ -23,7 +22,6 @@ pub struct Pane {
     id: [u8; 16],
 }
 
-/// The layout that is being built.
 #[derive(Debug, Default)]
 pub struct Panes {
     rec: Recorder,
@@ -43,7 +41,6 @@ impl Panes {
         Ok(pane)
     }
 
-    /// Sets a property of a view.
     pub fn set(&mut self, pane: &Pane, property: &str, value: &dyn AsComponents) -> Logged {
         self.log(&format!("{}/{property}", pane.path), value)
     }
@@ -72,7 +69,6 @@ impl Panes {
         self.container(panes, kind.with_row_shares(shares))
     }
 
-    /// Puts panes in rows with `columns` of them.
     pub fn grid(&mut self, panes: &[Pane], columns: u32) -> Logged<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Grid);
         self.container(panes, kind.with_grid_columns(columns))

@@ -223,7 +223,6 @@ fn contents(path: &str, chunks: &[Chunk]) -> EntityContents {
     }
 }
 
-/// The names of all components, sorted.
 fn components(chunks: &[Chunk]) -> Vec<String> {
     let names = chunks.iter().flat_map(Chunk::components_identifiers);
     let names: BTreeSet<String> = names.map(|name| name.to_string()).collect();

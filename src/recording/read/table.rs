@@ -7,10 +7,7 @@ use super::values::instances;
 use super::{components, seconds};
 use crate::recording::TIMELINE;
 
-/// The component that names the curves of a plot.
 const NAMES: &str = "SeriesLines:names";
-
-/// The component that holds a text.
 const TEXT: &str = "TextDocument:text";
 
 /// Everything that an entity holds, a row per time and write.

@@ -17,13 +17,11 @@ use crate::trajectory::{Cubic, Segment, Trajectory};
 /// Turn between two drawn points of an arc, radians.
 const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 
-/// A line of the chart.
 pub type Strip = Vec<[f32; 2]>;
 
 /// A polyline through `(position, time)`.
 pub type TimedLine = Vec<(Vector, f64)>;
 
-/// Logs everything of the chart that does not move.
 pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
@@ -33,7 +31,6 @@ pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_violations(rec, model)
 }
 
-/// Logs the grid and the desired trajectory.
 pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     // views of Rerun are y-down: this turns north up for everything below
     rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
@@ -87,13 +84,11 @@ pub fn grid_lines(canvas: &Canvas, window: &Window) -> Vec<[Vector; 2]> {
     northward.chain(eastward).collect()
 }
 
-/// Multiples of `step` within the interval.
 pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
     (first..=last).map(move |i| step * i as f64)
 }
 
-/// Logs the desired trajectory, dashed.
 fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let dash = canvas.bounds.size().max() / 120.0;
     let mut lines = Lines::default();
@@ -274,7 +269,6 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> Logged {
     rec.log_static(path(&[MAP, "conflict"]), &mark)
 }
 
-/// Logs where the independent check found a fault.
 fn log_violations(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let violations = match &model.run.evaluation {
         Some(evaluation) if !evaluation.violations.is_empty() => &evaluation.violations,

@@ -13,12 +13,9 @@ use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::vessel::Hull;
 
-/// Distance from the plan that own ship follows.
 pub const OFF_PLAN: &str = "curves/off_plan_m";
-/// Wall clock of every cycle.
 pub const PLANNING: &str = "curves/planning_ms";
 
-/// Logs the chart.
 pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     chart::log_sea(rec, &model.canvas)?;
     log_plans(rec, model)?;
@@ -27,7 +24,6 @@ pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     log_contacts(rec, model)
 }
 
-/// Logs the plan that own ship follows, a row per plan.
 fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let (mut lines, mut colors, mut radii) = (Vec::<Strip>::new(), Vec::new(), Vec::new());
     let mut lengths = Vec::new();
@@ -128,7 +124,6 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &dots, columns)
 }
 
-/// Logs where hulls met, from then on.
 fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     for target in &model.simulation.targets {
         let Some(time) = target.contact_t_s else {
@@ -162,7 +157,6 @@ fn log_strips(
     rec.log_moving(path(&[MAP, entity]), times, style, columns)
 }
 
-/// Logs the curves.
 pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let (canvas, simulation) = (&model.canvas, model.simulation);
     let mut log = |entity: &str, times: &[f64], series: &[Series]| {

@@ -18,22 +18,16 @@ use crate::target::Target;
 use crate::tolerance;
 use crate::trajectory::{ForceNode, Steered};
 
-/// Distance between the hulls, for each target.
 pub const CLEARANCE: &str = "curves/clearance_m";
-/// Distance of own ship's centre from the nearest set.
 pub const MARGIN: &str = "curves/margin_m";
-/// Risk, for each target.
 pub const RISK: &str = "curves/risk";
-/// Speed through the water.
 pub const SPEED: &str = "curves/speed_kn";
 /// Course, continuous: it may leave 0..360 rather than jump.
 pub const COURSE: &str = "curves/course_deg";
-/// Surge, sway and yaw rate at the nodes.
 pub const STATES: &str = "curves/states";
 /// Surge force, sway force and yaw moment, held from node to node.
 pub const FORCES: &str = "curves/forces";
 
-/// Logs all curves.
 pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let mut log = |entity: &str, times: &[f64], series: &[Series]| {
         log_plot(rec, path(&[entity]), times, Linear, series)
@@ -52,9 +46,7 @@ pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
     }
 }
 
-/// One curve of a plot.
 pub struct Series {
-    /// The name in the legend.
     pub name: String,
     color: Color,
     width: f32,
@@ -281,7 +273,6 @@ fn continuous_courses(near: f64, headings: impl Iterator<Item = f64>) -> Vec<f64
         .collect()
 }
 
-/// The motion under forces, where the plan is one.
 pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
     match model.motion {
         ShownMotion::Planned(trajectory) => trajectory.steered(),
@@ -289,7 +280,6 @@ pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
     }
 }
 
-/// A quantity at a node, with its name and unit.
 type Quantity = (&'static str, fn(&ForceNode) -> f64);
 
 const STATE: [Quantity; 3] = [

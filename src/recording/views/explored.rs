@@ -14,18 +14,14 @@ use crate::recording::write::Recorder;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Entity of the edges that are clear of every set.
 const FREE: &str = "free";
-/// Entity of the edges that meet one.
 pub const BLOCKED: &str = "blocked";
 
 /// Most points of all edges of a plan. A point takes 24 bytes in both views together.
 const POINT_BUDGET: usize = 5000;
 
-/// How much of the graph is drawn.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DrawnGraph {
-    /// Edges in the recording.
     pub edges: usize,
     /// Edges that the search tested, without those that take no time.
     pub tested: usize,
@@ -91,7 +87,6 @@ pub fn log_explored(
     Ok(drawn)
 }
 
-/// Finds why an edge was blocked.
 struct Judge<'a> {
     run: &'a Run,
     /// Made for the first edge that runs aground.

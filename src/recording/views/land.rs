@@ -7,13 +7,11 @@ use crate::recording::canvas::{Canvas, flat, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, VOLUME, path};
 
-/// Logs the land, where there is a map.
 pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     log_outlines(rec, canvas)?;
     log_surface(rec, canvas)
 }
 
-/// Logs the outlines on the chart.
 pub fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Some(land) = &canvas.scenario.land else {
         return Ok(());

@@ -43,26 +43,15 @@ impl Lane {
     }
 }
 
-/// A violation of a rule or of a monitor.
-struct Violated {
-    time: f64,
-    /// Short name of the rule.
-    rule: String,
-}
-
-fn violated(conduct: &ComplianceReport) -> Vec<Violated> {
-    let rules = conduct.violations.iter().map(|violation| Violated {
-        time: violation.time,
-        rule: violation.rule.to_owned(),
-    });
+/// When own ship violates rules and monitors, and their short names, in order of time.
+fn violated(conduct: &ComplianceReport) -> Vec<(f64, String)> {
+    let rules = conduct.violations.iter();
+    let rules = rules.map(|violation| (violation.time, violation.rule.to_owned()));
     let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
     let monitors = conduct.monitors.iter().filter(is_violated);
-    let monitors = monitors.map(|monitor| Violated {
-        time: monitor.time.unwrap_or(0.0),
-        rule: format!("monitor {}", monitor.monitor),
-    });
-    let mut all: Vec<Violated> = rules.chain(monitors).collect();
-    all.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let monitors = monitors.map(|m| (m.time.unwrap_or(0.0), format!("monitor {}", m.monitor)));
+    let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
     all
 }
 
@@ -101,12 +90,12 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
         let mut breaks = Lane::default();
-        for each in violated(conduct) {
-            if !rules.contains(&each.rule) {
-                rules.push(each.rule);
+        for (time, rule) in violated(conduct) {
+            if !rules.contains(&rule) {
+                rules.push(rule);
             }
             let text = format!("{name}: violates {}", rules.join(", "));
-            breaks.add(each.time, text, style::ALARM);
+            breaks.add(time, text, style::ALARM);
         }
         if !rules.is_empty() {
             breaks.end(end);
@@ -116,7 +105,6 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
     lanes
 }
 
-/// The number of lanes of the view.
 pub fn height(model: &ViewModel) -> usize {
     lanes(model).len()
 }

@@ -15,12 +15,10 @@ use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::target::Target;
 
-/// Line width of hard sets.
 pub const HARD_RADIUS: f32 = 1.6;
 /// Line width of sets with a ship domain, thinner than that of the hard ones.
 pub const DOMAIN_RADIUS: f32 = 0.7;
 
-/// Colour of the outline of a set with a ship domain.
 pub fn domain_color(canvas: &Canvas, index: usize) -> Color {
     style::toward_background(canvas.target_color(index), 0.75)
 }
@@ -34,7 +32,6 @@ pub struct DrawnShip<'a> {
     pub color: Color,
 }
 
-/// Logs everything that moves on the chart.
 pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_others(rec, model)?;
     let name = if model.motion.is_planned() {
@@ -51,7 +48,6 @@ pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_trails(rec, model, &[own])
 }
 
-/// Logs the targets and their sets.
 pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     for (index, sets) in canvas.sets.iter().enumerate() {
         let name = sets.hard.name();
@@ -70,7 +66,6 @@ pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     Ok(())
 }
 
-/// The style of the outline of a set.
 pub fn set_style(color: Color, radius: f32) -> LineStrips2D {
     LineStrips2D::update_fields()
         .with_colors([color])
@@ -90,7 +85,6 @@ pub fn log_sections(
     })
 }
 
-/// Logs a line at every cursor time.
 pub fn log_outlines(
     rec: &mut Recorder,
     canvas: &Canvas,
@@ -104,7 +98,6 @@ pub fn log_outlines(
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
 
-/// The closed boundary of a polygon.
 pub fn outline(polygon: &ConvexPolygon) -> Strip {
     let mut strip: Strip = polygon.vertices().iter().copied().map(flat).collect();
     strip.extend(strip.first().copied());
@@ -161,7 +154,6 @@ fn log_places(
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
 
-/// The colours of own ships and targets.
 pub fn ship_colors(canvas: &Canvas, own: &[DrawnShip]) -> impl Iterator<Item = Color> {
     let targets = 0..canvas.scenario.targets.len();
     let others = targets.map(|index| canvas.target_color(index));
@@ -193,7 +185,6 @@ pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Log
     rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &style, columns)
 }
 
-/// Logs own ship's hull and speed vector, which turn with it.
 fn log_own_hull(
     rec: &mut Recorder,
     canvas: &Canvas,

@@ -21,7 +21,6 @@ pub const DOMAIN_ALPHA: u8 = 16;
 /// Opacity of the body of a hard set, of 255.
 const HARD_ALPHA: u8 = 36;
 
-/// Logs the whole volume.
 pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
@@ -173,7 +172,6 @@ fn mesh(canvas: &Canvas, set: &Obstacle) -> Mesh3D {
         .with_triangle_indices(triangles)
 }
 
-/// Logs the plan, and its shadow on the sea.
 fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     if !model.motion.is_planned() {
         return Ok(());
@@ -189,7 +187,6 @@ fn log_planned(rec: &mut Recorder, model: &ViewModel) -> Logged {
     rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())
 }
 
-/// Logs the desired motion and the expected ones of the targets.
 fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let desired = &canvas.scenario.desired;
     let mut lines = Lines::default();
@@ -216,7 +213,6 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
 }
 
-/// Logs the plane of the cursor, and the ships in it.
 pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
     let Window { low, high } = canvas.bounds;
     let frame = [

@@ -6,7 +6,6 @@ use crate::document::{PlanDocument, TIME_LINE, headline, plan_lines};
 use crate::evaluation::Evaluation;
 use crate::recording::canvas::{ShownMotion, ViewModel};
 
-/// The text.
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     let lines = plan_lines(plan).into_iter();
     // the planning time would make equal recordings differ
@@ -27,7 +26,6 @@ pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String
     parts.join("\n\n")
 }
 
-/// How much of the explored graph is in the recording.
 fn graph(drawn: DrawnGraph) -> String {
     let shown = if drawn.edges < drawn.tested {
         format!("{} of {} tested edges are", drawn.edges, drawn.tested)
@@ -37,7 +35,6 @@ fn graph(drawn: DrawnGraph) -> String {
     format!("{shown} in the recording under `explored`, hidden on the chart.")
 }
 
-/// Claims of the plan, with their assumptions.
 fn claim(model: &ViewModel) -> String {
     let run = model.run;
     let judged = run.evaluation.as_ref().is_some_and(Evaluation::verified);
@@ -77,7 +74,6 @@ fn claim(model: &ViewModel) -> String {
     )
 }
 
-/// How to read the chart.
 fn key(model: &ViewModel) -> String {
     format!(
         "Chart: own ship is white, its plan yellow and thick where it is faster than desired, blue \

@@ -21,7 +21,6 @@ pub fn limit(model: &ViewModel) -> f64 {
     1.5 * model.scenario.own_ship.max_speed()
 }
 
-/// Logs the whole view.
 pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
     // north up, as on the chart
     let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
@@ -50,7 +49,6 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
     rec.log_moving(entity, model.cursor_column(), &style, columns)
 }
 
-/// Logs the axes, and a circle for each of own ship's speeds.
 fn log_axes(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let limit = limit(model);
     let mut lines = Lines::default();

@@ -19,7 +19,6 @@ use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, VOLUME, layout, path};
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Method, Stroke};
 
-/// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
 
 /// Radius on the screen for one pixel of a figure's line.
@@ -80,7 +79,6 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
     })
 }
 
-/// One motion and its style.
 struct Candidate<'a> {
     entry: &'a Entry,
     own: DrawnShip<'a>,
@@ -194,7 +192,6 @@ fn log_kept_out_of(
     Ok(())
 }
 
-/// Logs the motion on the chart and in the volume.
 fn log_way(rec: &mut Recorder, canvas: &Canvas, candidate: &Candidate, order: f32) -> Logged {
     let Candidate { own, style, .. } = candidate;
     let ShownMotion::Planned(trajectory) = own.motion else {
@@ -252,8 +249,8 @@ fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> 
 }
 
 fn text(table: &str, graphs: &[String]) -> String {
-    let key = "The plots name the colours; point at a line for its name. Grey sets are those of the \
-               scenario. A method that avoids others (ellipses around them, level sets of an \
+    let key = "The plots name the colours; point at a line for its name. Grey sets are those of \
+               the scenario. A method that avoids others (ellipses around them, level sets of an \
                accepted risk) has them in its colour.";
     let mut parts = vec![table.to_owned(), key.to_owned()];
     if !graphs.is_empty() {

@@ -36,7 +36,6 @@ pub fn encode(recording: Recorder, layout: Recorder) -> Result<Vec<u8>, Failure>
     Ok(bytes)
 }
 
-/// The messages of a store: its opening and its chunks.
 fn messages(store: &StoreId, chunks: &[Chunk]) -> impl Iterator<Item = ChunkResult<LogMsg>> {
     let message = |chunk: &Chunk| Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?));
     std::iter::once(Ok(opening(store.clone()))).chain(chunks.iter().map(message))

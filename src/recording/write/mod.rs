@@ -43,7 +43,6 @@ pub enum RecordingError {
     },
 }
 
-/// An error of Rerun.
 pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Writes `run` as a recording with its layout to `path`, in full or not at all.
@@ -115,7 +114,6 @@ fn bytes(
 
 const JSON: &str = "application/json";
 
-/// Logs all views of a run and returns their layout.
 fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged<Recorder> {
     ships::log_ships(rec, model)?;
     velocities::log_velocities(rec, model)?;

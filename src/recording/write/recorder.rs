@@ -25,7 +25,6 @@ impl Recorder {
         self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
     }
 
-    /// Logs the summary, a text in markdown.
     pub fn log_summary(&mut self, text: String) -> Logged {
         let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
         self.log_static(SUMMARY, &text)
@@ -67,7 +66,6 @@ impl Recorder {
         Ok(())
     }
 
-    /// The chunks, in their order.
     pub fn into_chunks(self) -> Vec<Chunk> {
         self.chunks
     }

@@ -95,28 +95,25 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     layout::of_simulation(&model)
 }
 
-/// How to read the chart.
 fn key(model: &ClosedLoop) -> String {
     format!(
-        "Chart at the cursor: own ship is white, and so is its plan where it has the desired speed; \
-         yellow and thick is faster, blue and thin slower. Each target has a colour for its true hull, \
-         its track, and thick for the hard set that the plan assumes; grey is the hull that the plan \
-         assumes. Sets apply to own ship's centre. Speed vectors are of {:.0} s, dots every {:.0} s; \
-         the grid has {:.0} m.",
+        "Chart at the cursor: own ship is white, and so is its plan where it has the desired \
+         speed; yellow and thick is faster, blue and thin slower. Each target has a colour for its \
+         true hull, its track, and thick for the hard set that the plan assumes; grey is the hull \
+         that the plan assumes. Sets apply to own ship's centre. Speed vectors are of {:.0} s, \
+         dots every {:.0} s; the grid has {:.0} m.",
         ships::vector_seconds(&model.canvas),
         model.canvas.cursor_times.get(1).copied().unwrap_or(0.0),
         chart::grid_spacing(&model.canvas),
     )
 }
 
-/// Something that happened.
 struct Event {
     time: f64,
     level: &'static str,
     text: String,
 }
 
-/// Logs what happened, in order of time.
 fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> Logged {
     let mut events = outcomes(document);
     events.extend(alarms(document));

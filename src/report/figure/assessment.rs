@@ -11,14 +11,10 @@ use crate::study::assess::OwnSituation;
 
 /// Limit of the velocity panel as a multiple of the maximum speed.
 const FASTEST: f64 = 1.3;
-
-/// Stroke of own ship's track.
 const OWN: Stroke = Stroke::solid("#000000", 1.6);
 
 /// Gap in pixels between a set and the base line of its name.
 const GAP: f64 = 5.0;
-
-/// Number of panels in a row.
 const COLUMNS: usize = 2;
 
 /// Draws the sections at `times` in seconds, dCPA over the velocities, and the risk at each time.
@@ -64,7 +60,6 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
     Figure::new(COLUMNS, panels)
 }
 
-/// Stroke on a dark field.
 const OWN_ON_FIELD: Stroke = Stroke {
     colour: field::OWN,
     ..OWN

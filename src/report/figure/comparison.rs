@@ -14,7 +14,6 @@ use crate::geometry::Window;
 use crate::scenario::Scenario;
 use crate::study::compare::{Candidate, Entry, Method};
 
-/// Colour of the targets' sets.
 const SETS: &str = "#888888";
 
 /// Time step of a curve in seconds.

@@ -12,13 +12,10 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
-/// Number of bands of a risk field.
 const RISK_BANDS: usize = 20;
 
 /// Maximum number of bands of a distance field.
 const DISTANCE_BANDS: f64 = 20.0;
-
-/// Boundary of a set over a field.
 const BOUNDARY: Stroke = Stroke::solid("#ffffff", 1.6);
 
 /// Boundary of a velocity obstacle, which is white.

@@ -13,7 +13,6 @@ const YAW: Stroke = Stroke::solid("#d55e00", 1.8);
 /// Least span of a panel in its unit, so that rounding is not drawn in full size.
 const LEAST_SPAN: f64 = 0.01;
 
-/// One quantity at a node, with its label and stroke.
 type Quantity = (&'static str, Stroke, fn(&ForceNode) -> f64);
 
 /// Builds panels for speeds, turn rate, forces and moment, because their units differ. Starboard

@@ -63,7 +63,6 @@ pub fn mark(at: Vector, colour: &str) -> Plot {
     Plot::Scatter(point.with_color(colour).with_size(4.5))
 }
 
-/// Draws the points of a curve.
 pub(super) fn marks(at: &[Vector], colour: &str) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
     Plot::Scatter(points.with_color(colour).with_size(4.0))

@@ -85,7 +85,6 @@ impl Panel {
         }
     }
 
-    /// Creates a panel whose axes have different units.
     pub(super) fn free(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
             title,
@@ -133,20 +132,17 @@ impl Panel {
         self.plots.extend(area(polygon, colour, opacity));
     }
 
-    /// Fills the hull of points.
     pub(super) fn fill_hull(&mut self, points: &[Vector], colour: &str, opacity: f64) {
         if let Ok(hull) = ConvexPolygon::hull(points) {
             self.fill(&hull, colour, opacity);
         }
     }
 
-    /// Draws a polyline, closed on request.
     pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
         self.plots.push(curve(points, closed, stroke));
         self.curves.push(points.to_vec());
     }
 
-    /// Adds a text at a position.
     pub(super) fn note(&mut self, text: &str, at: Vector) {
         let note = TextAnnotation::new(text, at.x, at.y).with_font_size(NOTE_SIZE);
         self.notes.push(note);

@@ -8,7 +8,6 @@ use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::path_time::PathTimeDiagram;
 
-/// Stroke at joints of legs.
 const JOINT: Stroke = Stroke::dashed("#bbbbbb", 0.8);
 
 /// Colours of successive targets; they also differ in lightness.
@@ -19,7 +18,6 @@ const COLOURS: [&str; 7] = [
 /// Time shown after the last arrival, as a fraction of the time until then.
 const AFTER: f64 = 0.2;
 
-/// Colour of a target by its index.
 pub(super) fn target_colour(index: usize) -> &'static str {
     COLOURS[index % COLOURS.len()]
 }

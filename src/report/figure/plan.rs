@@ -21,25 +21,14 @@ use crate::text::tenths;
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
 
-/// Stroke of the desired trajectory.
 pub(super) const DESIRED: Stroke = Stroke::dashed("#777777", 1.4);
-
-/// Stroke of the planned trajectory.
 pub(super) const PLANNED: Stroke = Stroke::solid("#000000", 2.4);
 
 /// Stroke between the centres of the hulls at the closest approach.
 const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.6);
-
-/// Stroke of alternative paths.
 const ALTERNATIVE: Stroke = Stroke::solid("#b0b0b0", 1.4);
-
-/// Stroke of motions found by a search.
 const FOUND: Stroke = Stroke::solid("#009e73", 0.8);
-
-/// Colour of land.
 pub(super) const LAND: &str = "#d9cba3";
-
-/// Outline of land.
 const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
 /// Most instants after the start at which the sets are drawn.
@@ -167,7 +156,6 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     traffic_chart(title, scenario, traffic)
 }
 
-/// A target of a chart.
 pub(super) struct Charted {
     /// The words of the legend.
     pub key: String,
@@ -308,7 +296,6 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
     panel
 }
 
-/// Mean of the points of a boundary.
 fn middle(boundary: &[Vector]) -> Vector {
     boundary.iter().sum::<Vector>() / boundary.len() as f64
 }

@@ -48,7 +48,10 @@ impl FigureFormat {
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// Unsupported file extension.
-    #[error("{}: found a name that ends neither in .svg nor in .png; allowed: one of the two", file.display())]
+    #[error(
+        "{}: found a name that ends neither in .svg nor in .png; allowed: one of the two",
+        file.display()
+    )]
     Format {
         /// File path.
         file: PathBuf,
@@ -174,14 +177,6 @@ fn numbered_anew(svg: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_ending_decides() {
-        let of = |name: &str| FigureFormat::of(Path::new(name));
-        assert_eq!(of("a.svg"), Some(FigureFormat::Svg));
-        assert_eq!(of("b/a.PNG"), Some(FigureFormat::Png));
-        assert_eq!((of("a"), of("a.pdf"), of(".svg")), (None, None, None));
-    }
 
     #[test]
     fn clip_paths_are_counted_from_zero() {

@@ -7,16 +7,9 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::Obstacle;
 
-/// Axis labels of a chart.
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
-
-/// Stroke of the first section.
 pub(super) const INITIAL: Stroke = Stroke::solid("#0072b2", 2.4);
-
-/// Stroke of later sections.
 pub(super) const LATER: Stroke = Stroke::solid("#009e73", 1.4);
-
-/// Stroke of the area covered by the sections.
 const COVERED: Stroke = Stroke::dashed("#d55e00", 1.6);
 
 /// Number of sections used to draw the area covered by ellipses; its sides are nearly straight
@@ -143,7 +136,6 @@ pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
 }
 
-/// [`seconds`] of each time, with commas between them.
 pub(super) fn seconds_list(times: &[f64]) -> String {
     let list: Vec<String> = times.iter().map(|time| seconds(*time)).collect();
     list.join(", ")

@@ -30,10 +30,7 @@ use crate::study::compare::Entry;
 
 pub use link::link_from;
 
-/// File name of the page.
 const INDEX: &str = "index.html";
-
-/// Style sheet.
 const STYLE: &str = include_str!("style.css");
 
 /// One scenario of a report: its file names and links to other results.
@@ -183,9 +180,14 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    @if !self.runs.is_empty() { (table(suite_grid(&self.runs), &self.run_sections)) }
+                    @if !self.runs.is_empty() {
+                        (table(suite_grid(&self.runs), &self.run_sections))
+                    }
                     @for section in &self.sections { (section) }
-                    p.quiet { "Lengths in metres, times in seconds from the start, courses clockwise from true north." }
+                    p.quiet {
+                        "Lengths in metres, times in seconds from the start, \
+                         courses clockwise from true north."
+                    }
                 }
             }
         };
@@ -207,7 +209,6 @@ impl HtmlReport {
     }
 }
 
-/// Scenario file and links to other results.
 fn origin(subject: &Subject) -> Markup {
     html! {
         p.quiet {
@@ -253,8 +254,9 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
                     @for (index, row) in rows.iter().enumerate() {
                         tr {
                             @for (i, (cell, name)) in row.iter().zip(&header).enumerate() {
+                                @let name = name.replace('\n', " ");
                                 @if i > 0 {
-                                    td data-name=(name.replace('\n', " ")) class=[class(cell, number(i))] {
+                                    td data-name=(name) class=[class(cell, number(i))] {
                                         span { (cell.0) }
                                     }
                                 } @else if let Some(section) = sections.get(index) {

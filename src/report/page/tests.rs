@@ -133,26 +133,3 @@ fn a_report_of_a_simulation_has_its_chart_and_tables_and_rows_link_to_their_sect
     // no planning times
     assert_eq!(page, build().html("Sailed", ""));
 }
-
-#[test]
-fn a_report_is_written_whole_and_its_links_lead_from_its_folder() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let inside = folder.path().join("deep/report");
-    let mut report = HtmlReport::new();
-    add(&mut report, "a", "space-time");
-    report.write(&inside, "A", "b").expect("written");
-    let mut names: Vec<String> = std::fs::read_dir(&inside)
-        .expect("there")
-        .map(|e| e.expect("entry").file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    assert_eq!(names, ["a-1.svg", "index.html"]);
-    let recording = folder.path().join("rec ordings.rrd");
-    std::fs::write(&recording, b"x").expect("written");
-    assert_eq!(link_from(&inside, &recording), "./../../rec%20ordings.rrd");
-    let taken = folder.path().join("rec ordings.rrd");
-    let error = report
-        .write(&taken, "A", "b")
-        .expect_err("a file is in the way");
-    assert!(error.to_string().contains("rec ordings.rrd"));
-}

@@ -34,7 +34,6 @@ pub struct Assumed {
     safety_margin: Option<f64>,
     length: Option<f64>,
     beam: Option<f64>,
-    /// True if variants are read too.
     pub(super) variants: bool,
 }
 
@@ -116,7 +115,6 @@ impl Assumed {
         self.safety_margin.unwrap_or(own_length)
     }
 
-    /// Hull of a ship whose format has no size.
     pub(super) fn usual_hull(&self) -> Hull {
         Hull::new(
             self.length.unwrap_or(USUAL_HULL.length),

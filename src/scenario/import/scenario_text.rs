@@ -54,7 +54,6 @@ impl Situation {
     }
 }
 
-/// The text so far.
 struct Writing<'a> {
     assumed: &'a Assumed,
     text: String,
@@ -166,12 +165,12 @@ impl Writing<'_> {
         if let Some(steady) = track.steady(&spread) {
             let Hull { length, beam } = hull;
             let course_spread =
-                deg_from_radians(steady.spread.course).min(limits::COURSE_SPREAD.high);
+                deg_from_radians(steady.course_spread).min(limits::COURSE_SPREAD.high);
             self.text += &format!(
                 "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
                  course_spread_deg = {course_spread:?}\n",
                 under_way(&steady.pose, steady.speed),
-                steady.spread.speed
+                steady.speed_spread
             );
         } else {
             // explicit sets have no hull: the initial set contains both hulls and the margin

@@ -32,7 +32,6 @@ pub struct Declared {
     pub sides: Vec<Option<Side>>,
 }
 
-/// Own ship.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Own {
     pub(super) pose: Pose,
@@ -50,7 +49,6 @@ pub(super) struct Own {
 /// The hull of a ship as a file has it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum GivenHull {
-    /// Known.
     Known(Hull),
     /// The format has no hulls.
     NotInFormat,
@@ -61,7 +59,6 @@ pub(super) enum GivenHull {
 /// Another ship, or an object at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Other {
-    /// A ship.
     Ship {
         name: String,
         hull: GivenHull,

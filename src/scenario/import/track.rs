@@ -20,7 +20,6 @@ const MOST_CHANGES: usize = 1000;
 /// Metres: least length of a straight, so that two turns never share a point.
 const NO_LENGTH: f64 = 1e-3;
 
-/// A point of a route.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RoutePoint {
     /// Metres.
@@ -92,27 +91,12 @@ pub(super) struct Spread {
     pub(super) course: f64,
 }
 
-/// One constant course and speed.
+/// The turn at a point does not fit into the legs beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Steady {
-    /// Position at t = 0, and course.
-    pub(super) pose: Pose,
-    /// m/s.
-    pub(super) speed: f64,
-    /// The spreads, widened by the variation of the track itself.
-    pub(super) spread: Spread,
-}
-
-/// Reason why a route is not a track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum TrackError {
-    /// The turn at a point does not fit into the legs beside it.
-    Turn {
-        /// Index of the point.
-        point: usize,
-        /// Metres from the point at which the turn would begin.
-        begins: f64,
-    },
+pub(super) struct TightTurn {
+    pub(super) point: usize,
+    /// Metres from the point at which the turn would begin.
+    pub(super) begins: f64,
 }
 
 /// A declared track. The ship rests at its start until `appears`, follows the track, and continues
@@ -156,7 +140,7 @@ impl Track {
         legs: &[RouteLeg],
         usual_radius: f64,
         heading: Option<f64>,
-    ) -> Result<Self, TrackError> {
+    ) -> Result<Self, TightTurn> {
         let ways: Vec<Vector> = points
             .windows(2)
             .map(|pair| pair[1].position - pair[0].position)
@@ -186,7 +170,7 @@ impl Track {
                 let asked = points[index + 1].turn_radius;
                 let wanted = asked.unwrap_or(usual_radius) * half.min(FRAC_PI_2).tan();
                 if asked.is_some() && !(wanted <= length - begun && wanted <= next_way.norm()) {
-                    return Err(TrackError::Turn {
+                    return Err(TightTurn {
                         point: index + 1,
                         begins: wanted,
                     });
@@ -246,29 +230,22 @@ impl Track {
         self.appears + self.stretches.iter().map(took).sum::<f64>()
     }
 
-    /// Constant course and speed, if the track is a single stretch that begins at t = 0. The
-    /// velocities within the widened spreads contain those of the stretch.
-    pub(super) fn steady(&self, spread: &Spread) -> Option<Steady> {
-        let [only] = self.stretches.as_slice() else {
-            return None;
-        };
-        if self.appears > 0.0 {
-            return None;
+    /// A ship of constant course and speed, if the track is a single stretch that begins at t = 0.
+    /// The velocities within its spreads contain those of the stretch; it has no hull.
+    pub(super) fn steady(&self, spread: &Spread) -> Option<ShipTrack> {
+        match self.stretches.as_slice() {
+            [only] if self.appears <= 0.0 => {
+                let mut ship = only.ship(spread);
+                ship.pose.position = self.start;
+                Some(ship)
+            }
+            _ => None,
         }
-        let ship = only.ship(spread);
-        Some(Steady {
-            pose: Pose::new(self.start, only.course),
-            speed: ship.speed,
-            spread: Spread {
-                speed: ship.speed_spread,
-                course: ship.course_spread,
-            },
-        })
     }
 
-    /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of every
-    /// ship that follows the track within the spread. Its position is then in the start ⊕ their
-    /// sum.
+    /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of
+    /// every ship that follows the track within the spread. Its position is then in the start ⊕
+    /// their sum.
     ///
     /// A stretch is entered at the earliest on the shortest way at the greatest speed, and left at
     /// the latest on the longest way at the least speed made good. Each set is the hull of the
@@ -342,7 +319,6 @@ impl Track {
     }
 }
 
-/// Joins consecutive stretches that hardly differ.
 fn joined_stretches(stretches: Vec<Stretch>) -> Vec<Stretch> {
     let mut joined: Vec<Stretch> = Vec::new();
     for stretch in stretches {

@@ -49,7 +49,7 @@ fn crowded(text: &str) -> Option<usize> {
 }
 
 /// Parses a text. A document type, which could declare entities, is refused: nothing expands.
-pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
+pub fn parse(text: &str) -> Result<Document<'_>, Fault> {
     if let Some(line) = crowded(text) {
         let found = format_args!("an element of more than {ATTRIBUTES} attributes");
         return Err(Fault::new("", found, format_args!("at most {ATTRIBUTES}")).at_line(line));
@@ -68,7 +68,6 @@ pub(in crate::scenario) fn parse(text: &str) -> Result<Document<'_>, Fault> {
 /// Letters of an id in a message.
 const ID_LETTERS: usize = 40;
 
-/// An id on one line.
 fn short(id: &str) -> String {
     let kept: String = id.chars().take(ID_LETTERS).collect();
     printable(&kept).replace('\n', " ")
@@ -76,15 +75,14 @@ fn short(id: &str) -> String {
 
 /// An element, its place, and the faults found so far.
 #[derive(Debug, Clone)]
-pub(in crate::scenario) struct Xml<'a> {
+pub struct Xml<'a> {
     node: Node<'a, 'a>,
     path: String,
     faults: &'a Faults,
 }
 
 impl<'a> Xml<'a> {
-    /// The outermost element of a file.
-    pub(in crate::scenario) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
+    pub fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
         let node = document.root_element();
         Self {
             path: node.tag_name().name().to_owned(),
@@ -93,35 +91,28 @@ impl<'a> Xml<'a> {
         }
     }
 
-    /// The name of the element.
-    pub(in crate::scenario) fn name(&self) -> &'a str {
+    pub fn name(&self) -> &'a str {
         self.node.tag_name().name()
     }
 
     /// Where it is, as in `commonOcean/dynamicObstacle[11]/type`.
-    pub(in crate::scenario) fn path(&self) -> &str {
+    pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Notes a fault at this place.
-    pub(in crate::scenario) fn fault(&self, found: impl Display, allowed: impl Display) {
+    pub fn fault(&self, found: impl Display, allowed: impl Display) {
         let at = self.node.document().text_pos_at(self.node.range().start);
         let fault = Fault::new(self.path.as_str(), found, allowed);
         self.faults.note(fault.at_line(at.row as usize));
     }
 
     /// Notes a fault at this place, without which there would be a value.
-    pub(in crate::scenario) fn reject<T>(
-        &self,
-        found: impl Display,
-        allowed: impl Display,
-    ) -> Option<T> {
+    pub fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
         self.fault(found, allowed);
         None
     }
 
-    /// The elements in it, in the order of the file.
-    pub(in crate::scenario) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
+    pub fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
         let (path, faults) = (self.path.clone(), self.faults);
         self.node
             .children()
@@ -136,23 +127,17 @@ impl<'a> Xml<'a> {
             })
     }
 
-    /// Those of one name.
-    pub(in crate::scenario) fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
+    pub fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
         self.elements()
             .filter(move |element| element.name() == name)
     }
 
-    /// The first of one name.
-    pub(in crate::scenario) fn take(&self, name: &str) -> Option<Xml<'a>> {
+    pub fn take(&self, name: &str) -> Option<Xml<'a>> {
         self.all(name).next()
     }
 
     /// The first of one name, which must be there.
-    pub(in crate::scenario) fn require(
-        &self,
-        name: &str,
-        allowed: impl Display,
-    ) -> Option<Xml<'a>> {
+    pub fn require(&self, name: &str, allowed: impl Display) -> Option<Xml<'a>> {
         let found = self.take(name);
         if found.is_none() {
             self.fault(
@@ -163,23 +148,21 @@ impl<'a> Xml<'a> {
         found
     }
 
-    /// An attribute.
-    pub(in crate::scenario) fn attribute(&self, name: &str) -> Option<&'a str> {
+    pub fn attribute(&self, name: &str) -> Option<&'a str> {
         self.node.attribute(name)
     }
 
     /// The text in it, without the white space around.
-    pub(in crate::scenario) fn text(&self) -> &'a str {
+    pub fn text(&self) -> &'a str {
         self.node.text().unwrap_or_default().trim()
     }
 
-    /// The number in it.
-    pub(in crate::scenario) fn number(&self, range: Range) -> Option<f64> {
+    pub fn number(&self, range: Range) -> Option<f64> {
         self.parsed(self.text(), range)
     }
 
     /// The number of an attribute that must be there.
-    pub(in crate::scenario) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
+    pub fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
         match self.attribute(name) {
             Some(text) => self.parsed(text, range),
             None => self.reject(
@@ -198,12 +181,12 @@ impl<'a> Xml<'a> {
     }
 
     /// The number of an element that must be there.
-    pub(in crate::scenario) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
+    pub fn required_number(&self, name: &str, range: Range) -> Option<f64> {
         self.require(name, range)?.number(range)
     }
 
     /// The number in the element `exact`; an interval is not a number.
-    pub(in crate::scenario) fn exact(&self, range: Range) -> Option<f64> {
+    pub fn exact(&self, range: Range) -> Option<f64> {
         self.require("exact", range)?.number(range)
     }
 }

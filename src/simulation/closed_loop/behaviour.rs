@@ -111,7 +111,6 @@ impl TrueTarget {
         }
     }
 
-    /// Moves the target to the end of a step.
     pub fn advance(&mut self, step: f64) {
         self.now.pose.position += self.now.velocity() * step;
     }

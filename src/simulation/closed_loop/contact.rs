@@ -25,7 +25,6 @@ impl OwnMotion {
     }
 }
 
-/// One step of two ships.
 #[derive(Debug, Clone)]
 struct Step {
     time: f64,

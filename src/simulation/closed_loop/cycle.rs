@@ -2,10 +2,10 @@
 
 use super::Simulation;
 use crate::colregs::SteadyShip;
-use crate::document::{EstimateDocument, ReplanDocument, finite, position};
+use crate::document::{EstimateDocument, ReplanDocument, finite, position, relaxation};
 use crate::frame::{Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::{self, Relaxation, Run};
+use crate::pipeline::{self, Run};
 use crate::replanning::remember;
 use crate::scenario::Memory;
 use crate::target::{Motion, ShipTrack};
@@ -14,7 +14,6 @@ use crate::tolerance::TOUCH_M;
 /// m/s and metres: rounding of a target's state.
 const ROUNDING: f64 = 1e-6;
 
-/// A plan and its record.
 pub(super) struct Cycle {
     pub run: Run,
     pub replan: ReplanDocument,
@@ -84,7 +83,7 @@ impl Simulation {
             followed: plan.is_some() && !late,
             keeps_plan: run.planned.is_remainder,
             cost_m2: plan.and_then(|plan| finite(plan.cost)),
-            relaxations: run.relaxations.iter().map(|r| kind(r).to_owned()).collect(),
+            relaxations: run.relaxations.iter().map(|r| relaxation(r).kind).collect(),
             turn_deg: (run.planned.manoeuvres.first()).map(|m| clockwise_deg(m.turn)),
             off_plan_m,
             outside_velocities: run.scenario.memory.outside_velocities.clone(),
@@ -110,15 +109,6 @@ impl Simulation {
             then.world_coordinates(off),
             then.heading + wrap(own.heading - now.heading),
         )
-    }
-}
-
-fn kind(relaxation: &Relaxation) -> &'static str {
-    match relaxation {
-        Relaxation::Domain { .. } => "domain",
-        Relaxation::Risk { .. } => "risk",
-        Relaxation::Arrival { .. } => "arrival",
-        Relaxation::Compliance { .. } => "compliance",
     }
 }
 

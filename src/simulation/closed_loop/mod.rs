@@ -21,7 +21,7 @@ use sensor::TargetSensor;
 use tracker::Track;
 
 use crate::colregs::SteadyShip;
-use crate::document::{AlarmDocument, PlanDocument, ReplanDocument};
+use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
 use crate::planner::Minimises;
 use crate::scenario::{Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
@@ -40,7 +40,8 @@ const SHORT_STEP: f64 = 1e-6;
 /// Within a step the order is: the current changes, the sensors report, the tracker takes in what
 /// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made
 /// from the data of its time, and own ship follows it from `delay` seconds later on. It begins
-/// where the last plan has own ship then. Contacts with hulls and land are tested in continuous time.
+/// where the last plan has own ship then. Contacts with hulls and land are tested in continuous
+/// time.
 ///
 /// Equal scenarios give equal motions, unless the delay is measured.
 ///
@@ -59,7 +60,6 @@ const SHORT_STEP: f64 = 1e-6;
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
-    /// The scenario at t = 0.
     scenario: Scenario,
     measured_delay: bool,
     /// Seconds since the scenario's time.
@@ -71,17 +71,12 @@ pub struct Simulation {
     active: Active,
     pending: Option<Active>,
     next_cycle: f64,
-    first_cost: Option<f64>,
-    /// Own ship's motion so far.
     sailed: Vec<Segment>,
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
     plan_seconds: Vec<f64>,
-    replaced: usize,
-    side_switches: usize,
-    lost_remainders: usize,
-    /// Distance from the plan, metres, and when.
-    farthest_off: (f64, f64),
+    /// What the cycles so far count; the rest is found at the end.
+    conduct: SailedDocument,
     keep_plans: bool,
     plans: Vec<PlanDocument>,
 }
@@ -181,15 +176,11 @@ impl Simulation {
             duration,
             pending: None,
             next_cycle: scenario.simulation.replan,
-            first_cost: None,
             sailed: Vec::new(),
             replans: Vec::new(),
             alarms: Vec::new(),
             plan_seconds: Vec::new(),
-            replaced: 0,
-            side_switches: 0,
-            lost_remainders: 0,
-            farthest_off: (0.0, 0.0),
+            conduct: SailedDocument::default(),
             keep_plans: false,
             plans: Vec::new(),
             scenario,
@@ -197,7 +188,7 @@ impl Simulation {
         simulation.observe();
         simulation.cycle(0.0, "start".to_owned());
         simulation.activate();
-        simulation.first_cost = simulation.replans.first().and_then(|first| first.cost_m2);
+        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
         Ok(simulation)
     }
 
@@ -296,7 +287,6 @@ impl Simulation {
             .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
     }
 
-    /// Takes in the reports of the present time.
     fn observe(&mut self) {
         let exact = self.settings().sensor.kind == SensorKind::Exact;
         let stale = self.settings().sensor.stale;
@@ -326,11 +316,12 @@ impl Simulation {
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
             let next = run.planned.manoeuvres.first();
             if !next.is_some_and(|m| m.begins == begun.begins) {
-                self.replaced += 1;
-                self.side_switches += usize::from(next.is_some_and(|m| m.turn * begun.turn < 0.0));
+                self.conduct.replaced_manoeuvres += 1;
+                let switches = next.is_some_and(|m| m.turn * begun.turn < 0.0);
+                self.conduct.side_switches += usize::from(switches);
             }
         }
-        self.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
+        self.conduct.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
         for target in &mut self.targets {
             target.is_acquired = false;
             let is_outside = |names: &[String]| names.contains(&target.name);
@@ -343,6 +334,8 @@ impl Simulation {
         for name in &replan.outside_places {
             self.alarm("at another place than assumed", Some(name));
         }
+        self.conduct.without_plan += usize::from(replan.cost_m2.is_none());
+        self.conduct.unsafe_plans += usize::from(replan.cost_m2.is_some() && !replan.safe);
         if replan.cost_m2.is_none() {
             self.alarm("no plan", None);
         } else if !replan.followed {
@@ -400,7 +393,6 @@ impl Simulation {
         self.active = plan;
     }
 
-    /// Moves all ships.
     fn advance(&mut self, step: f64) {
         let time = self.time;
         let in_plan = time - self.active.start;
@@ -428,11 +420,12 @@ impl Simulation {
         self.time = time + step;
         let off = self.off_plan();
         let most = self.tracking_margin();
-        if off > most && self.farthest_off.0 <= most {
+        if off > most && self.conduct.largest_off_plan_m <= most {
             self.alarm("beyond the tracking margin", None);
         }
-        if off > self.farthest_off.0 {
-            self.farthest_off = (off, self.time);
+        if off > self.conduct.largest_off_plan_m {
+            self.conduct.largest_off_plan_m = off;
+            self.conduct.largest_off_plan_t_s = self.time;
         }
     }
 
@@ -464,94 +457,76 @@ impl Simulated {
     }
 }
 
-/// Refuses what the loop cannot sail.
 fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
-    let settings = &scenario.simulation;
-    let facts = scenario.planner.facts();
-    if facts.follows_paths || matches!(facts.minimises, Minimises::Own(_)) {
-        return Err(Fault::new(
-            "planner.kind",
-            format_args!("{:?}", facts.name),
-            "\"space-time\": the closed loop goes on from its plans alone",
-        ));
+    let (settings, facts) = (&scenario.simulation, scenario.planner.facts());
+    let own_plans = facts.follows_paths || matches!(facts.minimises, Minimises::Own(_));
+    refuse_if(own_plans, "planner.kind", || {
+        let allowed = "\"space-time\": the closed loop goes on from its plans alone";
+        (format!("{:?}", facts.name), allowed.to_owned())
+    })?;
+    for (index, target) in scenario.targets.iter().enumerate() {
+        let path = format!("targets[{index}]");
+        let Some(ship) = target.ship() else {
+            let allowed = "a tracked ship: explicit sets have no true motion";
+            return Err(Fault::new(path, "explicit sets", allowed));
+        };
+        let path = format!("{path}.not_reported");
+        let missing = settings.not_reported.get(index).copied();
+        let missing = missing.unwrap_or_default();
+        let (kind, default) = (settings.sensor.kind, settings.sensor.default_hull);
+        let reports_all = !matches!(kind, SensorKind::Ais { .. });
+        refuse_if(
+            missing != NotReported::default() && reports_all,
+            &path,
+            || {
+                let allowed = "\"ais\": other sensors report neither heading nor size";
+                (
+                    format!("a sensor of kind {:?}", kind.word()),
+                    allowed.to_owned(),
+                )
+            },
+        )?;
+        let is_held = ship.hull.length <= default.length && ship.hull.beam <= default.beam;
+        refuse_if(missing.size && !is_held, &path, || {
+            let Hull { length, beam } = default;
+            let found = format!("a larger ship than the default of {length} × {beam} m");
+            let allowed = "a ship within simulation.sensor.default_length_m and default_beam_m";
+            (found, allowed.to_owned())
+        })?;
     }
-    let explicit = scenario
-        .targets
-        .iter()
-        .position(|target| target.ship().is_none());
-    if let Some(index) = explicit {
-        return Err(Fault::new(
-            format!("targets[{index}]"),
-            "explicit sets",
-            "a tracked ship: explicit sets have no true motion",
-        ));
+    let between_plans = "the time between plans";
+    // conditions are negated so that a NaN is refused
+    for (key, value, most, of) in [
+        ("replan_s", settings.replan, scenario.horizon, "the horizon"),
+        ("delay_s", settings.delay, settings.replan, between_plans),
+        ("step_s", settings.step, settings.replan, between_plans),
+    ] {
+        refuse_if(!(value <= most), &format!("simulation.{key}"), || {
+            (value.to_string(), format!("at most {most}, {of}"))
+        })?;
     }
-    for (index, (target, missing)) in (scenario.targets.iter())
-        .zip(&settings.not_reported)
-        .enumerate()
-    {
-        if *missing != NotReported::default()
-            && !matches!(settings.sensor.kind, SensorKind::Ais { .. })
-        {
-            return Err(Fault::new(
-                format!("targets[{index}].not_reported"),
-                format_args!("a sensor of kind {:?}", settings.sensor.kind.word()),
-                "\"ais\": other sensors report neither heading nor size",
-            ));
-        }
-        let (hull, default) = (
-            target.ship().map(|ship| ship.hull),
-            settings.sensor.default_hull,
-        );
-        let holds = |hull: Hull| hull.length <= default.length && hull.beam <= default.beam;
-        if missing.size && !hull.is_some_and(holds) {
-            return Err(Fault::new(
-                format!("targets[{index}].not_reported"),
-                format_args!(
-                    "a larger ship than the default of {} × {} m",
-                    default.length, default.beam
-                ),
-                "a ship within simulation.sensor.default_length_m and default_beam_m",
-            ));
-        }
-    }
-    let shorter = |key: &str, value: f64, most: f64, of: &str| {
-        let fault = Fault::new(
-            format!("simulation.{key}"),
-            value,
-            format_args!("at most {most}, {of}"),
-        );
-        if value <= most { Ok(()) } else { Err(fault) }
-    };
-    shorter("replan_s", settings.replan, scenario.horizon, "the horizon")?;
-    shorter(
-        "delay_s",
-        settings.delay,
-        settings.replan,
-        "the time between plans",
-    )?;
-    shorter(
-        "step_s",
-        settings.step,
-        settings.replan,
-        "the time between plans",
-    )?;
-    // negated so that a NaN is refused
-    if !(duration > 0.0) {
-        return Err(Fault::new(
-            "simulation.duration_s",
-            duration,
-            "a time above 0",
-        ));
-    }
+    refuse_if(!(duration > 0.0), "simulation.duration_s", || {
+        (duration.to_string(), "a time above 0".to_owned())
+    })?;
     let vessel = vessel::Vessel::new(settings.vessel, &scenario.own_ship);
     let (least, planned) = (vessel.least_radius(), scenario.own_ship.turning_radius);
-    if !(least <= planned) {
-        return Err(Fault::new(
-            "simulation.vessel",
-            format_args!("a ship that turns at {least:.1} m at full rudder"),
-            format_args!("one that can hold the turns of its plans, {planned} m"),
-        ));
+    refuse_if(!(least <= planned), "simulation.vessel", || {
+        (
+            format!("a ship that turns at {least:.1} m at full rudder"),
+            format!("one that can hold the turns of its plans, {planned} m"),
+        )
+    })
+}
+
+/// A fault with what is found and what is allowed.
+fn refuse_if(
+    is_wrong: bool,
+    path: &str,
+    texts: impl FnOnce() -> (String, String),
+) -> Result<(), Fault> {
+    if !is_wrong {
+        return Ok(());
     }
-    Ok(())
+    let (found, allowed) = texts();
+    Err(Fault::new(path, found, allowed))
 }

@@ -47,14 +47,8 @@ impl Simulation {
         let land = self.sailed_land();
         let grounded = land.as_ref().is_some_and(|land| land.grounded);
         let contact = grounded || self.targets.iter().any(|t| t.clearance.is_contact());
-        let unsafe_plans = self
-            .replans
-            .iter()
-            .filter(|r| r.cost_m2.is_some() && !r.safe)
-            .count();
-        let without_plan = self.replans.iter().filter(|r| r.cost_m2.is_none()).count();
         let late = self.replans.iter().any(|r| !r.followed);
-        let within_tracking_margin = self.farthest_off.0 <= self.tracking_margin();
+        let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
         let arrived = self.time >= self.active.end() - super::INSTANT
             && self.active.document.is_some()
             && self.off_plan() <= self.tracking_margin();
@@ -68,7 +62,7 @@ impl Simulation {
             build: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.title.clone(),
             settings: self.settings_document(),
-            safe: !contact && unsafe_plans == 0 && !late && within_tracking_margin,
+            safe: !contact && self.conduct.unsafe_plans == 0 && !late && within_tracking_margin,
             contact,
             arrived,
             interrupted: !self.finished(),
@@ -85,18 +79,11 @@ impl Simulation {
                     &self.sailed,
                     self.scenario.time_weight,
                 ),
-                first_plan_cost_m2: self.first_cost,
                 breaks,
                 turns: most(&|m| m.turns),
                 speed_changes: most(&|m| m.speed_changes),
-                replaced_manoeuvres: self.replaced,
-                side_switches: self.side_switches,
-                lost_remainders: self.lost_remainders,
-                without_plan,
-                unsafe_plans,
-                largest_off_plan_m: self.farthest_off.0,
-                largest_off_plan_t_s: self.farthest_off.1,
                 within_tracking_margin,
+                ..self.conduct.clone()
             },
             alarms: self.alarms.clone(),
             replans: self.replans.clone(),

@@ -23,7 +23,6 @@ pub(super) struct Report {
     pub velocity: Option<Vector>,
 }
 
-/// The reports of one sensor about one target.
 #[derive(Debug, Clone)]
 pub(super) struct TargetSensor {
     sensor: Sensor,

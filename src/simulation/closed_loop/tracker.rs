@@ -206,7 +206,6 @@ impl AssumedVelocities {
     }
 }
 
-/// The track of one target.
 #[derive(Debug, Clone)]
 pub(super) struct Track {
     file: ShipTrack,

@@ -13,7 +13,6 @@ const INTEGRATION_STEP: f64 = 0.05;
 /// is infinite at rest.
 const STEERAGE_WAY: f64 = 0.5;
 
-/// Own ship's true state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct VesselState {
     pub pose: Pose,
@@ -25,7 +24,6 @@ pub(super) struct VesselState {
     pub rudder: f64,
 }
 
-/// Orders of the guidance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Order {
     /// Radians.
@@ -36,7 +34,6 @@ pub(super) struct Order {
     pub speed: f64,
 }
 
-/// Own ship's true limits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vessel {
     pub model: VesselModel,

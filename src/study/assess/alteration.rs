@@ -58,7 +58,6 @@ pub fn least_alteration(situation: &OwnSituation) -> Alteration {
     }
 }
 
-/// Velocities excluded by one target.
 struct Cover<'a> {
     target: &'a Obstacle,
     /// `None` for a single convex region given by its membership test.

@@ -13,6 +13,7 @@ pub use answer::{Query, SpaceTimePoint, assess};
 
 use crate::frame::{Pose, Vector, direction};
 use crate::obstacle::Obstacle;
+use crate::scenario::Scenario;
 use crate::trajectory::Segment;
 
 /// Own ship at t = 0 and the obstacles around it.
@@ -31,7 +32,19 @@ pub struct OwnSituation<'a> {
     pub obstacles: &'a [Obstacle],
 }
 
-impl OwnSituation<'_> {
+impl<'a> OwnSituation<'a> {
+    /// Own ship of a scenario, among obstacles.
+    pub fn of(scenario: &Scenario, obstacles: &'a [Obstacle]) -> Self {
+        let own = &scenario.own_ship;
+        Self {
+            pose: own.pose,
+            speed: own.speed,
+            max_speed: own.max_speed(),
+            horizon: scenario.horizon,
+            obstacles,
+        }
+    }
+
     /// Velocity at constant course and speed, m/s.
     pub fn velocity(&self) -> Vector {
         self.velocity_on(self.pose.heading, self.speed)

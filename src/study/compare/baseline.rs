@@ -29,7 +29,6 @@ pub struct ComparedMotion {
 }
 
 impl ComparedMotion {
-    /// The plan of a run, if it has one.
     pub(super) fn of(run: &Run) -> Option<Self> {
         Some(Self {
             trajectory: run.planned.outcome.plan()?.trajectory.clone(),
@@ -75,9 +74,7 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<ComparedMotion> {
             let situation = OwnSituation {
                 pose: Pose::new(own.pose.position, heading),
                 speed,
-                max_speed: own.max_speed(),
-                horizon: scenario.horizon,
-                obstacles: &sets.level,
+                ..OwnSituation::of(scenario, &sets.level)
             };
             let least = least_alteration(&situation);
             candidates.extend(least.starboard.map(|turn| (heading - turn, speed)));

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{Entry, Inapplicable};
 use crate::document::{
     EntryDocument, InapplicableDocument, ScenarioComparisonDocument, TrackPointDocument, cost_of,
-    finite, minimised, objective, position, stats, timing,
+    finite, minimised, objective, position, timing,
 };
 use crate::evaluation::{Safety, outcome_word, without_rules};
 use crate::pipeline::{Run, Verdict};
@@ -97,7 +97,7 @@ impl EntryDocument {
             largest_turn_deg: turn.map(|turn| turn.degrees),
             largest_turn_side: turn.map(|turn| turn.side.to_string()),
             breaks: (!conduct.is_empty()).then_some(broken),
-            search_stats: run.map(stats),
+            search_stats: run.map(|run| run.planned.stats),
             timing: run.map(timing),
             track: track(entry),
         }

@@ -93,7 +93,6 @@ impl Candidate {
         }
     }
 
-    /// Returns the scenario with the settings of this candidate.
     fn scenario(self, scenario: &Scenario) -> Scenario {
         let asked = self.method.asked(scenario);
         Scenario {

@@ -14,7 +14,6 @@ const SIZE: Range = Range::between(1e-3, 1e6);
 /// Radians.
 const ANGLE: Range = Range::within(4.0 * std::f64::consts::PI);
 
-/// A convex shape relative to its object.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Shape {
     /// Metres.

@@ -53,7 +53,6 @@ const KNOWN: [&str; 12] = [
     "additionalInformation",
 ];
 
-/// Supported versions.
 const VERSIONS: [&str; 2] = ["2022a", "2020a"];
 
 /// The situations of a file, one per planning problem.
@@ -118,7 +117,6 @@ pub(super) fn situations(
     Ok(problems.iter().zip(owns).map(situation).collect())
 }
 
-/// Notes unused elements.
 fn unused(root: &Xml, notes: &mut Vec<String>) {
     let count = |name: &str| root.all(name).count();
     let ways = count("waterway") + count("waters");
@@ -159,7 +157,8 @@ fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> 
     let shallows = root.all("shallow").count() + root.all("draft").count();
     if shallows > 0 {
         notes.push(format!(
-            "{shallows} shallows: own draught is not in the file, so all are kept out of, whatever their depth"
+            "{shallows} shallows: own draught is not in the file, so all are kept out of, \
+             whatever their depth"
         ));
     }
     if others.len() > limits::SHIPS {

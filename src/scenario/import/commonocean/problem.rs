@@ -87,7 +87,6 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
     })
 }
 
-/// The middle of a place.
 fn middle(place: &Xml) -> Option<Vector> {
     if let Some(at) = place.take("point") {
         return point(&at);

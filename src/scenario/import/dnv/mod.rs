@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::track::{RouteLeg, RoutePoint, Track, TrackError};
+use super::track::{RouteLeg, RoutePoint, TightTurn, Track};
 use crate::frame::{
     Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
@@ -97,7 +97,6 @@ fn declared(title: &str) -> Declared {
     }
 }
 
-/// Notes every unknown key.
 fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
     for key in field.keys().filter(|key| !known.contains(key)) {
         let dot = if field.path().is_empty() { "" } else { "." };
@@ -165,7 +164,8 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
     }
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
         notes.push(format!(
-            "{}: turn radii of own ship's waypoints not used; its radius is {TURNING_LENGTHS} lengths",
+            "{}: turn radii of own ship's waypoints not used; \
+             its radius is {TURNING_LENGTHS} lengths",
             field.path()
         ));
     }
@@ -288,7 +288,7 @@ fn along(
     let start = initial.heading.filter(turned);
     match Track::along(&route.points, &legs, TURNING_LENGTHS * length, start) {
         Ok(track) => Some(track),
-        Err(TrackError::Turn { point, begins }) => {
+        Err(TightTurn { point, begins }) => {
             let place = fields.get(point).unwrap_or(field);
             place.reject(
                 format_args!("a turnRadius whose turn begins {begins:.0} m before the waypoint"),
@@ -301,7 +301,6 @@ fn along(
 /// Nautical miles: radii of turns, distances over which the speed changes.
 const MILES: Range = Range::between(0.0, 100.0);
 
-/// Points of a route and the speeds between them.
 #[derive(Debug, Default)]
 struct Route {
     points: Vec<RoutePoint>,

@@ -63,7 +63,6 @@ pub(super) fn initial(
     })
 }
 
-/// Static data of a ship.
 #[derive(Debug, Clone)]
 pub(super) struct Static {
     pub(super) name: Option<String>,
@@ -114,15 +113,20 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
         if let Some(size) = size
             && !((fore + aft - size).abs() <= LENGTH_ROUNDED)
         {
-            let found = format_args!("a {whole} of {size} m, of which {fore} and {aft} m are to either side");
-            return field.reject(found, "distances from the reference point that add up to it");
+            return field.reject(
+                format_args!(
+                    "a {whole} of {size} m, of which {fore} and {aft} m are to either side"
+                ),
+                "distances from the reference point that add up to it",
+            );
         }
         if fore == aft {
             return Some(size.or(Some(2.0 * fore)));
         }
         let around = 2.0 * fore.max(aft);
         notes.push(format!(
-            "{}.{whole}: the reference point is not in the middle; {around} m taken, which reaches as far to both sides",
+            "{}.{whole}: the reference point is not in the middle; {around} m taken, \
+             which reaches as far to both sides",
             field.path()
         ));
         Some(Some(around))
