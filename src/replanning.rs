@@ -87,10 +87,9 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
         true => 0.0,
         false => wrap(ship.middle_course() - then.middle_course()).abs(),
     };
-    let may_turn = |ship: &ShipTrack| ship.course_half_width() - SIGMAS * ship.course_std;
     if ship.kept_velocities.is_none()
         && ship.speed_spread <= then.speed_spread * (1.0 + ASSUMED)
-        && may_turn(ship) + beside <= may_turn(&then) * (1.0 + ASSUMED)
+        && ship.course_freedom() + beside <= then.course_freedom() * (1.0 + ASSUMED)
     {
         ship.kept_velocities = Some(match velocities.vertices().len() <= MOST_VERTICES {
             true => velocities,

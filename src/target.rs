@@ -97,8 +97,9 @@ impl ShipTrack {
         }
     }
 
-    /// The ship with a polygon of the velocities that it may take, in place of its spreads. Its
-    /// hull may have every heading on which it may move. O(vertices).
+    /// The ship with a polygon of the velocities that it may take, in place of its spreads,
+    /// standard deviations and turns. Its hull may have every heading on which it may move.
+    /// O(vertices).
     pub fn with_velocities(self, velocities: ConvexPolygon) -> Self {
         let speeds = velocities.vertices().iter().map(|v| v.norm());
         let fastest = speeds.fold(0.0, f64::max);
@@ -114,6 +115,10 @@ impl ShipTrack {
             } else {
                 std::f64::consts::PI
             },
+            speed_std: 0.0,
+            course_std: 0.0,
+            starboard_turn: 0.0,
+            turn_rate: 0.0,
             kept_velocities: Some(velocities),
             ..self
         }
@@ -137,10 +142,15 @@ impl ShipTrack {
         self.pose.heading - 0.5 * self.starboard_turn
     }
 
+    /// Half the width of the courses that the ship may steer about the middle, radians.
+    pub fn course_freedom(&self) -> f64 {
+        self.course_spread + 0.5 * self.starboard_turn.abs()
+    }
+
     /// Half the width of the possible courses, radians: what the ship may do, and three standard
     /// deviations.
     pub fn course_half_width(&self) -> f64 {
-        self.course_spread + SIGMAS * self.course_std + 0.5 * self.starboard_turn.abs()
+        self.course_freedom() + SIGMAS * self.course_std
     }
 
     /// Half the width of the possible speeds, m/s: what the ship may do, and three standard

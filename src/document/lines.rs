@@ -93,9 +93,9 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
 fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     let begun = plan.manoeuvres.iter().find(|m| m.begins_s < 0.0);
     let begun = begun.map(|m| {
-        let phase = plan.phases.first().map_or("", |now| now.phase.word());
-        let ago = -m.begins_s;
-        format!("the manoeuvre that began {ago:.0} s ago, in the phase '{phase}'")
+        let phase = plan.phases.first().map(|now| now.phase.word());
+        let phase = phase.map_or(String::new(), |word| format!(", in the phase '{word}'"));
+        format!("the manoeuvre that began {:.0} s ago{phase}", -m.begins_s)
     });
     let kept = memory
         .keeps_plan

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::legs::PlannedLeg;
 use super::memory::PlannedManoeuvreDocument;
 use super::parts::EscapeDocument;
+use super::plan::PlanDocument;
 use crate::colregs::ON_COURSE;
 use crate::frame::{heading_from_course_deg, wrap};
 use crate::tolerance;
@@ -41,8 +42,15 @@ pub struct PhaseDocument {
     pub until_s: f64,
 }
 
+impl PlanDocument {
+    /// The phases that follow from the document's motion, manoeuvres and escape.
+    pub(crate) fn phases_of_motion(&self) -> Vec<PhaseDocument> {
+        phases(&self.legs(), &self.manoeuvres, self.escape.as_ref())
+    }
+}
+
 /// The phases from the present to the end of a plan, in order; empty without a manoeuvre.
-pub(super) fn phases(
+fn phases(
     legs: &[PlannedLeg],
     manoeuvres: &[PlannedManoeuvreDocument],
     escape: Option<&EscapeDocument>,
@@ -63,7 +71,8 @@ pub(super) fn phases(
         }
     };
     for manoeuvre in manoeuvres {
-        let holds = escape.is_some_and(|e| e.held_until_s >= manoeuvre.begins_s);
+        let holds =
+            escape.is_some_and(|e| e.held_until_s >= manoeuvre.begins_s - tolerance::TIME_S);
         add(
             if holds { Phase::Hold } else { Phase::Free },
             manoeuvre.begins_s,
@@ -99,5 +108,120 @@ fn parallel_from(legs: &[PlannedLeg], manoeuvre: &PlannedManoeuvreDocument) -> f
         // less speed alone leaves no course
         Some(leg) if manoeuvre.turn_deg != 0.0 => leg.motion.start_time.max(0.0),
         _ => manoeuvre.returns_s,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::trajectory::Segment;
+
+    /// Legs with these courses, radians to port, until these times; an arc turns to the next one.
+    fn legs(until: &[(f64, f64)]) -> Vec<PlannedLeg> {
+        let mut start = 0.0;
+        let legs = until.iter().map(|(heading, until)| {
+            let pose = Pose::new(Vector::zeros(), *heading);
+            let motion = Segment::straight(pose, start, until - start, 5.0);
+            start = *until;
+            PlannedLeg {
+                motion,
+                corner_deg: 0.0,
+                events: Vec::new(),
+            }
+        });
+        legs.collect()
+    }
+
+    fn manoeuvre(
+        begins_s: f64,
+        returns_s: f64,
+        joins_s: f64,
+        turn_deg: f64,
+    ) -> PlannedManoeuvreDocument {
+        PlannedManoeuvreDocument {
+            begins_s,
+            returns_s,
+            joins_s,
+            first_course_deg: 90.0,
+            turn_deg,
+        }
+    }
+
+    /// Word and end of each phase; each begins where the one before ends.
+    fn found(
+        legs: &[PlannedLeg],
+        manoeuvres: &[PlannedManoeuvreDocument],
+        held_until_s: Option<f64>,
+    ) -> Vec<(&'static str, f64)> {
+        let escape = held_until_s.map(|held_until_s| EscapeDocument {
+            policy: "stand-on-hold".to_owned(),
+            held_until_s,
+            first_segment: 1,
+            turn_deg: 0.0,
+            speed_mps: 2.5,
+        });
+        let found = phases(legs, manoeuvres, escape.as_ref());
+        let mut from = 0.0;
+        for phase in &found {
+            assert_eq!(phase.from_s, from);
+            from = phase.until_s;
+        }
+        found.iter().map(|p| (p.phase.word(), p.until_s)).collect()
+    }
+
+    #[test]
+    fn every_kind_of_manoeuvre_has_its_phases() {
+        let turned = legs(&[
+            (0.0, 20.0),
+            (-0.9, 70.0),
+            (0.0, 160.0),
+            (0.6, 220.0),
+            (0.0, 300.0),
+        ]);
+        let whole = manoeuvre(20.0, 160.0, 220.0, 50.0);
+        let (out, parallel, back) = (("out", 70.0), ("parallel", 160.0), ("back", 220.0));
+        let expected = [("free", 20.0), out, parallel, back, ("free", 300.0)];
+        assert_eq!(found(&turned, &[whole], None), expected);
+        // a hold that ends by a rounding before the manoeuvre begins
+        let held = found(&turned, &[whole], Some(20.0 - 1e-12));
+        assert_eq!(held[0], ("hold", 20.0));
+        // under way: out, parallel, and on the way back
+        let begun = |legs: &[(f64, f64)], returns: f64, joins: f64| {
+            found(
+                &self::legs(legs),
+                &[manoeuvre(-30.0, returns, joins, 50.0)],
+                None,
+            )
+        };
+        let later = [(-0.9, 10.0), (0.0, 100.0), (0.6, 160.0), (0.0, 240.0)];
+        let expected = [
+            ("out", 10.0),
+            ("parallel", 100.0),
+            ("back", 160.0),
+            ("free", 240.0),
+        ];
+        assert_eq!(begun(&later, 100.0, 160.0), expected);
+        let expected = [("parallel", 90.0), ("back", 150.0), ("free", 230.0)];
+        assert_eq!(
+            begun(&[(0.0, 90.0), (0.6, 150.0), (0.0, 230.0)], 90.0, 150.0),
+            expected
+        );
+        let expected = [("back", 60.0), ("free", 140.0)];
+        assert_eq!(begun(&[(0.6, 60.0), (0.0, 140.0)], -20.0, 60.0), expected);
+        // less speed alone leaves no course; the plan ends before own ship joins
+        let straight = legs(&[(0.0, 50.0), (0.0, 180.0)]);
+        let slower = [manoeuvre(50.0, 180.0, 180.0, 0.0)];
+        assert_eq!(
+            found(&straight, &slower, Some(50.0)),
+            [("hold", 50.0), ("out", 180.0)]
+        );
+        let two = [
+            manoeuvre(10.0, 30.0, 40.0, 0.0),
+            manoeuvre(60.0, 90.0, 400.0, 0.0),
+        ];
+        let words: Vec<_> = found(&straight, &two, None).iter().map(|p| p.0).collect();
+        assert_eq!(words, ["free", "out", "back", "free", "out", "back"]);
+        assert!(found(&straight, &[], None).is_empty() && found(&[], &two, None).is_empty());
     }
 }

@@ -15,7 +15,7 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
-use super::phases::{PhaseDocument, phases};
+use super::phases::PhaseDocument;
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};
@@ -157,8 +157,7 @@ impl PlanDocument {
                 .map(|diagram| path_time_document(run, diagram)),
             optimal_control: control(run),
         };
-        let legs = document.legs();
-        document.phases = phases(&legs, &document.manoeuvres, document.escape.as_ref());
+        document.phases = document.phases_of_motion();
         document
     }
 }

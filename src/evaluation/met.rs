@@ -44,6 +44,8 @@ pub(super) fn passage<P: Piece>(
 ) -> (Passage, Least, Safety) {
     let (margin, from) = (&claim.margin, claim.from);
     let lying = at_rest(pieces, request.arrival_hold);
+    // the pieces of a document need not end in order
+    let end = end_of(pieces).max(end_of(&lying));
     let (closest, worst, kept, hold, safety) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
@@ -63,7 +65,6 @@ pub(super) fn passage<P: Piece>(
                 hull.minkowski_sum(&unknown)
             };
             let velocities = ship.outer_velocity_sets(ship.turn_rate, request.horizon);
-            let end = end_of(&lying);
             let whole = MovingSlabs::growing(turned, &velocities, end);
             let worst = along(&whole, pieces, turns);
             let hold = whole.least_distance(&lying, body);
@@ -83,7 +84,7 @@ pub(super) fn passage<P: Piece>(
             (closest, worst, kept, hold, safety)
         }
         Motion::Sets(sets) => {
-            let slabs = MovingSlabs::until(sets, end_of(&lying));
+            let slabs = MovingSlabs::until(sets, end);
             let least = slabs.least_distance(pieces, Body::POINT);
             let hold = slabs.least_distance(&lying, Body::POINT);
             // An explicit set is its hard set.

@@ -80,7 +80,8 @@ impl Attempt {
     /// An attempt that enters no set.
     fn of(
         level: RelaxationLevel,
-        (whole, reductions): (Vec<Obstacle>, Vec<f64>),
+        whole: Vec<Obstacle>,
+        reductions: Vec<f64>,
         obstacles: Vec<Obstacle>,
         risk: f64,
         planned: Planned,
@@ -295,10 +296,10 @@ impl Relaxer<'_> {
             return None;
         }
         let risk = self.scenario.max_risk;
-        let scaled = self.scaled(&self.scales(0.0));
-        let obstacles = level_sets(&scaled.0, risk);
+        let (whole, reductions) = self.scaled(&self.scales(0.0));
+        let obstacles = level_sets(&whole, risk);
         let none = Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory));
-        let mut found = Attempt::of(level, scaled, obstacles, risk, none);
+        let mut found = Attempt::of(level, whole, reductions, obstacles, risk, none);
         let kept = better_remainder(self.scenario, &self.problem(&found.obstacles), &found)?;
         found.planned = kept.planned;
         let retained = self.retained_along(found.trajectory()?, risk);
@@ -379,8 +380,9 @@ impl Relaxer<'_> {
         } else {
             RelaxationLevel::Compliant
         };
-        let sets = (whole, self.scales(0.0));
-        let found = Attempt::of(level, sets, obstacles, risk, Planned::of(outcome));
+        let reductions = vec![0.0; whole.len()];
+        let planned = Planned::of(outcome);
+        let found = Attempt::of(level, whole, reductions, obstacles, risk, planned);
         if !with_domain {
             return Some(self.clear_of(&found, &self.scales(0.0), level));
         }
@@ -589,7 +591,7 @@ impl Relaxer<'_> {
             true => reductions,
             false => self.scales(0.0),
         };
-        Attempt::of(level, (whole, reductions), obstacles, risk, planned)
+        Attempt::of(level, whole, reductions, obstacles, risk, planned)
     }
 
     /// An attempt against domains of one scale factor; `None` where there is no plan.

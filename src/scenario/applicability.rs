@@ -44,15 +44,19 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
             ),
         ));
     }
-    let turning = |target: &Target| target.ship().is_some_and(|ship| ship.starboard_turn != 0.0);
-    if scenario.max_risk > 0.0 && scenario.targets.iter().any(turning) {
+    let is_aside = |target: &Target| {
+        let ship = target.ship();
+        ship.is_some_and(|ship| ship.starboard_turn != 0.0 || ship.kept_velocities.is_some())
+    };
+    if scenario.max_risk > 0.0 && scenario.targets.iter().any(is_aside) {
         faults.push(Fault::new(
             "planner.max_risk",
             scenario.max_risk,
             "0: risk counts from the middle of the velocities, which is not the expected one of a \
-             target with starboard_turn_deg",
+             target with starboard_turn_deg or velocity_set",
         ));
     }
+    faults.extend(lag(scenario));
     if !planner.keeps_off_land && scenario.land.is_some() {
         faults.push(Fault::new(
             "map",
@@ -68,6 +72,35 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
         ));
     }
     faults
+}
+
+/// Plans change speed at once. Own ship, which needs the time `du / a`, is `du² / 2a` ahead or
+/// behind after a change by `du`: beyond its tracking margin this is a fault.
+fn lag(scenario: &Scenario) -> Option<Fault> {
+    let (own, planner) = (&scenario.own_ship, scenario.planner.facts());
+    let acceleration = scenario.acceleration?;
+    let fault = |found: String, allowed: &str| {
+        Some(Fault::new("own_ship.acceleration_mps2", found, allowed))
+    };
+    if matches!(planner.minimises, Minimises::Own(_)) {
+        let allowed = "nothing: the forces of the vessel limit it";
+        return fault(acceleration.to_string(), allowed);
+    }
+    let low = own.speeds.iter().copied().fold(own.speed, f64::min);
+    let low = if planner.follows_paths { 0.0 } else { low };
+    let high = own.max_speed().max(own.speed);
+    let lag = 0.5 * (high - low).powi(2) / acceleration;
+    // negated on purpose: a NaN is too much
+    if lag <= own.tracking_margin {
+        return None;
+    }
+    let found = format!(
+        "{acceleration}: own ship is {lag:.2} m off its plan after a change from {low} to {high} \
+         m/s, and its tracking margin is {} m",
+        own.tracking_margin
+    );
+    let allowed = "a greater one, speeds nearer to one another, or a larger tracking_margin_m";
+    fault(found, allowed)
 }
 
 /// A length rounded to the micrometre.

@@ -12,9 +12,7 @@ use super::{Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Faults, Field, Node, Table, every, from_toml};
-use crate::planner::{
-    DEFAULT_PLANNER, Minimises, Objective, PlannerFacts, PlannerSettings, SearchKind,
-};
+use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::text::LINE;
 use crate::trajectory::DesiredTrajectory;
@@ -58,7 +56,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         .map(|table| own_ship(table, &plane));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().map(|own| own.land_margin);
-    let acceleration = own_ship.as_ref().and_then(|own| own.acceleration.clone());
+    let acceleration = own_ship.as_ref().and_then(|own| own.acceleration);
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .required_table("mission")
@@ -89,9 +87,6 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let known_any = known.iter().any(|known| known.role.is_some());
     let mean_speed = desired.length() / desired.duration();
     let kind = planner.kind.unwrap_or(DEFAULT_PLANNER);
-    if let Some(field) = acceleration {
-        check_acceleration(&field, &own_ship, kind.facts());
-    }
     let tracked = targets.iter().any(|target| target.ship().is_some());
     let default_compliance = if kind.facts().keeps_rules && tracked {
         Compliance::Rules
@@ -105,6 +100,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
+        acceleration,
         desired,
         alternatives: mission.alternatives,
         targets,
@@ -142,15 +138,15 @@ pub(super) fn hull(table: &mut Table) -> Option<Hull> {
 }
 
 /// Own ship; its speed and margin are known even if another field is faulty.
-struct OwnShipFields<'a> {
+struct OwnShipFields {
     ship: Option<OwnShip>,
     speed: Option<f64>,
     /// Metres.
     land_margin: f64,
-    acceleration: Option<Field<'a>>,
+    acceleration: Option<f64>,
 }
 
-fn own_ship<'a>(mut table: Table<'a>, plane: &Plane) -> OwnShipFields<'a> {
+fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
     let pose = pose(&mut table, plane);
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(&mut table);
@@ -158,7 +154,7 @@ fn own_ship<'a>(mut table: Table<'a>, plane: &Plane) -> OwnShipFields<'a> {
     let speeds = own_speeds(&mut table, speed);
     let margin = table.distance("safety_margin", limits::DISTANCE);
     let tracking_margin = table.distance("tracking_margin", limits::DISTANCE);
-    let acceleration = table.take("acceleration_mps2");
+    let acceleration = table.number("acceleration_mps2", limits::ACCELERATION);
     let land_margin = table.distance("land_margin", limits::DISTANCE);
     table.finish();
     let ship = || {
@@ -179,29 +175,6 @@ fn own_ship<'a>(mut table: Table<'a>, plane: &Plane) -> OwnShipFields<'a> {
         land_margin: land_margin.unwrap_or(0.0),
         acceleration,
     }
-}
-
-/// Refuses an acceleration with which own ship would leave its tracking margin. Plans change speed
-/// at once; own ship, which needs the time `du / a`, is `du² / 2a` ahead or behind after it.
-fn check_acceleration(field: &Field, own: &OwnShip, planner: &PlannerFacts) -> Option<()> {
-    let acceleration = field.number(limits::ACCELERATION)?;
-    if matches!(planner.minimises, Minimises::Own(_)) {
-        return field.refuse("nothing: the forces of the vessel limit it");
-    }
-    let low = own.speeds.iter().copied().fold(own.speed, f64::min);
-    let low = if planner.follows_paths { 0.0 } else { low };
-    let high = own.max_speed().max(own.speed);
-    let lag = 0.5 * (high - low).powi(2) / acceleration;
-    if lag > own.tracking_margin {
-        let found = format_args!(
-            "{acceleration}: own ship is {lag:.2} m off its plan after a change from {low} to \
-             {high} m/s, and its tracking margin is {} m",
-            own.tracking_margin
-        );
-        let allowed = "a greater one, speeds nearer to one another, or a larger tracking_margin_m";
-        return field.reject(found, allowed);
-    }
-    Some(())
 }
 
 /// The finite set of speeds: increasing, each once, the largest positive.

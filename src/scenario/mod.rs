@@ -59,6 +59,8 @@ pub struct Scenario {
     pub arrival_hold: f64,
     /// Own ship.
     pub own_ship: OwnShip,
+    /// How fast own ship changes its speed, m/s²; `None` where that is not known.
+    pub acceleration: Option<f64>,
     /// The desired trajectory from the present on.
     pub desired: DesiredTrajectory,
     /// Other allowed paths, metres; for the path-time planner.

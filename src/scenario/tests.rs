@@ -185,6 +185,9 @@ fn a_ship_may_have_its_velocities_as_a_set() {
         "{ship}velocity_set = {{ center_mps = [-5, 0], shape_m2_per_s2 = [[1, 0], [0, 1]] }}"
     );
     assert_eq!(paths(&round), ["targets[0].velocity_set"]);
+    let risky = format!("{}[planner]\nmax_risk = 0.1\n", SCENARIO);
+    let set = with("[[-4, -1], [-6, -1], [-6, 2]]").replace(SCENARIO, &risky);
+    assert_eq!(paths(&set), ["planner.max_risk"]);
     for key in ["speed_spread_mps", "course_std_deg", "turn_rate_deg_per_s"] {
         let both = format!("{}\n{key} = 1", with("[[-4, -1], [-6, -1], [-6, 2]]"));
         assert_eq!(paths(&both), [format!("targets[0].{key}")]);

@@ -2,6 +2,7 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::mismatch;
+use crate::document::{PhaseDocument, PlanDocument};
 use crate::evaluation::{
     Evaluation, MovingSlabs, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
 };
@@ -11,7 +12,22 @@ use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::{ForceNode, Segment};
 
-/// Checks the costs, the figures of the mission and the closest approaches.
+/// Checks the phases. A document of an earlier program has none.
+fn phases(file: &PlanDocument) -> Option<Violation> {
+    let (said, so) = (&file.phases, file.phases_of_motion());
+    let is_same = |(a, b): (&PhaseDocument, &PhaseDocument)| {
+        a.phase == b.phase && near(a.from_s, b.from_s) && near(a.until_s, b.until_s)
+    };
+    let are_same = said.len() == so.len() && said.iter().zip(&so).all(is_same);
+    let words = |phases: &[PhaseDocument]| {
+        let words = phases.iter().map(|p| format!("{} to {} s", p.phase.word(), p.until_s));
+        words.collect::<Vec<_>>().join(", ")
+    };
+    let is_wrong = !said.is_empty() && !are_same;
+    is_wrong.then(|| mismatch("phases", words(said), words(&so)))
+}
+
+/// Checks the costs, the phases, the figures of the mission and the closest approaches.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
@@ -102,6 +118,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
             }
         }
     }
+    found.extend(phases(file));
     found.extend(way_left(claim, evaluation));
     found.extend(closest_approaches(claim, evaluation));
     found

@@ -280,6 +280,7 @@ fn scene(
             title,
             time: 0.0,
             horizon: meeting.horizon,
+            acceleration: None,
             own_ship: OwnShip {
                 pose: origin,
                 speed: OWN_SPEED,

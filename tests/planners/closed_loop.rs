@@ -339,6 +339,13 @@ fn what_the_loop_cannot_sail_is_refused_with_its_place() {
         assert_eq!(fault.path, path);
         assert!(fault.found.starts_with(found), "{fault}");
     }
+    let mut with_set = meeting(EncounterKind::HeadOn, 1, &CONSTANT);
+    if let searoom::target::Motion::Ship(ship) = &mut with_set.targets[0].motion {
+        let velocities = ship.outer_velocity_set();
+        *ship = ship.clone().with_velocities(velocities);
+    }
+    let fault = Simulation::new(with_set, false).expect_err("refused");
+    assert_eq!(fault.path, "targets[0].velocity_set");
     for (file, place) in [
         ("paper/figure_9", "planner.kind"),
         ("uncertainty/changing-velocities", "targets[0]"),

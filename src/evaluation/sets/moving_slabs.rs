@@ -290,4 +290,34 @@ mod tests {
         assert_eq!(least(50.0).value, 90.0);
         assert!(least(1e14).value < 89.0, "{:?}", least(1e14));
     }
+
+    /// Slabs that begin after the motion change nothing, wherever it ends: on the border of two
+    /// slabs, a rounding beside it, or between.
+    #[test]
+    fn slabs_after_the_motion_are_left_out_and_no_others() {
+        let velocity = |v: f64| ConvexPolygon::point(Vector::new(0.0, -v));
+        let borders = [10.0, 20.0, 30.0];
+        let mut sets: Vec<_> = (borders.iter().enumerate())
+            .map(|(k, until)| TimedVelocitySet::new(*until, velocity(1.0 + k as f64)))
+            .collect();
+        sets.push(TimedVelocitySet::new(f64::INFINITY, velocity(9.0)));
+        let sets = Uncertainty::new(ConvexPolygon::point(Vector::new(0.0, 500.0)), sets);
+        for (end, count) in [
+            (5.0, 1),
+            (20.0_f64.next_down(), 2),
+            (20.0, 2),
+            (20.0_f64.next_up(), 3),
+            (30.0, 3),
+            (45.0, 4),
+            (f64::INFINITY, 4),
+        ] {
+            let slabs = MovingSlabs::until(&sets, end);
+            assert_eq!(slabs.slabs.len(), count, "{end}");
+            let time = end.min(100.0);
+            let wait = Segment::straight(Pose::new(Vector::zeros(), 0.0), 0.0, time, 0.0);
+            let [cut, whole] = [slabs, MovingSlabs::new(&sets)]
+                .map(|slabs| slabs.least_distance(&[wait], Body::POINT));
+            assert_eq!((cut.value, cut.time), (whole.value, whole.time), "{end}");
+        }
+    }
 }

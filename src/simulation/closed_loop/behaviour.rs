@@ -70,8 +70,7 @@ impl TrueTarget {
                     };
                     factor * spread * part
                 };
-                self.now.pose.heading =
-                    self.file.middle_course() + off(self.file.course_half_width());
+                self.now.pose.heading = self.file.middle_course() + off(self.file.course_freedom());
                 self.now.speed = (speed + off(self.file.speed_spread)).max(0.0);
             }
             Behaviour::Pursuit { every } if is_due => {
@@ -122,7 +121,7 @@ impl TrueTarget {
         for course in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
             for speed in -PURSUIT_CHOICES..=PURSUIT_CHOICES {
                 let part = |k: i32| f64::from(k) / f64::from(PURSUIT_CHOICES);
-                let off = part(course) * self.file.course_half_width();
+                let off = part(course) * self.file.course_freedom();
                 let heading = self.file.middle_course() + off;
                 let speed = self.file.speed + part(speed) * self.file.speed_spread;
                 let ship = SteadyShip {

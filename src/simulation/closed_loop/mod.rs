@@ -470,6 +470,14 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
             let allowed = "a tracked ship: explicit sets have no true motion";
             return Err(Fault::new(path, "explicit sets", allowed));
         };
+        refuse_if(
+            ship.kept_velocities.is_some(),
+            &format!("{path}.velocity_set"),
+            || {
+                let allowed = "spreads: the loop estimates a velocity and its spreads";
+                ("a set of velocities".to_owned(), allowed.to_owned())
+            },
+        )?;
         let path = format!("{path}.not_reported");
         let missing = settings.not_reported.get(index).copied();
         let missing = missing.unwrap_or_default();

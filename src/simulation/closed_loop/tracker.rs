@@ -133,7 +133,7 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// The true state, with the uncertainty of the position in the file.
+    /// The true state, with the standard deviations in the file.
     fn exact(time: f64, ship: &SteadyShip, file: &ShipTrack) -> Self {
         Self {
             time,
@@ -141,8 +141,8 @@ impl Estimate {
             position_std: file.position_std,
             heading: ship.pose.heading,
             speed: ship.speed,
-            heading_std: 0.0,
-            speed_std: 0.0,
+            heading_std: file.course_std,
+            speed_std: file.speed_std,
         }
     }
 }
@@ -503,6 +503,22 @@ mod tests {
         assert_eq!(track.set_at(0.0, 0.0).position_std, 0.0);
         let [now, later] = [0.0, 2.0].map(|time| track.set_at(time, 2.0));
         assert_eq!(now.position_std, later.position_std);
+    }
+
+    /// The standard deviations of the file count where the truth is seen, as that of the position
+    /// does, and the target does no more than its spreads.
+    #[test]
+    fn the_standard_deviations_of_the_file_are_in_the_set() {
+        let file = ShipTrack {
+            speed_std: 0.1,
+            course_std: radians_from_deg(1.0),
+            ..file()
+        };
+        let mut track = Track::new(&file, &Sensor::EXACT);
+        track.set_exact(0.0, &SteadyShip::on_track(&file, 0.0));
+        let set = track.set_at(0.0, 0.0);
+        assert!((set.speed_half_width() - file.speed_half_width()).abs() < 1e-12);
+        assert!((set.course_half_width() - file.course_half_width()).abs() < 1e-12);
     }
 
     #[test]

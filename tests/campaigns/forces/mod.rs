@@ -97,18 +97,28 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
         .collect()
 }
 
-/// Every scenario in the repository that uses this planner.
-const SHIPPED: [&str; 2] = [
-    "scenarios/forces/give-way.toml",
-    "scenarios/paper/figure_9.toml",
-];
+/// Every scenario in the repository that uses this planner: file and text.
+fn shipped() -> impl Iterator<Item = (String, String)> {
+    let folders = std::fs::read_dir("scenarios").expect("a folder");
+    let files = folders.filter_map(|folder| std::fs::read_dir(folder.ok()?.path()).ok());
+    files.flatten().filter_map(|file| {
+        let path = file.expect("an entry").path();
+        let is_toml = path.extension().is_some_and(|e| e == "toml");
+        let text = is_toml.then(|| std::fs::read_to_string(&path).expect("reads"))?;
+        let uses_it = text.contains("kind = \"optimal-control\"");
+        uses_it.then(|| (path.display().to_string(), text))
+    })
+}
 
 /// Random starts on the plan's own grid, for every shipped scenario of this planner: none finds a
 /// cheaper plan.
 pub fn run_starts(starts: usize) -> Report {
     let mut report = Report::default();
-    for file in SHIPPED {
-        let text = std::fs::read_to_string(file).expect("reads");
+    let shipped: Vec<_> = shipped().collect();
+    report.require(shipped.len() >= 2, || {
+        format!("{} scenarios", shipped.len())
+    });
+    for (file, text) in shipped {
         let patient = text.replace("[planner]", "[planner]\ndeadline_s = 300.0");
         let run = pipeline::run(Scenario::parse(&patient).expect("valid"));
         let plan = run.planned.outcome.plan().expect("a plan").cost;

@@ -258,7 +258,6 @@ fn one_kind(kind: EncounterKind, seeds: Seeds, report: &mut Report) {
         _ => None,
     };
     if let Some(rarely) = may_turn_otherwise {
-        at_most("first turns to port", rarely, &port, plans);
         let otherwise = planned_where(&|_, plan| first_turn(plan) != Some(Side::Starboard));
         at_most(
             "does not first turn to starboard",

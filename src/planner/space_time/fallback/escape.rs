@@ -274,14 +274,14 @@ fn exits(
             });
         }
     }
-    least_harmful(own, nominal_hulls, exits)
+    candidates(own, nominal_hulls, exits)
 }
 
-/// The [`MAX_EXITS`] exits with the least harm, then as many of the soonest ones: there may be a
-/// plan from these alone. The soonest of the least deep ones sets the limits: slower ones may take
-/// hardly longer, and come hardly nearer to a nominal hull.
-fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
-    exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
+/// Exits from which plans are sought: the [`MAX_EXITS`] with the least harm, then the soonest, as
+/// there may be a plan from these alone. A slower exit counts as about as soon as the soonest only
+/// where it comes hardly nearer to a nominal hull.
+fn candidates(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
+    exits.sort_by(|a, b| a.harm.depth_cmp(&b.harm).then(a.out.total_cmp(&b.out)));
     let Some(first) = exits.first() else {
         return exits;
     };
@@ -297,11 +297,8 @@ fn least_harmful(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exi
         !exit.harm.is_soon()
             || nominal_hulls.nearest(own, &exit.motion, exit.out, nearest) >= nearest
     };
-    let mut found: Vec<Exit> = exits
-        .into_iter()
-        .filter(keeps_off)
-        .take(MAX_EXITS)
-        .collect();
+    let least_harm = exits.into_iter().filter(keeps_off).take(MAX_EXITS);
+    let mut found: Vec<Exit> = least_harm.collect();
     for exit in soonest_exits {
         if found.iter().all(|other| other.motion != exit.motion) {
             found.push(exit);

@@ -77,16 +77,22 @@ impl Harm {
         Self {
             hulls: steps(nominal_hulls.depth(own, motion, out)),
             sets: ((deepest - start) / step).floor(),
-            delay: time_steps(out).floor(),
+            delay: 0.0,
             time: time_steps(out).floor(),
             speed: first.speed,
             turn: first.turn_rate.abs() * first.duration,
         }
     }
 
-    /// Counts the delay from another exit on, which leaves the sets at `soonest`. This one is about
-    /// as soon where it takes at most a step longer, or at most the time in which own ship sails
-    /// its length: own hull needs as long to cross the edge of a set.
+    /// Compares the depths alone: in nominal hulls, then in the sets.
+    pub(crate) fn depth_cmp(&self, other: &Self) -> Ordering {
+        let sets = || self.sets.total_cmp(&other.sets);
+        self.hulls.total_cmp(&other.hulls).then_with(sets)
+    }
+
+    /// Counts the delay against the soonest exit, which leaves the sets at `soonest`. This one is
+    /// about as soon where it takes at most a step longer, or at most the time in which own ship
+    /// sails its length: own hull needs as long to cross the edge of a set.
     pub(crate) fn with_delay(self, own: &OwnShip, out: f64, soonest: f64) -> Self {
         let length = own.hull.length / own.max_speed();
         let soon = (soonest * (1.0 + TIME_STEP)).max(soonest + length);
