@@ -20,7 +20,9 @@ fn phases(file: &PlanDocument) -> Option<Violation> {
     };
     let are_same = said.len() == so.len() && said.iter().zip(&so).all(is_same);
     let words = |phases: &[PhaseDocument]| {
-        let words = phases.iter().map(|p| format!("{} to {} s", p.phase.word(), p.until_s));
+        let words = phases
+            .iter()
+            .map(|p| format!("{} to {} s", p.phase.word(), p.until_s));
         words.collect::<Vec<_>>().join(", ")
     };
     let is_wrong = !said.is_empty() && !are_same;
