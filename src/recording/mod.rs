@@ -38,6 +38,8 @@ const COMPARISON: &str = "comparison_document";
 const SIMULATION: &str = "simulation_document";
 const CHART: &str = "chart";
 const MAP: &str = "chart/map";
+/// Latitudes and longitudes, where the scenario has an origin.
+const EARTH: &str = "geographic";
 const TRAILS: &str = "chart/map/trails";
 const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";

@@ -167,6 +167,59 @@ fn every_kind_of_run_has_its_entities() {
     }
 }
 
+/// Compares with the file, which gives own ship and the ferry in latitude and longitude.
+#[test]
+fn a_scenario_with_an_origin_is_recorded_on_the_earth() {
+    let file = "scenarios/sound/kronborg.toml";
+    let mut scenario = Scenario::read(file.as_ref()).expect("valid");
+    scenario.land = None;
+    scenario.deadline = 60.0;
+    let run = pipeline::run(scenario);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    let earth = run.scenario.earth.expect("an origin");
+    let recorded = recorded_run(&run);
+    let near = |found: &serde_json::Value, lat_deg: f64, lon_deg: f64| {
+        for (axis, expected) in [lat_deg, lon_deg].into_iter().enumerate() {
+            let found = found[axis].as_f64().expect("degrees");
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+    };
+    let own = moving(&recorded, "geographic/own_ship", ":positions");
+    near(&own[0].1[0], 56.008, 12.668);
+    for (time, place) in &own {
+        let there = earth.to_geographic(plan.trajectory.pose_at(*time).position);
+        near(&place[0], there.lat_deg, there.lon_deg);
+    }
+    let ferry = moving(&recorded, "geographic/targets/ferry", ":positions");
+    assert_eq!(ferry.len(), own.len());
+    near(&ferry[0].1[0], 56.040, 12.690);
+    let lines = |entity: &str| {
+        let table = recorded.table(entity).expect(entity);
+        let is_line = |c: &String| c.ends_with(":line_strings");
+        let place = table.components.iter().position(is_line).expect("lines");
+        table.rows[0].values[place].clone()
+    };
+    let desired = lines("geographic/desired");
+    for (index, lat_deg, lon_deg) in [
+        (0, 56.008, 12.668),
+        (1, 56.040, 12.652),
+        (2, 56.075, 12.590),
+    ] {
+        near(&desired[0][index], lat_deg, lon_deg);
+    }
+    let planned = lines("geographic/planned");
+    near(&planned[0][0], 56.008, 12.668);
+    let last = planned
+        .as_array()
+        .and_then(|all| all.last()?.as_array()?.last());
+    let end = earth.to_geographic(plan.trajectory.pose_at(plan.trajectory.end_time()).position);
+    near(last.expect("a line"), end.lat_deg, end.lon_deg);
+
+    let elsewhere = recorded_run(&self::run());
+    let on_earth = |e: &EntityContents| e.path.contains("geographic");
+    assert!(!elsewhere.entities().iter().any(on_earth));
+}
+
 #[test]
 fn a_failed_write_leaves_nothing_and_names_the_file() {
     let folder = tempfile::tempdir().expect("folder");

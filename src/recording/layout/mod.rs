@@ -13,7 +13,8 @@ use rerun::external::re_sdk_types::blueprint::components::{
 };
 use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
 use rerun::external::re_sdk_types::blueprint::views::{
-    Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TextLogView, TimeSeriesView,
+    MapView, Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TextLogView,
+    TimeSeriesView,
 };
 
 use panes::{Pane, Panes};
@@ -28,7 +29,8 @@ use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EVENTS, EXPLORED, Logged, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, path,
+    CHART, EARTH, EVENTS, EXPLORED, Logged, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
+    path,
 };
 
 /// How long it takes to play the whole run, seconds.
@@ -37,7 +39,13 @@ const PLAY_S: f64 = 25.0;
 pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
-    let mut left = vec![chart_view(to, model)?];
+    let mut chart = chart_view(to, model)?;
+    if model.scenario.earth.is_some() {
+        // its tiles come from the network, by the viewer
+        let map = to.view::<MapView>("Map", EARTH)?;
+        chart = to.tabs(&[chart, map])?;
+    }
+    let mut left = vec![chart];
     let mut left_shares = vec![0.66];
     if let Some((rules, share)) = rules_view(to, model)? {
         left.push(rules);

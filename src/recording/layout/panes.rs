@@ -69,6 +69,12 @@ impl Panes {
         self.container(panes, kind.with_row_shares(shares))
     }
 
+    /// Puts panes behind one another, the first in front.
+    pub fn tabs(&mut self, panes: &[Pane]) -> Logged<Pane> {
+        let tabs = ContainerBlueprint::new(ContainerKind::Tabs);
+        self.container(panes, tabs)
+    }
+
     pub fn grid(&mut self, panes: &[Pane], columns: u32) -> Logged<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Grid);
         self.container(panes, kind.with_grid_columns(columns))

@@ -4,6 +4,7 @@ pub mod chart;
 pub mod closed_loop;
 pub mod curves;
 pub mod explored;
+pub mod geographic;
 pub mod land;
 pub mod rules;
 pub mod ships;

@@ -15,7 +15,9 @@ use rerun::components::MediaType;
 use rerun::{EntityPath, RecordingInfo, TextDocument};
 
 use super::canvas::ViewModel;
-use super::views::{chart, curves, explored, land, rules, ships, space_time, summary, velocities};
+use super::views::{
+    chart, curves, explored, geographic, land, rules, ships, space_time, summary, velocities,
+};
 use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
 use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
@@ -119,6 +121,7 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     velocities::log_velocities(rec, model)?;
     land::log_land(rec, model)?;
     chart::log_chart(rec, model)?;
+    geographic::log_geographic(rec, model)?;
     space_time::log_volume(rec, model)?;
     curves::log_curves(rec, model)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
