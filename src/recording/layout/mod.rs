@@ -58,10 +58,12 @@ pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
     let mut plots = vec![
         ("Clearance between hulls (m)", CLEARANCE),
         ("Margin to the sets (m)", MARGIN),
-        ("Risk", RISK),
         ("Speed (kn)", SPEED),
         ("Course (deg)", COURSE),
     ];
+    if curves::has_risk(model) {
+        plots.push(("Risk", RISK));
+    }
     if curves::steered(model).is_some() {
         let of_forces = [
             ("Velocity (m/s, deg/s)", STATES),
@@ -69,8 +71,9 @@ pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
         ];
         plots.extend(of_forces);
     }
-    let mut small = plot_views(to, model, &plots)?;
-    small.push(velocity_view(to, model)?);
+    let velocities = velocity_view(to, model)?;
+    let volume = to.tabs(&[volume, velocities])?;
+    let small = plot_views(to, model, &plots)?;
     let small = to.grid(&small, 2)?;
     let right = to.below(&[volume, small], [0.5, 0.5])?;
     let root = to.beside(&[left, right], [0.54, 0.46])?;

@@ -181,6 +181,14 @@ pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
     series
 }
 
+/// True where own ship has a risk against a set at one of the times.
+pub fn has_risk(model: &ViewModel) -> bool {
+    let times = risk_times(model);
+    let some = |set: &Obstacle| risks(model, set, &times).iter().any(|risk| *risk > 0.0);
+    let mut targets = model.run.targets.iter();
+    targets.any(|target| some(&target.whole) || some(&target.sets.hard))
+}
+
 /// The samples and the times of the largest risks, so that the curves reach the reported values.
 pub fn risk_times(model: &ViewModel) -> Vec<f64> {
     let mut times = model.samples.clone();
