@@ -73,7 +73,7 @@ pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
     }
     let velocities = velocity_view(to, model)?;
     let volume = to.tabs(&[volume, velocities])?;
-    let small = plot_views(to, model, &plots)?;
+    let small = plot_views(to, model, &plots, 0.7)?;
     let small = to.grid(&small, 2)?;
     let right = to.below(&[volume, small], [0.5, 0.5])?;
     let root = to.beside(&[left, right], [0.54, 0.46])?;
@@ -93,7 +93,7 @@ pub fn of_comparison(canvas: &Canvas) -> Logged<Recorder> {
         ("Speed (kn)", SPEED),
     ];
     let first = usize::from(canvas.scenario.targets.is_empty());
-    let curves = plot_views(to, canvas, &plots[first..])?;
+    let curves = plot_views(to, canvas, &plots[first..], 0.5)?;
     let curves = to.below(&curves, [])?;
     let below = to.beside(&[table, curves], [0.56, 0.44])?;
     let root = to.below(&[pictures, below], [0.62, 0.38])?;
@@ -122,7 +122,7 @@ pub fn of_simulation(model: &ClosedLoop) -> Logged<Recorder> {
         ("Time of planning (ms)", PLANNING),
     ];
     let first = usize::from(model.simulation.targets.is_empty());
-    let plots = plot_views(to, canvas, &plots[first..])?;
+    let plots = plot_views(to, canvas, &plots[first..], 0.3)?;
     if let Some(range) = model.near_clearances() {
         to.set(
             &plots[0],
@@ -160,16 +160,6 @@ fn up_to_cursor() -> VisibleTimeRanges {
             end: TimeRangeBoundary::CursorRelative(0.into()),
         },
     }])
-}
-
-/// From the start to the end, with a margin.
-fn whole_time(canvas: &Canvas) -> TimeRange {
-    let nanoseconds =
-        |seconds: f64| TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into());
-    TimeRange {
-        start: nanoseconds(-0.02 * canvas.end),
-        end: nanoseconds(1.02 * canvas.end),
-    }
 }
 
 fn chart_view(to: &mut Panes, canvas: &Canvas) -> Logged<Pane> {
@@ -228,20 +218,32 @@ fn volume_view(to: &mut Panes, canvas: &Canvas, hidden: EntityPath) -> Logged<Pa
     Ok(volume)
 }
 
-/// Plots over the whole time, by name and entity, with their legends in the upper corner.
-fn plot_views(to: &mut Panes, canvas: &Canvas, plots: &[(&str, &str)]) -> Logged<Vec<Pane>> {
+/// Plots over the whole time, by name and entity, with room for their legends beside the
+/// curves, as a part of the time.
+fn plot_views(
+    to: &mut Panes,
+    canvas: &Canvas,
+    plots: &[(&str, &str)],
+    room: f64,
+) -> Logged<Vec<Pane>> {
     let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
     let plot = |(name, origin): &(&str, &str)| {
         let view = to.view::<TimeSeriesView>(name, origin)?;
         to.set(&view, "PlotLegend", &legend)?;
-        to.set(&view, "TimeAxis", &time_axis(canvas))?;
+        to.set(&view, "TimeAxis", &time_axis(canvas, room))?;
         Ok(view)
     };
     plots.iter().map(plot).collect()
 }
 
-fn time_axis(canvas: &Canvas) -> TimeAxis {
-    TimeAxis::new().with_view_range(whole_time(canvas))
+/// From the start to the end, with a margin and a part of the time more.
+fn time_axis(canvas: &Canvas, more: f64) -> TimeAxis {
+    let nanoseconds =
+        |seconds: f64| TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into());
+    TimeAxis::new().with_view_range(TimeRange {
+        start: nanoseconds(-0.02 * canvas.end),
+        end: nanoseconds((1.02 + more) * canvas.end),
+    })
 }
 
 fn velocity_view(to: &mut Panes, model: &ViewModel) -> Logged<Pane> {
@@ -258,7 +260,7 @@ fn rules_view(to: &mut Panes, model: &ViewModel) -> Logged<Option<(Pane, f32)>> 
     }
     let name = "Rules: roles over time, and what is broken";
     let view = to.view::<StateTimelineView>(name, RULES)?;
-    to.set(&view, "TimeAxis", &time_axis(model))?;
+    to.set(&view, "TimeAxis", &time_axis(model, 0.0))?;
     let share = LANES_HEAD + LANE * lanes.min(MOST_LANES) as f32;
     Ok(Some((view, share)))
 }
