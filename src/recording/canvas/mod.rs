@@ -129,6 +129,24 @@ pub fn round_down(value: f64) -> f64 {
     rounded * power
 }
 
+/// Round times, seconds.
+const ROUND_S: [f64; 12] = [
+    1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 3600.0,
+];
+
+/// The largest round number of seconds or minutes that is not larger than `seconds`.
+pub fn round_down_time(seconds: f64) -> f64 {
+    let fits = ROUND_S.into_iter().rev().find(|step| *step <= seconds);
+    fits.unwrap_or_else(|| round_down(seconds))
+}
+
+/// A time as minutes and seconds, such as `12:05`.
+pub fn clock(seconds: f64) -> String {
+    let sign = if seconds <= -0.5 { "-" } else { "" };
+    let whole = seconds.abs().round() as u64;
+    format!("{sign}{}:{:02}", whole / 60, whole % 60)
+}
+
 fn one_digit(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     (value / power).round() * power

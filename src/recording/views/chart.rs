@@ -7,7 +7,8 @@ use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Canvas, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
+    Canvas, Lines, ShownMotion, ViewModel, clock, desired_leg, flat, labelled, round_down,
+    round_down_time,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
@@ -197,7 +198,7 @@ pub fn polyline(segment: &Segment) -> TimedLine {
 
 /// Time between two time marks on the tracks, seconds.
 pub fn mark_step(canvas: &Canvas) -> f64 {
-    round_down(canvas.end / 4.0)
+    round_down_time(canvas.end / 4.0)
 }
 
 /// Logs own ship's position every round number of seconds, with the time.
@@ -207,7 +208,7 @@ fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
     // a plan has no positions after arrival
     let times = model.motion.until_arrival(&times);
     let points = times.iter().map(|&t| model.motion.pose_at(t).position);
-    let labels = times.iter().map(|t| format!("{t:.0} s"));
+    let labels = times.iter().map(|t| clock(*t));
     let marks = labelled(points.map(flat), style::OWN_SHIP, 3.0, labels);
     rec.log_static(path(&[MAP, "time_marks"]), &marks)
 }
@@ -242,8 +243,7 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
         lines.add([own, other].map(flat), style::CHART_TEXT, 0.8);
         // adding +0.0 converts a negative zero to zero
         let distance = (passage.dcpa * 10.0).round() / 10.0 + 0.0;
-        let time = passage.tcpa;
-        labels.push(format!("CPA {distance} m at {time:.0} s"));
+        labels.push(format!("CPA {distance} m at {}", clock(passage.tcpa)));
     }
     let lines = lines.archetype().with_labels(labels);
     let lines = lines.with_show_labels(false);
@@ -260,7 +260,7 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> Logged {
         let mut sets = model.run.obstacles();
         let set = sets.find(|set| set.contains(own, time))?;
         let name = set.name();
-        Some((own, format!("in the set of {name} from {time:.0} s")))
+        Some((own, format!("in the set of {name} from {}", clock(time))))
     });
     let Some((place, label)) = inside else {
         return Ok(());

@@ -8,7 +8,7 @@ use super::curves::{self, CLEARANCE, Series};
 use super::ships::{self, outline};
 use crate::colregs::SteadyShip;
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{AssumedTarget, ClosedLoop, flat, labelled, style};
+use crate::recording::canvas::{AssumedTarget, ClosedLoop, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::vessel::Hull;
@@ -130,7 +130,7 @@ fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
             continue;
         };
         let place = flat(model.own_at(time).pose.position);
-        let label = format!("contact with {} at {time:.0} s", target.name);
+        let label = format!("contact with {} at {}", target.name, clock(time));
         let mark = labelled([place], style::ALARM, 6.0, [label]);
         let times = TimeColumn::new_duration_secs(TIMELINE, [time]);
         let entity = path(&[MAP, "contacts", &target.name]);

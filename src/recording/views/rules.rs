@@ -6,7 +6,7 @@ use crate::colregs::compliance::{ComplianceReport, MonitorResult, MonitorVerdict
 use crate::frame::{Side, clockwise_deg, knots_from_mps};
 use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
-use crate::recording::canvas::{ViewModel, flat};
+use crate::recording::canvas::{ViewModel, clock, flat};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, VOLUME, path};
 
@@ -147,12 +147,12 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
     for (_, name, conduct) in judged(model) {
         for violation in &conduct.violations {
             let (rule, time) = (violation.rule, violation.time);
-            let text = format!("{rule} at {time:.0} s, toward {name}");
+            let text = format!("{rule} at {}, toward {name}", clock(time));
             marks.push((time, text, style::ALARM));
         }
     }
     if let Some(escape) = model.run.planned.escape {
-        let text = format!("holds until {:.0} s", escape.held_until);
+        let text = format!("holds until {}", clock(escape.held_until));
         marks.push((escape.held_until, text, SpeedClass::Fast.color()));
     }
     if marks.is_empty() {

@@ -9,7 +9,7 @@ use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{
-    Canvas, Lines, ShownMotion, ViewModel, flat, labelled, round_down, style,
+    Canvas, Lines, ShownMotion, ViewModel, flat, labelled, round_down_time, style,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
@@ -219,7 +219,7 @@ fn log_own_hull(
 
 /// How far ahead a speed vector reaches, seconds.
 pub fn vector_seconds(canvas: &Canvas) -> f64 {
-    round_down(canvas.end / 6.0)
+    round_down_time(canvas.end / 6.0)
 }
 
 /// A name north of a ship, as time marks have theirs south of it.

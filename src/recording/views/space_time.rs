@@ -9,7 +9,7 @@ use super::ships::{DrawnShip, ship_colors, ship_places};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, Lines, ViewModel, style};
+use crate::recording::canvas::{Canvas, Lines, ViewModel, clock, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, VOLUME, path};
 
@@ -65,11 +65,7 @@ fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let mut labels = Vec::new();
     for time in multiples(0.0, canvas.end, 2.0 * mark_step(canvas)) {
         places.push(canvas.lifted(axis, time));
-        labels.push(if time == 0.0 {
-            "t = 0 s".to_owned()
-        } else {
-            format!("{time:.0} s")
-        });
+        labels.push(clock(time));
     }
     let (high, middle) = (canvas.bounds.high, canvas.bounds.center());
     for (place, name) in [

@@ -4,7 +4,7 @@ use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
 use crate::document::{PlanDocument, TIME_LINE, headline, plan_lines};
 use crate::evaluation::Evaluation;
-use crate::recording::canvas::{ShownMotion, ViewModel};
+use crate::recording::canvas::{ShownMotion, ViewModel, clock};
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     let lines = plan_lines(plan).into_iter();
@@ -66,11 +66,11 @@ fn claim(model: &ViewModel) -> String {
         "the horizon"
     };
     format!(
-        "**Claimed** until {end} at {:.0} s: own ship's centre stays out of all hard sets, \
+        "**Claimed** until {end} at {}: own ship's centre stays out of all hard sets, \
          {hulls}wherever in its initial set a target starts and however its velocity varies within \
          its velocity set. **Not claimed:** anything after that, or about a target that leaves \
          its sets.",
-        trajectory.end_time(),
+        clock(trajectory.end_time()),
     )
 }
 
@@ -79,10 +79,10 @@ fn key(model: &ViewModel) -> String {
         "Chart: own ship is white, its plan yellow and thick where it is faster than desired, blue \
          and thin where it is slower; the desired trajectory is dashed. A target has a colour: \
          thick for its hard set, thin for the set with its ship domain. Thin lines ahead of ships \
-         are speed vectors of {:.0} s; dots on the tracks are every {:.0} s; the grid has {:.0} m. \
+         are speed vectors of {:.0} s; dots on the tracks are every {} min; the grid has {:.0} m. \
          Sets apply to own ship's centre: they include its hull and the margin.",
         vector_seconds(model),
-        super::chart::mark_step(model),
+        clock(super::chart::mark_step(model)),
         super::chart::grid_spacing(model),
     )
 }
