@@ -14,6 +14,7 @@ use crate::recording::canvas::{
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::target::Target;
+use crate::vessel::Hull;
 
 pub const HARD_RADIUS: f32 = 1.6;
 /// Line width of sets with a ship domain, thinner than that of the hard ones.
@@ -113,7 +114,10 @@ fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
         lines.add(outline(&ship.hull.polygon(&here)), color, 1.0);
         let tip = ship.velocity() * vector_seconds(canvas);
-        lines.add([[0.0, 0.0], flat(tip)], color, 0.8);
+        lines.add([[0.0, 0.0], flat(tip)], color, 1.0);
+        if let Some(symbol) = symbol(canvas, &ship.hull, &here) {
+            lines.add(symbol, color, 1.2);
+        }
     }
     let lines = lines.archetype();
     let name = label(canvas, color, &target.name);
@@ -193,20 +197,24 @@ fn log_own_hull(
 ) -> Logged {
     let style = LineStrips2D::update_fields()
         .with_colors([own.color])
-        .with_radii([style::points(1.2), style::points(0.8)]);
+        .with_radii([1.2, 1.0, 1.2].map(style::points));
     let mut times = own.motion.speed_changes();
     times.extend(&canvas.cursor_times);
     times.sort_by(f64::total_cmp);
     times.dedup();
     let hull = canvas.scenario.own_ship.hull;
-    let hull = outline(&hull.polygon(&Pose::new(Vector::zeros(), 0.0)));
+    let ahead = Pose::new(Vector::zeros(), 0.0);
+    let symbol = symbol(canvas, &hull, &ahead);
+    let lines = 2 + usize::from(symbol.is_some());
+    let hull = outline(&hull.polygon(&ahead));
     let strips = times.iter().flat_map(|&t| {
         let tip = (own.motion.speed_at(t) * vector_seconds(canvas)) as f32;
-        [hull.clone(), vec![[0.0, 0.0], [tip, 0.0]]]
+        let drawn = [hull.clone(), vec![[0.0, 0.0], [tip, 0.0]]];
+        drawn.into_iter().chain(symbol.clone())
     });
     let drawn = LineStrips2D::update_fields()
         .with_strips(strips)
-        .columns(vec![2; times.len()])?;
+        .columns(vec![lines; times.len()])?;
     let turns = times
         .iter()
         .map(|&t| rotation(own.motion.pose_at(t).heading));
@@ -216,6 +224,23 @@ fn log_own_hull(
     let times = TimeColumn::new_duration_secs(TIMELINE, times.iter().copied());
     rec.log_moving(entity, times, &style, drawn.chain(turns))
 }
+
+/// The symbol of a ship whose hull is too small to see when the chart is opened.
+fn symbol(canvas: &Canvas, hull: &Hull, pose: &Pose) -> Option<Strip> {
+    let length = canvas.bounds.size().max() / 25.0;
+    let corner = |&[x, y]: &[f64; 2]| flat(pose.world_coordinates(Vector::new(x, y) * length));
+    (hull.length < length).then(|| SYMBOL.iter().map(corner).collect())
+}
+
+/// A closed line, in lengths of the symbol.
+const SYMBOL: [[f64; 2]; 6] = [
+    [0.6, 0.0],
+    [0.1, 0.2],
+    [-0.4, 0.2],
+    [-0.4, -0.2],
+    [0.1, -0.2],
+    [0.6, 0.0],
+];
 
 /// How far ahead a speed vector reaches, seconds.
 pub fn vector_seconds(canvas: &Canvas) -> f64 {
@@ -227,9 +252,9 @@ fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
     labelled([flat(label_offset(canvas))], color, 0.0, [name])
 }
 
-/// Where the name of a ship is, from its place.
+/// Where the name of a ship is, from its place: above its symbol, as names are below their points.
 pub fn label_offset(canvas: &Canvas) -> Vector {
-    Vector::new(0.0, canvas.bounds.size().max() / 22.0)
+    Vector::new(0.0, canvas.bounds.size().max() / 11.0)
 }
 
 /// About the vertical, counter-clockwise seen from above.
