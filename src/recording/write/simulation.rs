@@ -88,7 +88,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     let model = ClosedLoop::new(scenario, document, plans);
     let text = format!("```\n{text}\n```\n\n{}", key(&model));
     rec.log_summary(text)?;
-    land::log_outlines(rec, &model.canvas)?;
+    land::log_on_chart(rec, &model.canvas)?;
     closed_loop::log_chart(rec, &model)?;
     closed_loop::log_curves(rec, &model)?;
     log_events(rec, document)?;
