@@ -267,6 +267,6 @@ fn rules_view(to: &mut Panes, model: &ViewModel) -> Logged<Option<(Pane, f32)>> 
 
 /// Fractions of the window's height for the head of the lanes and for each lane, and how many lanes
 /// are seen without scrolling.
-const LANES_HEAD: f32 = 0.075;
-const LANE: f32 = 0.03;
+const LANES_HEAD: f32 = 0.1;
+const LANE: f32 = 0.034;
 const MOST_LANES: usize = 5;

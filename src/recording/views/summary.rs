@@ -2,28 +2,62 @@
 
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
-use crate::document::{PlanDocument, TIME_LINE, headline, plan_lines};
+use crate::document::{PlanDocument, TIME_LINE, breaks, headline, plan_lines};
 use crate::evaluation::Evaluation;
-use crate::recording::canvas::{ShownMotion, ViewModel, clock};
+use crate::frame::Vector;
+use crate::geometry::Window;
+use crate::recording::canvas::{ShownMotion, ViewModel, clock, flat, labelled, style};
+use crate::recording::write::Recorder;
+use crate::recording::{Logged, MAP, path};
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
-    let lines = plan_lines(plan).into_iter();
+    let lines = rules_first(plan_lines(plan)).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
-    let rows = rows.map(|(name, value)| format!("\n| {name} | {} |", value.replace('|', "\\|")));
+    let row = |(name, value): (&str, String)| {
+        let value = value.replace('|', "\\|");
+        format!("| {name} | {value} |\n")
+    };
+    // a table of markdown has a head
+    let mut rows: Vec<String> = rows.map(row).collect();
+    rows.insert(rows.len().min(1), "|---|---|\n".to_owned());
     let shown = match plan.trajectory {
         Some(_) => graph(drawn),
         None => "The views show own ship as if it followed the desired trajectory.".to_owned(),
     };
     let mut parts = vec![
-        format!("# {}", headline(plan)),
-        format!("| | |\n|---|---|{}", rows.collect::<String>()),
+        format!("### {}", headline(plan)),
+        rows.concat().trim_end().to_owned(),
         shown,
         claim(model),
         key(model),
     ];
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
+}
+
+/// Puts the lines about the rules before the others: a navigator looks for them first.
+fn rules_first(lines: Vec<(&'static str, String)>) -> Vec<(&'static str, String)> {
+    let mut in_rules = false;
+    let (mut rules, others): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(name, _)| {
+        in_rules = *name == "rules" || (name.is_empty() && in_rules);
+        in_rules
+    });
+    rules.extend(others);
+    rules
+}
+
+/// Logs the rules that own ship breaks, in red above the chart.
+pub fn log_broken(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged {
+    let broken = breaks(&plan.encounters).unwrap_or_default();
+    if broken.is_empty() {
+        return Ok(());
+    }
+    let Window { low, high } = model.bounds;
+    let place = Vector::new(0.25 * low.x + 0.75 * high.x, high.y);
+    let text = format!("breaks {}", broken.join(", "));
+    let headline = labelled([flat(place)], style::ALARM, 0.0, [text]);
+    rec.log_static(path(&[MAP, "broken_rules"]), &headline)
 }
 
 fn graph(drawn: DrawnGraph) -> String {

@@ -126,6 +126,7 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     curves::log_curves(rec, model)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
+    summary::log_broken(rec, model, plan)?;
     rec.log_summary(summary::text(model, plan, drawn))?;
     rules::log_rules(rec, model)?;
     layout::of_run(model)
