@@ -1,14 +1,13 @@
 //! Curves over time: clearance, margin, risk, speed, course; for a plan of forces also velocities
 //! and forces.
 
+use std::collections::BTreeSet;
+
 use rerun::components::AggregationPolicy;
 use rerun::components::InterpolationMode::{self, Linear, StepAfter};
 use rerun::{Color, EntityPath, Scalars, SeriesLines, TimeColumn};
 
-use crate::frame::{
-    clockwise_deg_per_s, course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps,
-    wrap,
-};
+use crate::frame::{clockwise_deg_per_s, course_deg_from_heading, heading_of, knots_from_mps};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg};
@@ -22,7 +21,7 @@ pub const CLEARANCE: &str = "curves/clearance_m";
 pub const MARGIN: &str = "curves/margin_m";
 pub const RISK: &str = "curves/risk";
 pub const SPEED: &str = "curves/speed_kn";
-/// Course, continuous: it may leave 0..360 rather than jump.
+/// Course from 0 to 360, with a row without values where it passes north.
 pub const COURSE: &str = "curves/course_deg";
 pub const STATES: &str = "curves/states";
 /// Surge force, sway force and yaw moment, held from node to node.
@@ -38,7 +37,9 @@ pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
     }
     let times = risk_times(model);
     log(RISK, &times, &risk_curves(model, &times))?;
-    log(COURSE, &model.samples, &course_curves(model))?;
+    let courses = course_curves(model);
+    let drawn = (&model.samples[..], Linear);
+    log_broken_plot(rec, path(&[COURSE]), drawn, &courses, &jumps(&courses))?;
     log_speed(rec, model)?;
     match steered(model) {
         Some(motion) => log_forces(rec, motion),
@@ -75,6 +76,17 @@ pub fn log_plot(
     between: InterpolationMode,
     series: &[Series],
 ) -> Logged {
+    log_broken_plot(rec, entity, (times, between), series, &BTreeSet::new())
+}
+
+/// Logs a plot whose lines are interrupted before some rows.
+fn log_broken_plot(
+    rec: &mut Recorder,
+    entity: EntityPath,
+    (times, between): (&[f64], InterpolationMode),
+    series: &[Series],
+    breaks: &BTreeSet<usize>,
+) -> Logged {
     let rows = series.iter().map(|s| s.values.len()).min().unwrap_or(0);
     let times = &times[..rows.min(times.len())];
     let style = SeriesLines::new()
@@ -85,10 +97,17 @@ pub fn log_plot(
         // averaging neighbours would show speeds and depths that are not there
         .with_aggregation_policy(AggregationPolicy::Off);
     let values = (0..times.len()).flat_map(|row| series.iter().map(move |s| s.values[row]));
+    let mut times = times.to_vec();
+    let mut lengths = vec![series.len(); times.len()];
+    // a row without values interrupts the lines
+    for row in breaks.range(..times.len()).rev() {
+        times.insert(*row, 0.5 * (times[*row - 1] + times[*row]));
+        lengths.insert(*row, 0);
+    }
     let columns = Scalars::update_fields()
         .with_scalars(values)
-        .columns(vec![series.len(); times.len()])?;
-    let times = TimeColumn::new_duration_secs(TIMELINE, times.iter().copied());
+        .columns(lengths)?;
+    let times = TimeColumn::new_duration_secs(TIMELINE, times);
     rec.log_moving(entity, times, &style, columns)
 }
 
@@ -133,7 +152,7 @@ pub fn margin_curves(model: &ViewModel) -> Vec<Series> {
     let mut series = vec![curve("hard sets", style::OWN_SHIP, &hard)];
     if hard != with_domain {
         let color = SpeedClass::Slow.color();
-        series.push(curve("sets with domains", color, &with_domain));
+        series.push(curve("with domains", color, &with_domain));
     }
     // level sets of an accepted risk, or ellipsoids around the others
     let avoided: Vec<&Obstacle> = model.run.obstacles().collect();
@@ -257,28 +276,27 @@ pub fn speeds(motion: &ShownMotion, times: &[f64]) -> Vec<f64> {
 }
 
 fn course_curves(model: &ViewModel) -> Vec<Series> {
-    let start = course_deg_from_heading(model.motion.pose_at(0.0).heading);
     let times = model.samples.iter();
     let desired = &model.scenario.desired;
     let wanted = times.clone().map(|&t| desired_leg(desired, t).direction);
-    let wanted = continuous_courses(start, wanted.map(heading_of));
+    let wanted = wanted.map(|way| course_deg_from_heading(heading_of(way)));
+    let wanted = wanted.collect();
     let mut series = vec![Series::new("desired", style::DESIRED, 1.0, wanted)];
     if model.motion.is_planned() {
-        let own = continuous_courses(start, times.map(|&t| model.motion.pose_at(t).heading));
+        let own = times.map(|&t| course_deg_from_heading(model.motion.pose_at(t).heading));
+        let own = own.collect();
         series.push(Series::new("own ship", style::OWN_SHIP, 2.0, own));
     }
     series
 }
 
-/// Courses in degrees without jumps at north, the first within half a circle of `near`.
-fn continuous_courses(near: f64, headings: impl Iterator<Item = f64>) -> Vec<f64> {
-    headings
-        .scan(near, |last, heading| {
-            let before = crate::frame::heading_from_course_deg(*last);
-            *last -= deg_from_radians(wrap(heading - before));
-            Some(*last)
-        })
-        .collect()
+/// The index after each jump of a curve of courses through north.
+fn jumps(series: &[Series]) -> BTreeSet<usize> {
+    let jumps = series.iter().flat_map(|curve| {
+        let pairs = curve.values.windows(2).enumerate();
+        pairs.filter_map(|(k, pair)| ((pair[1] - pair[0]).abs() > 180.0).then_some(k + 1))
+    });
+    jumps.collect()
 }
 
 pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
@@ -322,15 +340,24 @@ fn log_forces(rec: &mut Recorder, motion: &Steered) -> Logged {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::heading_from_course_deg;
 
     #[test]
-    fn a_course_through_north_does_not_jump() {
-        let courses = [350.0, 355.0, 0.0, 5.0, 358.0];
-        let found = continuous_courses(350.0, courses.map(heading_from_course_deg).into_iter());
-        let expected = [350.0, 355.0, 360.0, 365.0, 358.0];
-        for (found, expected) in found.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-        }
+    fn a_course_through_north_is_interrupted_there() {
+        let values = vec![350.0, 355.0, 0.0, 5.0, 358.0];
+        let series = [Series::new("own ship", style::OWN_SHIP, 2.0, values)];
+        assert_eq!(jumps(&series), BTreeSet::from([2, 4]));
+        let mut rec = Recorder::default();
+        let times = [0.0, 10.0, 20.0, 30.0, 40.0];
+        let drawn = (&times[..], Linear);
+        log_broken_plot(&mut rec, path(&[COURSE]), drawn, &series, &jumps(&series)).expect("logs");
+        let chunks = rec.into_chunks();
+        let moving = chunks
+            .iter()
+            .find(|chunk| !chunk.is_static())
+            .expect("rows");
+        let scalars = Scalars::descriptor_scalars().component;
+        let rows = moving.components().get_array(scalars).expect("scalars");
+        let lengths: Vec<usize> = rows.iter().map(|row| row.map_or(0, |r| r.len())).collect();
+        assert_eq!(lengths, [1, 1, 0, 1, 1, 0, 1]);
     }
 }
