@@ -50,7 +50,7 @@ pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 
 /// Logs lines every round number of metres, and the north arrow.
 fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    let window = canvas.bounds.grown(0.6 * canvas.bounds.size().max());
+    let window = shown_window(canvas);
     let mut lines = Lines::default();
     for ends in grid_lines(canvas, &window) {
         lines.add(ends.map(flat), style::GRID, 0.5);
@@ -67,6 +67,11 @@ fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
     rec.log_static(path(&[MAP, "grid"]), &parts)
+}
+
+/// The part of the sea that the chart shows when it is opened, in a view of any usual shape.
+pub fn shown_window(canvas: &Canvas) -> Window {
+    canvas.bounds.grown(canvas.bounds.size().max())
 }
 
 /// Metres between two lines of the grid.
@@ -230,24 +235,42 @@ fn log_track(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target)
 }
 
 /// Logs a line between own ship and each target at their closest approach. Distance and time are
-/// shown where a line is pointed at.
+/// shown where a line is pointed at, those of the nearest target in a corner of the chart: near
+/// the ships they would lie on other names.
 fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
     let mut lines = Lines::default();
     let mut labels = Vec::new();
+    let mut nearest: Option<(f64, String)> = None;
     for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
         let own = model.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
         lines.add([own, other].map(flat), style::CHART_TEXT, 0.8);
         // adding +0.0 converts a negative zero to zero
         let distance = (passage.dcpa * 10.0).round() / 10.0 + 0.0;
-        labels.push(format!("CPA {distance} m at {}", clock(passage.tcpa)));
+        let label = format!("CPA {distance} m at {}", clock(passage.tcpa));
+        if nearest
+            .as_ref()
+            .is_none_or(|(least, _)| passage.dcpa < *least)
+        {
+            nearest = Some((passage.dcpa, format!("{label} to {}", target.name)));
+        }
+        labels.push(label);
     }
     let lines = lines.archetype().with_labels(labels);
     let lines = lines.with_show_labels(false);
-    rec.log_static(path(&[MAP, "closest_points"]), &lines)
+    rec.log_static(path(&[MAP, "closest_points"]), &lines)?;
+    let Some((_, label)) = nearest else {
+        return Ok(());
+    };
+    let Window { low, high } = model.bounds;
+    // the label is below its point
+    let north = low.y + (high - low).max() / 11.0;
+    let place = Vector::new(0.25 * low.x + 0.75 * high.x, north);
+    let name = labelled([flat(place)], style::CHART_TEXT, 0.0, [label]);
+    rec.log_static(path(&[MAP, "closest_points", "nearest"]), &name)
 }
 
 /// Logs, without a plan, where own ship on the desired trajectory first enters a set.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use rerun::{LineStrips2D, Mesh3D, Radius};
 
+use super::chart::shown_window;
 use crate::frame::Vector;
 use crate::geometry::{Polygon, Window};
 use crate::recording::canvas::{Canvas, flat, style};
@@ -22,13 +23,13 @@ pub fn log_on_chart(rec: &mut Recorder, canvas: &Canvas) -> Logged {
 }
 
 /// Fills the land on the chart. Rerun has no filled polygon in two dimensions: these are lines from
-/// west to east, as wide as they are apart.
+/// west to east that overlap.
 fn log_filling(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let Some(land) = &canvas.scenario.land else {
         return Ok(());
     };
     let size = canvas.bounds.size().max();
-    let window = canvas.bounds.grown(0.6 * size);
+    let window = shown_window(canvas);
     let step = size / FILLING_LINES;
     let mut rows: BTreeMap<i64, Vec<[f64; 2]>> = BTreeMap::new();
     for piece in land.map.pieces_within(&window) {
@@ -54,7 +55,7 @@ fn log_filling(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     }
     let filling = LineStrips2D::new(lines)
         .with_colors([style::toward_background(style::LAND, 0.5)])
-        .with_radii([Radius::new_scene_units((0.55 * step) as f32)])
+        .with_radii([Radius::new_scene_units((0.75 * step) as f32)])
         // below the grid
         .with_draw_order(1.0);
     rec.log_static(path(&[MAP, "land", "filling"]), &filling)
@@ -140,6 +141,7 @@ mod tests {
         let widths = [
             apart,
             width_at(&triangle, 2.0).expect("crossed"),
+            [1.0, 2.0],
             [0.0, 4.0],
         ];
         assert_eq!(joined(widths.to_vec()), [[0.0, 6.0], apart]);
