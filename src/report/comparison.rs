@@ -1,7 +1,7 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
 use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
-use super::table::{Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
@@ -14,9 +14,9 @@ fn title(compared: &ScenarioComparisonDocument) -> &str {
     compared.scenario.as_deref().unwrap_or(&compared.file)
 }
 
-/// Formats the table of one scenario and the methods that do not apply. Colour only when `colour`.
-pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> String {
-    let table = comparison_grid(&compared.entries).text(colour);
+/// Formats the table of one scenario and the methods that do not apply.
+pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display) -> String {
+    let table = comparison_grid(&compared.entries).text(display);
     let mut lines = vec![title(compared).to_owned(), table];
     lines.extend(remarks(compared));
     lines.join("\n")

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Display, Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{
     EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
     headline, met, passing, plan_lines, turn,
@@ -18,11 +18,12 @@ const MOST_LEGS: usize = 40;
 
 /// Least turn that a table of legs shows, degrees.
 const LEAST_TURN_DEG: f64 = 0.05;
-pub(super) const TIME_COLUMN: &str = "time\n[ms]";
 
-/// Formats a table with one row per scenario. Colour only when `colour`.
-pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
-    suite_grid(runs).text(colour)
+pub(super) const TIME_COLUMN: &str = "time";
+
+/// Formats a table with one row per scenario.
+pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
+    suite_grid(runs).text(display)
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
@@ -124,7 +125,7 @@ pub fn plan_document_text(plan: &PlanDocument) -> String {
 }
 
 /// Formats the legs of a plan as a table; empty where it has none. A long one is cut.
-pub fn legs_text(plan: &PlanDocument) -> String {
+pub fn legs_text(plan: &PlanDocument, display: Display) -> String {
     let mut grid = legs_grid(plan);
     if grid.rows.is_empty() {
         return String::new();
@@ -138,7 +139,7 @@ pub fn legs_text(plan: &PlanDocument) -> String {
             counted(more, "leg")
         ),
     };
-    format!("{}{more}", grid.text(false))
+    format!("{}{more}", grid.text(display))
 }
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
@@ -222,13 +223,17 @@ mod tests {
     fn rows_name_a_few_targets_and_count_the_rest() {
         let mut busy = planned();
         busy.encounters = vec![busy.encounters[0].clone(); 5];
-        let table = suite_table(std::slice::from_ref(&busy), false);
+        let table = suite_table(std::slice::from_ref(&busy), Display::default());
         assert_eq!(table.matches("port, astern").count(), LISTED, "{table}");
         assert!(table.contains("+ 2 more") && table.contains("a.toml"));
         assert!(!table.contains('\u{1b}'));
-        assert!(suite_table(&[planned()], true).contains('\u{1b}'));
+        let colour = Display {
+            colour: true,
+            width: None,
+        };
+        assert!(suite_table(&[planned()], colour).contains('\u{1b}'));
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
-        let both = suite_table(&[failed, busy], false);
+        let both = suite_table(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
     }
 
