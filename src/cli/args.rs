@@ -67,7 +67,7 @@ pub struct InitArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scenario files, files of other formats, or folders of them
+    /// Scenario files, files of other formats, or folders of them; - is standard input
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -76,7 +76,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct AssessArgs {
-    /// A scenario file, or a file of another format with one situation
+    /// A scenario file, or a file of another format with one situation; - is standard input
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     /// A point and a time: metres, metres, seconds; repeatable
@@ -109,7 +109,7 @@ pub struct AssessArgs {
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
-    /// A scenario file, or a file of another format with one situation
+    /// A scenario file, or a file of another format with one situation; - is standard input
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     #[command(flatten)]

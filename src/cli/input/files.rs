@@ -11,6 +11,9 @@ use searoom::document::{INTERNAL_FAULT, UNREADABLE};
 use super::super::output::Output;
 use super::super::output::status::ExitStatus;
 
+/// Path that means standard input.
+pub const STDIN: &str = "-";
+
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";
 
@@ -112,7 +115,10 @@ fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Refused>> {
             // a missing file is reported on reading
             all.push(Ok(Found {
                 file: path.clone(),
-                stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
+                stem: match path.to_str() {
+                    Some(STDIN) => "stdin".to_owned(),
+                    _ => stem(path.file_name().map(Path::new).unwrap_or(path)),
+                },
                 in_folder: false,
             }));
             continue;
