@@ -5,6 +5,7 @@
 #![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
 mod assessment;
+mod check;
 mod comparison;
 mod encounter;
 mod legs;
@@ -20,6 +21,7 @@ mod targets;
 mod verification;
 
 pub use assessment::*;
+pub use check::{CheckDocument, CheckedDocument, FaultDocument};
 pub use comparison::*;
 pub use encounter::*;
 pub use legs::PlannedLeg;

@@ -1,6 +1,6 @@
 //! What a person at a terminal sees, and what a pipe gets.
 
-use super::program::{HEAD_ON, command, stderr, stdout};
+use super::program::{Folder, HEAD_ON, assert_values, command, document, run, stderr, stdout};
 
 /// Tables fit the width that is known, and are whole where none is.
 #[test]
@@ -61,7 +61,7 @@ fn a_scenario_is_read_from_standard_input() {
     give(&map, "check -").success();
     let foreign = include_str!("../../scenarios/dnv/traffic_situation_01.json");
     give(foreign, "check -").success();
-    let early = HEAD_ON.split_once("speed_spread").expect("a target").0;
+    let early = HEAD_ON.rsplit_once("length_m").expect("a target").0;
     let (half, _) = foreign.split_at(foreign.len() / 2);
     for command in ["check -", "plan -", "assess -", "simulate -"] {
         for (text, said) in [
@@ -78,4 +78,65 @@ fn a_scenario_is_read_from_standard_input() {
         }
     }
     give(HEAD_ON, "check ./-").code(2);
+}
+
+/// One document holds every fault with its place; valid files are in it, too.
+#[test]
+fn a_check_is_a_document() {
+    let folder = Folder::new();
+    let bad = folder.write(
+        "bad.toml",
+        HEAD_ON.replace("horizon_s = 400.0", "horizon_s = -1"),
+    );
+    let absent = folder.at("absent.toml");
+    let imazu = "scenarios/imazu/imazu.json";
+    let checked = run(&format!("check --json {bad} {absent} {imazu}")).code(2);
+    assert!(stderr(&checked).contains("bad.toml: 1 fault") && !stderr(&checked).contains("note"));
+    let checked = document(&checked);
+    assert_values(
+        &checked,
+        r#"
+/files/0/scenario null
+/files/0/faults/0/line 3
+/files/0/faults/0/field "horizon_s"
+/files/0/faults/0/found "-1"
+/files/0/faults/0/allowed "a number from 0.001 to 1000000"
+/files/1/faults []
+/files/2/error null
+/files/2/scenario "imazu-01"
+"#,
+    );
+    assert_eq!(checked["files"].as_array().map(Vec::len), Some(2 + 22));
+    let said = checked["files"][1]["error"].as_str().expect("a reason");
+    assert!(said.contains("absent.toml: cannot be read"), "{said}");
+    let note = checked["files"][2]["notes"][0].as_str().expect("a note");
+    assert!(note.contains("no size in the file"), "{note}");
+    run("check --json scenarios/colregs").success().stderr("");
+}
+
+#[test]
+fn a_quiet_command_has_an_exit_status_alone() {
+    let imazu = "scenarios/imazu/imazu.json";
+    let folder = Folder::new();
+    for words in [
+        format!("suite {imazu}"),
+        format!("suite scenarios/colregs --plans {folder}/plans"),
+        "suite --lint scenarios/colregs".to_owned(),
+        "plan scenarios/dnv/traffic_situation_01.json --no-return".to_owned(),
+        "simulate scenarios/colregs/head-on.toml scenarios/colregs/stand-on.toml".to_owned(),
+    ] {
+        let quiet = run(&format!("{words} --quiet")).stdout("").stderr("");
+        let loud = run(&words);
+        assert_eq!(
+            quiet.get_output().status,
+            loud.get_output().status,
+            "{words}"
+        );
+        assert!(!stdout(&loud).is_empty(), "{words}");
+        let json = document(&run(&format!("{words} --quiet --json")).stderr(""));
+        assert!(json.is_object(), "{words}");
+    }
+    let bad = folder.write("bad.toml", "title = 3");
+    let refused = run(&format!("plan {bad} --quiet")).code(2).stdout("");
+    assert!(stderr(&refused).contains("bad.toml: "));
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use searoom::document::{INTERNAL_FAULT, UNREADABLE};
+use searoom::input::{Fault, InputError};
 
 use super::super::output::Output;
 use super::super::output::status::ExitStatus;
@@ -36,6 +37,8 @@ pub struct Refused {
     pub outcome: &'static str,
     /// Error that includes the file name.
     pub error: String,
+    /// What is wrong in the file, where it could be read.
+    pub faults: Vec<Fault>,
 }
 
 impl Refused {
@@ -45,11 +48,24 @@ impl Refused {
             title: None,
             outcome,
             error: error.to_string(),
+            faults: Vec::new(),
         }
     }
 
     pub fn unreadable(file: &Path, error: impl Display) -> Self {
         Self::new(file, UNREADABLE, error)
+    }
+
+    /// A file that cannot be read, or is wrong.
+    pub fn input(file: &Path, error: InputError) -> Self {
+        Self {
+            error: error.to_string(),
+            faults: match error {
+                InputError::Faults { faults, .. } => faults,
+                InputError::Read { .. } => Vec::new(),
+            },
+            ..Self::unreadable(file, "")
+        }
     }
 
     /// An internal fault, whose text does not include the file name.

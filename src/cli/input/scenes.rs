@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use searoom::input::{Fault, InputError, read_from, read_text};
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
-use searoom::scenario::{FILE_MEBIBYTES, Scenario, ScenarioError};
+use searoom::scenario::{FILE_MEBIBYTES, Scenario};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
@@ -41,7 +41,7 @@ impl Scene {
                 })
             }
         };
-        made.map_err(|faults| Refused::unreadable(file, ScenarioError::faults(file, faults)))
+        made.map_err(|faults| Refused::input(file, InputError::faults(file, faults)))
     }
 
     /// True for a situation of another format.
@@ -113,12 +113,9 @@ fn of_file(
     };
     let text = match read {
         Ok(text) => text,
-        Err(error) => return scenes.push(Err(Refused::unreadable(file, error))),
+        Err(error) => return scenes.push(Err(Refused::input(file, error))),
     };
-    let wrong = |faults| {
-        let error = ScenarioError::faults(file, faults);
-        Err(Refused::unreadable(file, error))
-    };
+    let wrong = |faults| Err(Refused::input(file, InputError::faults(file, faults)));
     match Contents::parse(&text, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),

@@ -31,18 +31,21 @@ const COLOURS: [&str; 5] = [
 #[derive(Debug)]
 pub struct Output {
     pub display: Display,
+    /// Only documents and errors.
+    pub quiet: bool,
 }
 
 impl Output {
     /// Enables colour on a terminal, unless `NO_COLOR` forbids it. Tables are as wide as `COLUMNS`
     /// or the terminal.
-    pub fn new() -> Self {
+    pub fn new(quiet: bool) -> Self {
         let terminal = std::io::stdout().is_terminal();
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         let columns = std::env::var("COLUMNS").ok();
         let columns = columns.and_then(|n| n.parse().ok().filter(|n| *n > 0));
         let measured = || terminal.then(|| Table::new().width()).flatten();
         Self {
+            quiet,
             display: Display {
                 colour: wanted && terminal,
                 width: columns.or_else(|| measured().map(usize::from)),
@@ -50,8 +53,16 @@ impl Output {
         }
     }
 
-    /// Prints a result. Reports a bad status if printing fails; a closed pipe is not an error.
+    /// Prints a result as text.
     pub fn result(&self, text: &str) -> ExitStatus {
+        match self.quiet {
+            true => ExitStatus::Good,
+            false => self.print(text),
+        }
+    }
+
+    /// Prints to standard output. Reports a bad status if printing fails; a closed pipe is not an error.
+    fn print(&self, text: &str) -> ExitStatus {
         let mut stdout = std::io::stdout().lock();
         let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
@@ -88,7 +99,7 @@ impl Output {
 
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
-            Ok(text) => self.result(text.trim_end()),
+            Ok(text) => self.print(text.trim_end()),
             Err(error) => self.fault(&format_args!("{error:#}")),
         }
     }
@@ -140,6 +151,9 @@ impl Output {
     }
 
     pub fn note(&self, note: &impl fmt::Display) {
+        if self.quiet {
+            return;
+        }
         let note = note.to_string();
         let _ = writeln!(std::io::stderr(), "note: {}", printable_lines(&note));
     }
@@ -150,6 +164,9 @@ impl Output {
 
     /// Creates a progress bar on standard error; hidden unless that is a terminal.
     pub fn progress(&self, steps: usize) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
         match ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
             Ok(style) => bar.with_style(style),
