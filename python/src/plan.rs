@@ -193,8 +193,9 @@ impl Plan {
     }
 
     fn __str__(&self) -> String {
-        let text = plan_document_text(&self.document);
-        format!("{text}\n{}", legs_text(&self.document, Display::default()))
+        let display = Display::default();
+        let text = plan_document_text(&self.document, display);
+        format!("{text}\n{}", legs_text(&self.document, display))
     }
 
     fn __repr__(&self) -> String {

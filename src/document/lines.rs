@@ -21,6 +21,11 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
 /// Outcome, whether the plan is verified and safe, the rules that it breaks, and the waypoints that
 /// it skips.
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
+    in_brackets(&printable(&plan.verdict), &verdict_parts(plan))
+}
+
+/// What [`verdict_line`] says in brackets behind the outcome.
+pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
         all.push(facts(plan.verified, plan.is_safe()).to_owned());
@@ -33,11 +38,15 @@ pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
         all.push(format!("skips {skipped}"));
     }
-    let all = match all.is_empty() {
-        true => String::new(),
-        false => format!(" ({})", all.join("; ")),
-    };
-    printable(&format!("{}{all}", plan.verdict))
+    all.iter().map(|part| printable(part)).collect()
+}
+
+/// A word with further parts in brackets.
+pub(crate) fn in_brackets(word: &str, parts: &[String]) -> String {
+    match parts.is_empty() {
+        true => word.to_owned(),
+        false => format!("{word} ({})", parts.join("; ")),
+    }
 }
 
 fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {

@@ -25,7 +25,9 @@ pub use check::{CheckDocument, CheckedDocument, FaultDocument};
 pub use comparison::*;
 pub use encounter::*;
 pub use legs::PlannedLeg;
-pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
+pub(crate) use lines::{
+    TIME_LINE, headline, in_brackets, met, passing, plan_lines, turn, verdict_line, verdict_parts,
+};
 pub use lint::*;
 pub use memory::*;
 pub use parts::*;

@@ -195,6 +195,17 @@ pub(super) fn or_dash(text: Option<String>) -> Styled {
     plain(text.unwrap_or_else(|| MISSING.to_owned()))
 }
 
+/// A text in the colour of its rating, as in a table.
+pub(super) fn painted((text, tone): Styled, display: Display) -> String {
+    let code = match tone {
+        Tone::Good if display.colour => 10,
+        Tone::Fair if display.colour => 11,
+        Tone::Bad if display.colour => 9,
+        _ => return text,
+    };
+    format!("\u{1b}[38;5;{code}m{text}\u{1b}[39m")
+}
+
 /// Outcome in words for the reader, with its rating.
 pub(super) fn verdict(word: &str) -> Styled {
     let tone = match word {
