@@ -33,7 +33,7 @@ scenario: frame tolerance geometry trajectory vessel map target colregs planner 
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning
 study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
-document: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
+document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 replanning: document frame tolerance trajectory vessel target colregs planner scenario
 report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
 recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output

@@ -9,7 +9,7 @@ use searoom::document::PlanDocument;
 use searoom::frame::course_deg_from_heading;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::Run;
-use searoom::report::{legs_text, plan_document_text, write_atomically};
+use searoom::report::{Display, legs_text, plan_document_text, write_atomically};
 use searoom::scenario::Scenario as Asked;
 use searoom::trajectory::Trajectory;
 
@@ -193,8 +193,9 @@ impl Plan {
     }
 
     fn __str__(&self) -> String {
-        let text = plan_document_text(&self.document);
-        format!("{text}\n{}", legs_text(&self.document))
+        let display = Display::default();
+        let text = plan_document_text(&self.document, display);
+        format!("{text}\n{}", legs_text(&self.document, display))
     }
 
     fn __repr__(&self) -> String {

@@ -67,16 +67,19 @@ pub struct InitArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scenario files, files of other formats, or folders of them
+    /// Scenario files, files of other formats, or folders of them; - is standard input
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
     #[command(flatten)]
     pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
 pub struct AssessArgs {
-    /// A scenario file, or a file of another format with one situation
+    /// A scenario file, or a file of another format with one situation; - is standard input
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     /// A point and a time: metres, metres, seconds; repeatable
@@ -109,7 +112,7 @@ pub struct AssessArgs {
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
-    /// A scenario file, or a file of another format with one situation
+    /// A scenario file, or a file of another format with one situation; - is standard input
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     #[command(flatten)]
@@ -307,6 +310,9 @@ pub struct Written {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+    /// Print errors alone, and a document if one is asked for
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Options of `plan` and `suite`.
@@ -392,6 +398,20 @@ impl Asked {
             thresholds.sectors.in_sight = scenario.limits.sectors.in_sight;
             scenario.thresholds = Some(Arc::new(thresholds));
         }
+    }
+}
+
+impl Command {
+    /// True if the command shall print no text and no notes.
+    pub fn quiet(&self) -> bool {
+        let written = match self {
+            Self::Plan(args) => &args.shared.written,
+            Self::Suite(args) => &args.shared.written,
+            Self::Simulate(args) => &args.written,
+            Self::Compare(args) => &args.written,
+            _ => return false,
+        };
+        written.quiet
     }
 }
 

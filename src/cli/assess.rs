@@ -101,6 +101,6 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     drawn
         .unwrap_or_default()
         .max(output.show(args.json, &assessment, || {
-            assessment_text(&situation, &assessment)
+            assessment_text(&situation, &assessment, output.display)
         }))
 }

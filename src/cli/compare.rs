@@ -233,7 +233,7 @@ fn show(
     }
     let read = comparisons.iter().filter(|c| c.error.is_none());
     let tables: Vec<String> = read
-        .map(|compared| comparison_table(compared, output.colour))
+        .map(|compared| comparison_table(compared, output.display))
         .collect();
     if tables.is_empty() {
         return ExitStatus::Good;

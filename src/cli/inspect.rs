@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
 use searoom::document::{PlanDocument, ScenarioComparisonDocument, SimulationDocument};
 use searoom::recording::{EntityContents, EntityTable, Recorded, TimelineContents};
-use searoom::report::{comparison_table, plan_document_text, simulation_text};
+use searoom::report::{Display, comparison_table, plan_document_text, simulation_text};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
         return Ok(output.result(text.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
-    Ok(output.show(args.json, &contents, || contents.text()))
+    Ok(output.show(args.json, &contents, || contents.text(output.display)))
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.
@@ -173,7 +173,7 @@ impl Contents {
         }
     }
 
-    fn text(&self) -> String {
+    fn text(&self, display: Display) -> String {
         let mut lines = vec![format!(
             "{}: {:.0} kB, recorded by {} with Rerun {}",
             self.file,
@@ -184,9 +184,9 @@ impl Contents {
                 .unwrap_or("of an unknown version")
         )];
         lines.push(match (&self.plan, &self.compared, &self.sailed) {
-            (Some(plan), _, _) => plan_document_text(plan),
-            (None, Some(compared), _) => comparison_table(compared, false),
-            (None, None, Some(sailed)) => simulation_text(sailed, false),
+            (Some(plan), _, _) => plan_document_text(plan, display),
+            (None, Some(compared), _) => comparison_table(compared, display),
+            (None, None, Some(sailed)) => simulation_text(sailed, display),
             (None, None, None) => "no plan document in it".to_owned(),
         });
         lines.push(String::new());

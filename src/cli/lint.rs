@@ -31,6 +31,6 @@ pub fn suite(scenes: Vec<Result<Scene, Refused>>, args: &SuiteArgs, output: &Out
     }
     let document = LintDocument::of(documents);
     status.max(output.show(args.shared.written.json, &document, || {
-        lint_text(&document, output.colour)
+        lint_text(&document, output.display)
     }))
 }

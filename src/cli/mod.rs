@@ -30,7 +30,7 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::usage(&error),
     };
-    let output = Output::new();
+    let output = Output::new(arguments.command.quiet());
     let run = || match &arguments.command {
         Command::Init(args) => Ok(import::init(args, &output)),
         Command::Check(args) => Ok(check::check(args, &output)),

@@ -43,8 +43,8 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             };
             let shown = output.show(args.shared.written.json, &document, || {
                 let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
-                let text = plan_document_text(&document);
-                let legs = legs_text(&document);
+                let text = plan_document_text(&document, output.display);
+                let legs = legs_text(&document, output.display);
                 format!("{text}{}\n{legs}", line.unwrap_or_default())
             });
             let written = output.written(write(&products, &scene.found, &run, &document));

@@ -56,7 +56,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 let shown = if args.written.json {
                     ExitStatus::Good
                 } else {
-                    output.result(&format!("{}\n", simulation_text(&document, output.colour)))
+                    output.result(&format!("{}\n", simulation_text(&document, output.display)))
                 };
                 let reached = if document.safe {
                     ExitStatus::Good

@@ -91,7 +91,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
     let written = output.written(report);
     let shown = output.show(args.shared.written.json, &document, || {
-        let table = suite_table(&document.runs, output.colour);
+        let table = suite_table(&document.runs, output.display);
         format!("{table}\n{}", document.summary)
     });
     if document.runs.iter().any(|run| run.cost.is_some()) {

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use searoom::document::{PLAN_MEBIBYTES, VerificationDocument, VerifiedPlanDocument};
 use searoom::input::read_text;
-use searoom::report::{printable, simulation_verification_text, verification_text};
+use searoom::report::{Display, printable, simulation_verification_text, verification_text};
 use searoom::verification::{
     SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
 };
@@ -33,8 +33,8 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
             }
         };
         let name = path.display().to_string();
-        let colour = output.colour;
-        let reached = match guarded_within(args.budget_s, move || one(&path, colour)) {
+        let display = output.display;
+        let reached = match guarded_within(args.budget_s, move || one(&path, display)) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
                 let error = format!("{name}: not proven within the budget of {budget} s");
@@ -86,7 +86,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
 }
 
 /// Checks the documents of a file, each with its result as text.
-fn one(file: &Path, colour: bool) -> anyhow::Result<Vec<(VerifiedPlanDocument, String)>> {
+fn one(file: &Path, display: Display) -> anyhow::Result<Vec<(VerifiedPlanDocument, String)>> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         recorded(file)?
     } else {
@@ -96,7 +96,7 @@ fn one(file: &Path, colour: bool) -> anyhow::Result<Vec<(VerifiedPlanDocument, S
     let name = || file.display().to_string();
     let plan = |plan: &Verification| {
         let document = VerifiedPlanDocument::of(name(), plan);
-        (document, verification_text(plan, colour))
+        (document, verification_text(plan, display))
     };
     let simulation = |sailed: &SimulationVerification| {
         let document = VerifiedPlanDocument::of_simulation(name(), sailed);

@@ -3,12 +3,17 @@
 
 use super::{
     ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
-    MemoryDocument, PlanDocument, RelaxationDocument, breaks,
+    MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
 };
+use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
+use crate::frame::deg_from_radians;
 use crate::text::{printable, signed, square_metres, tenths};
 
 const LISTED: usize = 3;
+
+/// Scores from here on round to 1.
+const FULL_SCORE: f64 = 0.995;
 pub(crate) const TIME_LINE: &str = "time";
 
 type Add<'a> = dyn FnMut(&'static str, String) + 'a;
@@ -21,6 +26,11 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
 /// Outcome, whether the plan is verified and safe, the rules that it breaks, and the waypoints that
 /// it skips.
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
+    in_brackets(&printable(&plan.verdict), &verdict_parts(plan))
+}
+
+/// What [`verdict_line`] says in brackets behind the outcome.
+pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
         all.push(facts(plan.verified, plan.is_safe()).to_owned());
@@ -33,11 +43,15 @@ pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
         all.push(format!("skips {skipped}"));
     }
-    let all = match all.is_empty() {
-        true => String::new(),
-        false => format!(" ({})", all.join("; ")),
-    };
-    printable(&format!("{}{all}", plan.verdict))
+    all.iter().map(|part| printable(part)).collect()
+}
+
+/// A word with further parts in brackets.
+pub(crate) fn in_brackets(word: &str, parts: &[String]) -> String {
+    match parts.is_empty() {
+        true => word.to_owned(),
+        false => format!("{word} ({})", parts.join("; ")),
+    }
 }
 
 fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {
@@ -210,10 +224,16 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
         let roles = roles.map(|r| format!("{} {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
         let roles = roles.collect::<Vec<_>>().join(", ");
         add("rules", format!("'{}': {roles}", encounter.target));
-        let scores = conduct.scores.iter();
-        let scores = scores.map(|(name, score)| format!("{} {score:.2}", name.replace('_', " ")));
-        let scores = scores.collect::<Vec<_>>().join(", ");
-        add("", format!("scores: {scores}"));
+        let scores = conduct
+            .scores
+            .iter()
+            .filter(|(_, score)| **score < FULL_SCORE);
+        let scores: Vec<String> = scores
+            .map(|(name, score)| format!("{} {score:.2} of 1", name.replace('_', " ")))
+            .collect();
+        if !scores.is_empty() {
+            add("", format!("scores: {}", scores.join(", ")));
+        }
         if let Some(manoeuvre) = &conduct.manoeuvre {
             add("", manoeuvre_text(manoeuvre));
         }
@@ -222,19 +242,45 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
             add("", format!("violates {rule} at {time:.0} s: {what}"));
         }
         for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
-            // avoids a negative zero; rounded up, as a violation is more than nothing
-            let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
-            let short = match monitor.unit.as_str() {
-                "m" => format!("{:.1} m", 0.1 * (10.0 * short).ceil()),
-                "deg" => format!("{:.0}°", short.ceil()),
-                unit => format!("{:.0} {unit}", short.ceil()),
-            };
-            let time = monitor.t_s.unwrap_or(f64::NAN);
-            let name = &monitor.monitor;
-            let text = format!("monitor {name} is violated at {time:.0} s by {short}");
-            add("", text);
+            add("", monitor_text(plan, monitor));
         }
     }
+}
+
+/// What own ship did against a monitor, when, and by how much. The limits are named if the profile
+/// is a published one.
+fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
+    let published = Thresholds::named(&plan.thresholds);
+    let degrees = |limit: fn(&Thresholds) -> f64| {
+        published.map(|t| format!("{:.0}°", deg_from_radians(limit(t))))
+    };
+    let turn = degrees(|t| t.monitor.turn).unwrap_or("far enough".to_owned());
+    let hold = degrees(|t| t.score.hold).map_or(String::new(), |hold| format!(" within {hold}"));
+    let time = published.map_or("in time".to_owned(), |t| {
+        let factor = t.time_factor(plan.own_ship.length_m);
+        format!("within {:.0} s", factor * t.monitor.response())
+    });
+    let past = "and before the target was past";
+    let what = match monitor.monitor.as_str() {
+        "S" => "did not keep the hulls apart".to_owned(),
+        "R1" => "held a collision course until the hulls met".to_owned(),
+        "R3" => format!("did not turn {turn} to starboard or halve its speed {time} {past}"),
+        "R4" => format!("did not turn {turn} to starboard {time} {past}"),
+        "R5" => format!("did not turn {turn} or halve its speed {time} {past}"),
+        "R6" => format!("did not hold its course{hold}"),
+        name => format!("violated {name}"),
+    };
+    // avoids a negative zero; rounded up, as a violation is more than nothing
+    let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
+    let short = match monitor.unit.as_str() {
+        _ if short == 0.0 => String::new(),
+        "m" => format!(", missed by {:.1} m", 0.1 * (10.0 * short).ceil()),
+        "deg" => format!(", missed by {:.0}°", short.ceil()),
+        unit => format!(", missed by {:.0} {unit}", short.ceil()),
+    };
+    let time = monitor.t_s.unwrap_or(f64::NAN);
+    let name = &monitor.monitor;
+    format!("{what} ({name}): at {time:.0} s{short}")
 }
 
 /// The manoeuvre as a navigator looks at it.
@@ -407,5 +453,75 @@ pub(crate) fn passing(encounter: &EncounterDocument) -> String {
         (Some(side), Some(true)) => format!("{side}, astern"),
         (Some(side), Some(false)) => format!("{side}, ahead"),
         (Some(side), None) => side.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn monitors_are_told_in_words() {
+        let text = include_str!("../../scenarios/colregs/give-way.toml");
+        let run = pipeline::run(Scenario::parse(text).expect("valid"));
+        let mut plan = PlanDocument::of(&run);
+        let mut said = |monitor: &str, unit: &str, large: bool, profile: &str| {
+            plan.own_ship.length_m = if large { 150.0 } else { 30.0 };
+            plan.thresholds = profile.to_owned();
+            let monitor = MonitorDocument {
+                monitor: monitor.to_owned(),
+                verdict: "violated".to_owned(),
+                robustness: Some(-11.2),
+                unit: unit.to_owned(),
+                t_s: Some(40.4),
+            };
+            monitor_text(&plan, &monitor)
+        };
+        let name = &Thresholds::standard().name;
+        let late = format!(
+            "within {:.0} s and before the target was past",
+            Thresholds::standard().time_factor(150.0) * 200.0
+        );
+        assert_eq!(
+            said("R4", "deg", false, name),
+            "did not turn 20° to starboard within 200 s and before the target was past (R4): \
+             at 40 s, missed by 12°"
+        );
+        assert!(said("R3", "deg", true, name).contains(&late));
+        assert_eq!(
+            said("R6", "deg", false, name),
+            "did not hold its course within 10° (R6): at 40 s, missed by 12°"
+        );
+        assert_eq!(
+            said("S", "m", false, "mine"),
+            "did not keep the hulls apart (S): at 40 s, missed by 11.2 m"
+        );
+        // a profile of a file has limits of its own
+        assert!(said("R5", "deg", false, "mine").starts_with(
+            "did not turn far enough or halve its speed in time and before the target was past"
+        ));
+    }
+
+    #[test]
+    fn only_scores_below_one_are_told() {
+        let text = include_str!("../../scenarios/colregs/stand-on.toml");
+        let run = pipeline::run(Scenario::parse(text).expect("valid"));
+        let mut plan = PlanDocument::of(&run);
+        let scores = |plan: &PlanDocument| {
+            let mut lines = plan_lines(plan).into_iter();
+            lines.find_map(|(_, line)| Some(line.strip_prefix("scores: ")?.to_owned()))
+        };
+        let conduct = |plan: &mut PlanDocument, score| {
+            let conduct = plan.encounters[0].conduct.as_mut().expect("a ship");
+            conduct.scores = [("rule_17", score), ("safety", 0.996)]
+                .map(|(name, score)| (name.to_owned(), score))
+                .into();
+        };
+        conduct(&mut plan, 0.331);
+        assert_eq!(scores(&plan).as_deref(), Some("rule 17 0.33 of 1"));
+        conduct(&mut plan, 1.0);
+        assert_eq!(scores(&plan), None);
     }
 }

@@ -5,6 +5,7 @@
 #![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
 mod assessment;
+mod check;
 mod comparison;
 mod encounter;
 mod legs;
@@ -20,10 +21,13 @@ mod targets;
 mod verification;
 
 pub use assessment::*;
+pub use check::{CheckDocument, CheckedDocument, FaultDocument};
 pub use comparison::*;
 pub use encounter::*;
 pub use legs::PlannedLeg;
-pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn, verdict_line};
+pub(crate) use lines::{
+    TIME_LINE, headline, in_brackets, met, passing, plan_lines, turn, verdict_line, verdict_parts,
+};
 pub use lint::*;
 pub use memory::*;
 pub use parts::*;

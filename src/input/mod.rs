@@ -154,33 +154,48 @@ pub fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, Inpu
         file: file.to_owned(),
         source,
     };
-    let whole = |fault: Fault| InputError::faults(file, vec![fault]);
-    let too_large = || {
-        let found = format_args!("more than {mebibytes} MiB");
-        let allowed = format_args!("{kind} of at most {mebibytes} MiB");
-        whole(Fault::new("", found, allowed))
-    };
-    let most = mebibytes * MEBIBYTE;
     // opening a pipe would block, a device may have no end
     let about = std::fs::metadata(file).map_err(unread)?;
     if !about.is_file() {
         let error = Error::new(ErrorKind::InvalidInput, "not a regular file");
         return Err(unread(error));
     }
-    if about.len() > most {
-        return Err(too_large());
+    if about.len() > mebibytes * MEBIBYTE {
+        return Err(too_large(file, mebibytes, kind));
     }
-    let mut bytes = Vec::new();
     // the file may have grown since
-    let mut limited = File::open(file).map_err(unread)?.take(most + 1);
-    limited.read_to_end(&mut bytes).map_err(unread)?;
+    read_from(File::open(file).map_err(unread)?, file, mebibytes, kind)
+}
+
+fn too_large(file: &Path, mebibytes: u64, kind: &str) -> InputError {
+    let found = format_args!("more than {mebibytes} MiB");
+    let allowed = format_args!("{kind} of at most {mebibytes} MiB");
+    InputError::faults(file, vec![Fault::new("", found, allowed)])
+}
+
+/// [`read_text`] from an open source, which errors name as `file`.
+pub fn read_from(
+    source: impl Read,
+    file: &Path,
+    mebibytes: u64,
+    kind: &str,
+) -> Result<String, InputError> {
+    let most = mebibytes * MEBIBYTE;
+    let mut bytes = Vec::new();
+    let mut limited = source.take(most + 1);
+    limited
+        .read_to_end(&mut bytes)
+        .map_err(|source| InputError::Read {
+            file: file.to_owned(),
+            source,
+        })?;
     if bytes.len() as u64 > most {
-        return Err(too_large());
+        return Err(too_large(file, mebibytes, kind));
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let found = format_args!("bytes that are not text at byte {at}");
-        whole(Fault::new("", found, "UTF-8 text"))
+        InputError::faults(file, vec![Fault::new("", found, "UTF-8 text")])
     })
 }
 

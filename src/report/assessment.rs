@@ -1,6 +1,6 @@
 //! Text of an assessment.
 
-use super::table::{Grid, plain};
+use super::table::{Display, Grid, plain};
 use crate::document::{AssessmentDocument, InitialSetDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::OwnSituation;
@@ -8,7 +8,11 @@ use crate::text::{counted, tenths};
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.
-pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
+pub fn assessment_text(
+    situation: &OwnSituation,
+    assessment: &AssessmentDocument,
+    display: Display,
+) -> String {
     let count = assessment.targets.len();
     let AssessmentDocument {
         scenario,
@@ -21,15 +25,18 @@ pub fn assessment_text(situation: &OwnSituation, assessment: &AssessmentDocument
         counted(count, "target")
     )];
     if count > 0 {
-        blocks.push(held(situation, assessment));
+        blocks.push(held(situation, assessment, display));
     }
     blocks.push(alteration(situation, assessment));
     let asked = [
-        (!assessment.points.is_empty(), points(assessment)),
-        (!assessment.velocities.is_empty(), velocities(assessment)),
+        (!assessment.points.is_empty(), points(assessment, display)),
+        (
+            !assessment.velocities.is_empty(),
+            velocities(assessment, display),
+        ),
         (
             assessment.targets.iter().any(|t| !t.sections.is_empty()),
-            sections(assessment),
+            sections(assessment, display),
         ),
     ];
     let asked = asked.into_iter().filter(|(asked, _)| *asked && count > 0);
@@ -43,7 +50,7 @@ fn course(heading: f64) -> String {
     format!("{:03}.{}°", tenths / 10, tenths % 10)
 }
 
-fn held(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
+fn held(situation: &OwnSituation, assessment: &AssessmentDocument, display: Display) -> String {
     let rows = assessment.hold_course.targets.iter().map(|held| {
         vec![
             held.name.clone(),
@@ -57,7 +64,7 @@ fn held(situation: &OwnSituation, assessment: &AssessmentDocument) -> String {
         "Holding course {} at {:.2} m/s\n{}",
         course(situation.pose.heading),
         situation.speed,
-        table(header, 1..4, rows)
+        table(header, 1..4, rows, display)
     )
 }
 
@@ -91,7 +98,7 @@ fn up(value: f64) -> f64 {
     (value * 100.0 - 1e-6).ceil() / 100.0
 }
 
-fn points(assessment: &AssessmentDocument) -> String {
+fn points(assessment: &AssessmentDocument, display: Display) -> String {
     let header = "target, east\n[m], north\n[m], t\n[s], alpha, risk, inside";
     let rows = assessment.points.iter().flat_map(|point| {
         point.targets.iter().map(|risk| {
@@ -106,10 +113,10 @@ fn points(assessment: &AssessmentDocument) -> String {
             ]
         })
     });
-    format!("Points\n{}", table(header, 1..6, rows))
+    format!("Points\n{}", table(header, 1..6, rows, display))
 }
 
-fn velocities(assessment: &AssessmentDocument) -> String {
+fn velocities(assessment: &AssessmentDocument, display: Display) -> String {
     let header = "target, east\n[m/s], north\n[m/s], dCPA\n[m], tCPA\n[s], in velocity\nobstacle";
     let rows = assessment.velocities.iter().flat_map(|velocity| {
         velocity.targets.iter().map(|approach| {
@@ -123,10 +130,13 @@ fn velocities(assessment: &AssessmentDocument) -> String {
             ]
         })
     });
-    format!("Velocities, from t = 0 on\n{}", table(header, 1..5, rows))
+    format!(
+        "Velocities, from t = 0 on\n{}",
+        table(header, 1..5, rows, display)
+    )
 }
 
-fn sections(assessment: &AssessmentDocument) -> String {
+fn sections(assessment: &AssessmentDocument, display: Display) -> String {
     let header = "target, t\n[s], west\n[m], east\n[m], south\n[m], north\n[m], made of";
     let rows = assessment.targets.iter().flat_map(|target| {
         target.sections.iter().map(|section| {
@@ -136,7 +146,10 @@ fn sections(assessment: &AssessmentDocument) -> String {
             vec![name, number(section.t_s), west, east, south, north, made_of]
         })
     });
-    format!("Sections and their extents\n{}", table(header, 1..6, rows))
+    format!(
+        "Sections and their extents\n{}",
+        table(header, 1..6, rows, display)
+    )
 }
 
 /// East and north intervals, and kind of a section.
@@ -175,7 +188,8 @@ fn table(
     header: &'static str,
     numbers: std::ops::Range<usize>,
     rows: impl Iterator<Item = Vec<String>>,
+    display: Display,
 ) -> String {
     let rows = rows.map(|row| row.into_iter().map(plain).collect());
-    Grid::new(header, numbers, rows).text(false)
+    Grid::new(header, numbers, rows).text(display)
 }

@@ -1,7 +1,7 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
 use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
-use super::table::{Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::text::{signed, square_metres, tenths};
@@ -14,9 +14,9 @@ fn title(compared: &ScenarioComparisonDocument) -> &str {
     compared.scenario.as_deref().unwrap_or(&compared.file)
 }
 
-/// Formats the table of one scenario and the methods that do not apply. Colour only when `colour`.
-pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> String {
-    let table = comparison_grid(&compared.entries).text(colour);
+/// Formats the table of one scenario and the methods that do not apply.
+pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display) -> String {
+    let table = comparison_grid(&compared.entries).text(display);
     let mut lines = vec![title(compared).to_owned(), table];
     lines.extend(remarks(compared));
     lines.join("\n")
@@ -35,22 +35,73 @@ pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
     lines.join("\n")
 }
 
-/// Builds one row per entry; in a sweep, with the accepted risk.
+/// Entries whose motion is the same as that of an earlier one follow it in its group.
+fn groups(entries: &[EntryDocument]) -> Vec<Vec<&EntryDocument>> {
+    let result = |entry: &EntryDocument| EntryDocument {
+        method: String::new(),
+        search_stats: None,
+        timing: None,
+        ..entry.clone()
+    };
+    let planned = |entry: &EntryDocument| entry.cost.is_some() && entry.search_stats.is_some();
+    let mut groups: Vec<Vec<&EntryDocument>> = Vec::new();
+    for entry in entries {
+        let same = |group: &&mut Vec<&EntryDocument>| {
+            planned(entry) && planned(group[0]) && result(entry) == result(group[0])
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(entry),
+            None => groups.push(vec![entry]),
+        }
+    }
+    groups
+}
+
+/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part.
+fn joined(methods: &[&str]) -> String {
+    let split: Vec<Vec<&str>> = methods.iter().map(|m| m.split(", ").collect()).collect();
+    let first = &split[0];
+    let differ = |part: &usize| split.iter().any(|m| m.get(*part) != first.get(*part));
+    let parts: Vec<usize> = (0..first.len()).filter(differ).collect();
+    match parts[..] {
+        [part] if split.iter().all(|m| m.len() == first.len()) => {
+            let other: Vec<&str> = split.iter().map(|m| m[part]).collect();
+            let other = other.join(" and ");
+            let mut all = first.clone();
+            all[part] = &other;
+            all.join(", ")
+        }
+        _ => methods.join(" and "),
+    }
+}
+
+/// Values of several entries in one cell, each once.
+fn listed(values: impl Iterator<Item = Option<String>>) -> Styled {
+    let mut values: Vec<String> = values.flatten().collect();
+    values.dedup();
+    or_dash((!values.is_empty()).then(|| values.join(", ")))
+}
+
+/// Builds one row per motion; in a sweep, with the accepted risk.
 pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
+    let groups = groups(entries);
     let header = "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
                   clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks";
-    let mut grid = Grid::new(header, 2..12, entries.iter().map(row));
+    let mut grid = Grid::new(header, 2..12, groups.iter().map(|group| row(group)));
     if is_sweep(entries) {
         grid.header.insert(2, "accepted\nrisk");
         grid.numbers.end += 1;
-        for (row, entry) in grid.rows.iter_mut().zip(entries) {
-            row.insert(2, plain(entry.max_risk.to_string()));
+        for (row, group) in grid.rows.iter_mut().zip(&groups) {
+            row.insert(2, plain(group[0].max_risk.to_string()));
         }
     }
     grid
 }
 
-fn row(entry: &EntryDocument) -> Vec<Styled> {
+fn row(group: &[&EntryDocument]) -> Vec<Styled> {
+    let entry = group[0];
+    let methods: Vec<&str> = group.iter().map(|entry| entry.method.as_str()).collect();
+    let nodes = |entry: &&EntryDocument| Some(entry.search_stats?.expanded.to_string());
     let cost = entry.cost.as_ref();
     let figure = |value: fn(&CostDocument) -> f64, text: fn(f64) -> String| {
         or_dash(cost.map(value).filter(|v| v.is_finite()).map(text))
@@ -58,7 +109,7 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
     let safe = cost.map(|_| entry.safe);
     let planned = entry.search_stats.is_some();
     vec![
-        plain(&entry.method),
+        plain(joined(&methods)),
         verdict(&entry.verdict),
         figure(|c| c.space_time_error_m2, square_metres),
         or_dash(
@@ -71,8 +122,8 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
         or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
         figure(|c| c.max_risk, risk_figure),
         or_dash(cost.map(|_| largest_turn(entry))),
-        or_dash(entry.search_stats.map(|stats| stats.expanded.to_string())),
-        or_dash(entry.timing.map(milliseconds)),
+        listed(group.iter().map(nodes)),
+        listed(group.iter().map(|entry| entry.timing.map(milliseconds))),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
         yes_or_no(safe),
         rules_broken(
@@ -161,4 +212,37 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         optional(entry.timing.map(|timing| 1e3 * timing.plan_s)),
         entry.reason.clone().unwrap_or_default(),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::joined;
+
+    #[test]
+    fn methods_with_one_plan_have_one_name() {
+        for (methods, name) in [
+            (&["space-time, A*"][..], "space-time, A*"),
+            (
+                &["space-time, A*", "space-time, Dijkstra"],
+                "space-time, A* and Dijkstra",
+            ),
+            (
+                &[
+                    "space-time, A*, ellipsoids",
+                    "space-time, Dijkstra, ellipsoids",
+                ],
+                "space-time, A* and Dijkstra, ellipsoids",
+            ),
+            (
+                &["space-time, A*", "space-time, A*, ellipsoids"],
+                "space-time, A* and space-time, A*, ellipsoids",
+            ),
+            (
+                &["path-time", "optimal control"],
+                "path-time and optimal control",
+            ),
+        ] {
+            assert_eq!(joined(methods), name);
+        }
+    }
 }

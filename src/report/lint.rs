@@ -1,11 +1,11 @@
 //! Text of scenario faults.
 
-use super::table::{Grid, or_dash, plain};
+use super::table::{Display, Grid, or_dash, plain};
 use crate::document::LintDocument;
 use crate::text::{counted, tenths};
 
 /// Formats one row per target, then every finding and a summary.
-pub fn lint_text(document: &LintDocument, colour: bool) -> String {
+pub fn lint_text(document: &LintDocument, display: Display) -> String {
     let header = "scenario, target, role, dCPA\n[m], tCPA\n[s], to set\n[m], matters";
     let mut grid = Grid::new(header, 3..6, []);
     let mut findings = Vec::new();
@@ -35,5 +35,5 @@ pub fn lint_text(document: &LintDocument, colour: bool) -> String {
         counted(summary.findings, "finding"),
         summary.unreadable
     ));
-    format!("{}\n{}", grid.text(colour), findings.join("\n"))
+    format!("{}\n{}", grid.text(display), findings.join("\n"))
 }

@@ -23,4 +23,5 @@ pub use plan::{
 };
 pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_text, simulations_line};
+pub use table::Display;
 pub use verification::{simulation_verification_text, verification_text};

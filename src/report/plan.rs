@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::table::{Grid, Styled, Tone, or_dash, plain, verdict, verified, yes_or_no};
+use super::table::{
+    Display, Grid, Styled, Tone, or_dash, painted, plain, verdict, verified, yes_or_no,
+};
 use crate::document::{
     EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
-    headline, met, passing, plan_lines, turn,
+    in_brackets, met, passing, plan_lines, turn, verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -18,11 +20,12 @@ const MOST_LEGS: usize = 40;
 
 /// Least turn that a table of legs shows, degrees.
 const LEAST_TURN_DEG: f64 = 0.05;
-pub(super) const TIME_COLUMN: &str = "time\n[ms]";
 
-/// Formats a table with one row per scenario. Colour only when `colour`.
-pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
-    suite_grid(runs).text(colour)
+pub(super) const TIME_COLUMN: &str = "time";
+
+/// Formats a table with one row per scenario.
+pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
+    suite_grid(runs).text(display)
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
@@ -112,19 +115,41 @@ pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
 
 /// Formats the verdict and the costs of a run in aligned lines.
 pub fn plan_text(run: &Run) -> String {
-    plan_document_text(&PlanDocument::of(run))
+    plan_document_text(&PlanDocument::of(run), Display::default())
 }
 
 /// [`plan_text`] for a document.
-pub fn plan_document_text(plan: &PlanDocument) -> String {
+pub fn plan_document_text(plan: &PlanDocument, display: Display) -> String {
     let lines = plan_lines(plan).into_iter();
     let aligned = lines.map(|(name, value)| format!("  {name:<13}{value}"));
-    let all: Vec<String> = std::iter::once(headline(plan)).chain(aligned).collect();
+    let all: Vec<String> = std::iter::once(painted_headline(plan, display))
+        .chain(aligned)
+        .collect();
     all.join("\n")
 }
 
+/// The headline of a plan with the colours of its outcome, its safety and the rules that it breaks.
+fn painted_headline(plan: &PlanDocument, display: Display) -> String {
+    let part = |part: String| {
+        let tone = match part.split(' ').next() {
+            Some("breaks") => Tone::Bad,
+            Some("skips") => Tone::Fair,
+            _ if plan.verified && plan.is_safe() => Tone::Good,
+            _ => Tone::Bad,
+        };
+        painted((part, tone), display)
+    };
+    let parts: Vec<String> = verdict_parts(plan).into_iter().map(part).collect();
+    let word = painted(verdict(&printable(&plan.verdict)), display);
+    format!(
+        "{}: {}",
+        printable(&plan.scenario),
+        in_brackets(&word, &parts)
+    )
+}
+
 /// Formats the legs of a plan as a table; empty where it has none. A long one is cut.
-pub fn legs_text(plan: &PlanDocument) -> String {
+pub fn legs_text(plan: &PlanDocument, display: Display) -> String {
     let mut grid = legs_grid(plan);
     if grid.rows.is_empty() {
         return String::new();
@@ -138,7 +163,7 @@ pub fn legs_text(plan: &PlanDocument) -> String {
             counted(more, "leg")
         ),
     };
-    format!("{}{more}", grid.text(false))
+    format!("{}{more}", grid.text(display))
 }
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
@@ -208,7 +233,7 @@ pub fn no_return_reason(run: &Run) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::NOT_APPLICABLE;
+    use crate::document::{NOT_APPLICABLE, headline};
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -222,14 +247,50 @@ mod tests {
     fn rows_name_a_few_targets_and_count_the_rest() {
         let mut busy = planned();
         busy.encounters = vec![busy.encounters[0].clone(); 5];
-        let table = suite_table(std::slice::from_ref(&busy), false);
+        let table = suite_table(std::slice::from_ref(&busy), Display::default());
         assert_eq!(table.matches("port, astern").count(), LISTED, "{table}");
         assert!(table.contains("+ 2 more") && table.contains("a.toml"));
         assert!(!table.contains('\u{1b}'));
-        assert!(suite_table(&[planned()], true).contains('\u{1b}'));
+        let colour = Display {
+            colour: true,
+            width: None,
+        };
+        assert!(suite_table(&[planned()], colour).contains('\u{1b}'));
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
-        let both = suite_table(&[failed, busy], false);
+        let both = suite_table(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
+    }
+
+    #[test]
+    fn a_headline_has_the_colours_of_its_parts() {
+        let text = include_str!("../../scenarios/colregs/give-way.toml");
+        let run = pipeline::run(Scenario::parse(text).expect("valid"));
+        let mut plan = PlanDocument::of(&run);
+        let first = |plan: &PlanDocument, colour: bool| {
+            let display = Display {
+                colour,
+                width: None,
+            };
+            let text = plan_document_text(plan, display);
+            text.lines().next().map(str::to_owned).expect("a line")
+        };
+        let [green, red, end] = ["\u{1b}[38;5;10m", "\u{1b}[38;5;9m", "\u{1b}[39m"];
+        let both = format!("{green}solved{end} ({green}verified, safe{end})");
+        assert_eq!(first(&plan, true), format!("Give-way: {both}"));
+        assert_eq!(first(&plan, false), headline(&plan));
+        plan.safe = Some(false);
+        plan.encounters[0]
+            .conduct
+            .as_mut()
+            .expect("a ship")
+            .monitors[0]
+            .verdict = "violated".to_owned();
+        let ends = format!("({red}verified, not safe{end}; {red}breaks S{end})");
+        assert!(
+            first(&plan, true).ends_with(&ends),
+            "{}",
+            first(&plan, true)
+        );
     }
 
     #[test]

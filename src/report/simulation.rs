@@ -1,6 +1,6 @@
 //! Text of a simulation.
 
-use super::table::{Grid, Tone, or_dash, plain, verdict};
+use super::table::{Display, Grid, Tone, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
@@ -10,10 +10,18 @@ use crate::text::tenths;
 pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.
-pub fn simulation_text(simulation: &SimulationDocument, colour: bool) -> String {
-    let mut blocks = vec![headline(simulation)];
+pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> String {
+    let headline = headline(simulation);
+    let (title, rest) = headline.split_at(simulation.scenario.len() + 2);
+    let (outcome, end) = rest.rsplit_once("; ").unwrap_or((rest, ""));
+    let tone = match simulation.safe && !simulation.contact {
+        true => Tone::Good,
+        false => Tone::Bad,
+    };
+    let outcome = painted((outcome.to_owned(), tone), display);
+    let mut blocks = vec![format!("{title}{outcome}; {end}")];
     if !simulation.targets.is_empty() {
-        blocks.push(targets_grid(&simulation.targets).text(colour));
+        blocks.push(targets_grid(&simulation.targets).text(display));
     }
     let lines = conduct_lines(simulation).into_iter();
     let lines: Vec<String> = lines

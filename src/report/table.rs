@@ -4,6 +4,33 @@ use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets
 
 use crate::text::printable_lines;
 
+/// Least width for which columns are dropped, in characters. Narrower tables are cards.
+const CARD_WIDTH: usize = 80;
+
+/// Columns that a table drops first where it is too wide, in this order. Cards have none of them.
+const DETAILS: [&str; 10] = [
+    "J", "arc J", "nodes", "time", "risk", "delay", "duration", "length", "to", "leg",
+];
+
+/// Columns that a table drops next, in this order.
+const FURTHER: [&str; 6] = [
+    "passing",
+    "verified",
+    "encounter",
+    "largest",
+    "turn",
+    "clearance",
+];
+
+/// Where a text is shown. The default is a file: no colour, and as wide as need be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Display {
+    /// Colour in tables and headlines.
+    pub colour: bool,
+    /// Width of the terminal in characters.
+    pub width: Option<usize>,
+}
+
 /// Rating of a cell: good, bad or neither.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tone {
@@ -14,6 +41,8 @@ pub(super) enum Tone {
 }
 
 pub(super) type Styled = (String, Tone);
+
+const MISSING: &str = "–";
 
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
@@ -37,11 +66,13 @@ impl Grid {
         }
     }
 
-    /// Removes one numeric column.
+    /// Removes the column whose name has this first line, if there is one.
     pub fn without(mut self, name: &str) -> Self {
-        if let Some(column) = self.header.iter().position(|n| *n == name) {
+        let is_it = |header: &&str| header.lines().next() == Some(name);
+        if let Some(column) = self.header.iter().position(is_it) {
             self.header.remove(column);
-            self.numbers.end -= 1;
+            self.numbers.start -= usize::from(column < self.numbers.start);
+            self.numbers.end -= usize::from(column < self.numbers.end);
             self.rows
                 .iter_mut()
                 .for_each(|row| drop(row.remove(column)));
@@ -49,19 +80,34 @@ impl Grid {
         self
     }
 
-    /// Formats the table for a terminal. Colour only when `colour`.
-    pub fn text(&self, colour: bool) -> String {
-        let mut table = Table::new();
+    /// Formats the table for a terminal. A table that is too wide drops columns until it fits, and
+    /// breaks lines if it still does not. A narrow terminal shows a card per row instead.
+    pub fn text(self, display: Display) -> String {
+        let width = display.width.unwrap_or(usize::MAX);
+        // the border, a single line, is as wide as the table
+        let border = |table: &Table| table.lines().next().map_or(0, |line| line.chars().count());
+        let fits = |grid: &Self| border(&grid.table(display)) <= width;
+        if width < CARD_WIDTH && !fits(&self) {
+            let without = |grid: Self, name: &&str| grid.without(name);
+            return DETAILS.iter().fold(self, without).cards(display);
+        }
+        let mut grid = self;
+        for name in DETAILS.into_iter().chain(FURTHER) {
+            if fits(&grid) {
+                return grid.table(display).trim_fmt();
+            }
+            grid = grid.without(name);
+        }
+        wrapped(grid.table(display), display).trim_fmt()
+    }
+
+    fn table(&self, display: Display) -> Table {
+        let mut table = styled(display);
         table
             .load_style(presets::UTF8_HORIZONTAL_ONLY)
             .set_content_arrangement(ContentArrangement::Disabled)
             .set_header(&self.header);
         table.style_mut().row_separator = presets::NOTHING.row_separator;
-        if colour {
-            table.enforce_styling();
-        } else {
-            table.force_no_tty();
-        }
         for (index, column) in table.column_iter_mut().enumerate() {
             column.set_padding((0, 1));
             if self.numbers.contains(&index) {
@@ -71,7 +117,27 @@ impl Grid {
         for row in &self.rows {
             table.add_row(row.iter().map(cell));
         }
-        table.trim_fmt()
+        table
+    }
+
+    /// Names and values of each row below one another, without values that are missing.
+    fn cards(&self, display: Display) -> String {
+        let card = |row: &Vec<Styled>| {
+            let mut table = wrapped(styled(display), display);
+            table.load_style(presets::NOTHING);
+            for (name, (text, tone)) in self.header.iter().zip(row) {
+                if !["", MISSING].contains(&text.as_str()) {
+                    let value = cell(&(text.clone(), *tone));
+                    table.add_row([Cell::new(name.replace('\n', " ")), value]);
+                }
+            }
+            for column in table.column_iter_mut() {
+                column.set_padding((0, 1));
+            }
+            table.trim_fmt()
+        };
+        let cards: Vec<String> = self.rows.iter().map(card).collect();
+        cards.join("\n\n")
     }
 
     /// Formats the table as markdown.
@@ -91,6 +157,25 @@ pub(super) fn in_cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
+fn styled(display: Display) -> Table {
+    let mut table = Table::new();
+    if display.colour {
+        table.enforce_styling();
+    } else {
+        table.force_no_tty();
+    }
+    table
+}
+
+fn wrapped(mut table: Table, display: Display) -> Table {
+    if let Some(width) = display.width {
+        table
+            .set_content_arrangement(ContentArrangement::Dynamic)
+            .set_width(u16::try_from(width).unwrap_or(u16::MAX));
+    }
+    table
+}
+
 /// Creates a coloured cell without control characters.
 fn cell((text, tone): &Styled) -> Cell {
     let cell = Cell::new(printable_lines(text));
@@ -107,7 +192,18 @@ pub(super) fn plain(text: impl Into<String>) -> Styled {
 }
 
 pub(super) fn or_dash(text: Option<String>) -> Styled {
-    plain(text.unwrap_or_else(|| "–".to_owned()))
+    plain(text.unwrap_or_else(|| MISSING.to_owned()))
+}
+
+/// A text in the colour of its rating, as in a table.
+pub(super) fn painted((text, tone): Styled, display: Display) -> String {
+    let code = match tone {
+        Tone::Good if display.colour => 10,
+        Tone::Fair if display.colour => 11,
+        Tone::Bad if display.colour => 9,
+        _ => return text,
+    };
+    format!("\u{1b}[38;5;{code}m{text}\u{1b}[39m")
 }
 
 /// Outcome in words for the reader, with its rating.
@@ -136,5 +232,59 @@ pub(super) fn yes_or_no(fact: Option<bool>) -> Styled {
         Some(true) => ("yes".to_owned(), Tone::Good),
         Some(false) => ("NO".to_owned(), Tone::Bad),
         None => or_dash(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(width: impl Into<Option<usize>>, colour: bool) -> String {
+        let row = ["a.toml", "solved", "19847", "118.0", "4", "0.62", "yes"];
+        let row = row.map(plain).to_vec();
+        let header = "scenario, outcome, J\n[m²], clearance\n[m], nodes, time\n[ms], safe";
+        let mut grid = Grid::new(header, 2..6, [row.clone(), row]);
+        grid.rows[0][6].1 = Tone::Good;
+        grid.rows[1][0].0 = "a name of many words, ".repeat(3);
+        grid.rows[1][3] = or_dash(None);
+        let width = width.into();
+        grid.text(Display { colour, width })
+    }
+
+    #[test]
+    fn a_table_drops_columns_until_it_fits() {
+        let names = |width| shown(width, false).lines().nth(1).map(str::to_owned);
+        let widest = names(None).expect("a header");
+        let widths = [(113, 7), (112, 6), (105, 5), (98, 4), (92, 3)];
+        for (width, count) in widths {
+            let names = names(Some(width)).expect("a header");
+            assert_eq!(names.split_whitespace().count(), count, "{width}: {widest}");
+            let text = shown(width, false);
+            assert!(text.lines().all(|line| line.chars().count() <= width));
+        }
+        assert_eq!(names(Some(113)), Some(widest));
+        // words stay whole
+        let broken = shown(80, false);
+        assert!(
+            broken.lines().all(|line| line.chars().count() <= 80),
+            "{broken}"
+        );
+        assert!(
+            broken.contains("scenario") && !broken.contains("clearance"),
+            "{broken}"
+        );
+    }
+
+    #[test]
+    fn a_narrow_terminal_shows_cards() {
+        let text = shown(40, false);
+        let first = "scenario      a.toml\noutcome       solved\nclearance [m] 118.0\nsafe          yes\n\n";
+        assert!(text.starts_with(first), "{text}");
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 40),
+            "{text}"
+        );
+        assert_eq!(text.matches("clearance").count(), 1, "{text}");
+        assert!(shown(40, true).contains("\u{1b}[38;5;10myes"));
     }
 }

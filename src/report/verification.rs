@@ -1,6 +1,6 @@
 //! Text of a plan document's verification.
 
-use super::table::{Grid, Tone, or_dash, plain};
+use super::table::{Display, Grid, Tone, or_dash, plain};
 use crate::evaluation::{Violation, facts, outcome_word, skipped_waypoints};
 use crate::text::{counted, printable, short_numbers, tenths};
 use crate::verification::{SimulationVerification, Verification};
@@ -40,7 +40,7 @@ pub fn simulation_verification_text(checked: &SimulationVerification) -> String 
 }
 
 /// Formats the verdict, the least margin to every target with its time, and all violations.
-pub fn verification_text(checked: &Verification, colour: bool) -> String {
+pub fn verification_text(checked: &Verification, display: Display) -> String {
     let verdict = match (&checked.evaluation, checked.violations.len()) {
         (None, _) => format!(
             "no plan in it (outcome {}): nothing to verify",
@@ -99,12 +99,12 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
     }
     if !checked.targets.is_empty() {
         lines.push(String::new());
-        lines.push(margins(checked, colour));
+        lines.push(margins(checked, display));
     }
     lines.join("\n")
 }
 
-fn margins(checked: &Verification, colour: bool) -> String {
+fn margins(checked: &Verification, display: Display) -> String {
     let passages = checked.evaluation.as_ref().map_or(&[][..], |e| &e.passages);
     let rows = checked
         .targets
@@ -128,7 +128,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
             ]
         });
     let header = "target, margin\n[m], at\n[s], clearance\n[m], dCPA\n[m], tCPA\n[s]";
-    Grid::new(header, 1..6, rows).text(colour)
+    Grid::new(header, 1..6, rows).text(display)
 }
 
 /// Formats three decimals; values that round to zero have no sign.

@@ -15,7 +15,8 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     let asked = format!("compare scenarios/colregs --csv {csv} --figure {figure}");
     let written = format!("note: wrote {csv}\nnote: wrote {figure}\n");
     let shown = stdout(&run(&asked).success().stderr(written));
-    let methods = "space-time, Dijkstra, ellipsoids | hold course | COLLIDES | optimal control";
+    let methods =
+        "space-time, A* and Dijkstra, ellipsoids | hold course | COLLIDES | optimal control";
     says(&shown, &format!("Head-on\n | {methods}"));
     let rows = fs::read_to_string(&csv).expect("rows");
     assert_eq!(rows.lines().count(), 1 + 4 * 9);

@@ -13,5 +13,6 @@ mod program;
 mod recordings;
 mod simulate;
 mod suite;
+mod terminal;
 mod verdict;
 mod verify;

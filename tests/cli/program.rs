@@ -18,11 +18,17 @@ pub fn head_on_without_planner() -> String {
     format!("{before}[[targets]]{after}")
 }
 
-pub fn searoom(args: &[&str]) -> Assert {
-    Command::new(env!("CARGO_BIN_EXE_searoom"))
+pub fn command(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_searoom"));
+    command
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .assert()
+        .env_remove("COLUMNS")
+        .args(args);
+    command
+}
+
+pub fn searoom(args: &[&str]) -> Assert {
+    command(args).assert()
 }
 
 /// Runs the program with words that are separated by blanks.

@@ -7,9 +7,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use searoom::document::{INTERNAL_FAULT, UNREADABLE};
+use searoom::input::{Fault, InputError};
 
 use super::super::output::Output;
 use super::super::output::status::ExitStatus;
+
+/// Path that means standard input.
+pub const STDIN: &str = "-";
 
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";
@@ -33,6 +37,8 @@ pub struct Refused {
     pub outcome: &'static str,
     /// Error that includes the file name.
     pub error: String,
+    /// What is wrong in the file, where it could be read.
+    pub faults: Vec<Fault>,
 }
 
 impl Refused {
@@ -42,11 +48,24 @@ impl Refused {
             title: None,
             outcome,
             error: error.to_string(),
+            faults: Vec::new(),
         }
     }
 
     pub fn unreadable(file: &Path, error: impl Display) -> Self {
         Self::new(file, UNREADABLE, error)
+    }
+
+    /// A file that cannot be read, or is wrong.
+    pub fn input(file: &Path, error: InputError) -> Self {
+        Self {
+            error: error.to_string(),
+            faults: match error {
+                InputError::Faults { faults, .. } => faults,
+                InputError::Read { .. } => Vec::new(),
+            },
+            ..Self::unreadable(file, "")
+        }
     }
 
     /// An internal fault, whose text does not include the file name.
@@ -112,7 +131,10 @@ fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Refused>> {
             // a missing file is reported on reading
             all.push(Ok(Found {
                 file: path.clone(),
-                stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
+                stem: match path.to_str() {
+                    Some(STDIN) => "stdin".to_owned(),
+                    _ => stem(path.file_name().map(Path::new).unwrap_or(path)),
+                },
                 in_folder: false,
             }));
             continue;

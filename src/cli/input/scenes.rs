@@ -2,13 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use searoom::input::read_text;
+use searoom::input::{Fault, InputError, read_from, read_text};
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
-use searoom::scenario::{FILE_MEBIBYTES, Scenario, ScenarioError};
+use searoom::scenario::{FILE_MEBIBYTES, Scenario};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
-use super::files::{self, Found, Refused, SEPARATOR};
+use super::files::{self, Found, Refused, SEPARATOR, STDIN};
+
+const KIND: &str = "a scenario file";
 
 /// Scenario whose text is read but not yet checked.
 #[derive(Debug)]
@@ -39,7 +41,7 @@ impl Scene {
                 })
             }
         };
-        made.map_err(|faults| Refused::unreadable(file, ScenarioError::faults(file, faults)))
+        made.map_err(|faults| Refused::input(file, InputError::faults(file, faults)))
     }
 
     /// True for a situation of another format.
@@ -95,15 +97,25 @@ fn of_file(
     output: &Output,
     scenes: &mut Vec<Result<Scene, Refused>>,
 ) {
+    let is_stdin = found.file == Path::new(STDIN);
+    let found = &match is_stdin {
+        // in the working directory, where the files that it names are
+        true => Found {
+            file: PathBuf::from("standard input"),
+            ..found.clone()
+        },
+        false => found.clone(),
+    };
     let file = &found.file;
-    let text = match read_text(file, FILE_MEBIBYTES, "a scenario file") {
+    let read = match is_stdin {
+        true => read_stdin(file),
+        false => read_text(file, FILE_MEBIBYTES, KIND),
+    };
+    let text = match read {
         Ok(text) => text,
-        Err(error) => return scenes.push(Err(Refused::unreadable(file, error))),
+        Err(error) => return scenes.push(Err(Refused::input(file, error))),
     };
-    let wrong = |faults| {
-        let error = ScenarioError::faults(file, faults);
-        Err(Refused::unreadable(file, error))
-    };
+    let wrong = |faults| Err(Refused::input(file, InputError::faults(file, faults)));
     match Contents::parse(&text, assumed) {
         Ok(Contents::Scenario) => scenes.push(Ok(Scene {
             found: found.clone(),
@@ -127,6 +139,18 @@ fn of_file(
             scenes.push(Err(Refused::unreadable(file, error)));
         }
         Err(faults) => scenes.push(wrong(faults)),
+    }
+}
+
+/// Reads standard input to its end.
+fn read_stdin(name: &Path) -> Result<String, InputError> {
+    let text = read_from(std::io::stdin(), name, FILE_MEBIBYTES, KIND)?;
+    match text.trim() {
+        "" => Err(InputError::faults(
+            name,
+            vec![Fault::new("", "nothing", KIND)],
+        )),
+        _ => Ok(text),
     }
 }
 

@@ -4,14 +4,15 @@ pub mod products;
 pub mod status;
 
 use std::borrow::Cow;
-use std::fmt::Display;
+use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use comfy_table::Table;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use searoom::report::printable_lines;
+use searoom::report::{Display, printable_lines};
 use serde::Serialize;
 
 use super::input::files::Refused;
@@ -29,20 +30,39 @@ const COLOURS: [&str; 5] = [
 
 #[derive(Debug)]
 pub struct Output {
-    pub colour: bool,
+    pub display: Display,
+    /// Only documents and errors.
+    pub quiet: bool,
 }
 
 impl Output {
-    /// Enables colour on a terminal, unless `NO_COLOR` forbids it.
-    pub fn new() -> Self {
+    /// Enables colour on a terminal, unless `NO_COLOR` forbids it. Tables are as wide as `COLUMNS`
+    /// or the terminal.
+    pub fn new(quiet: bool) -> Self {
+        let terminal = std::io::stdout().is_terminal();
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let columns = std::env::var("COLUMNS").ok();
+        let columns = columns.and_then(|n| n.parse().ok().filter(|n| *n > 0));
+        let measured = || terminal.then(|| Table::new().width()).flatten();
         Self {
-            colour: wanted && std::io::stdout().is_terminal(),
+            quiet,
+            display: Display {
+                colour: wanted && terminal,
+                width: columns.or_else(|| measured().map(usize::from)),
+            },
         }
     }
 
-    /// Prints a result. Reports a bad status if printing fails; a closed pipe is not an error.
+    /// Prints a result as text.
     pub fn result(&self, text: &str) -> ExitStatus {
+        match self.quiet {
+            true => ExitStatus::Good,
+            false => self.print(text),
+        }
+    }
+
+    /// Prints to standard output. Reports a bad status if printing fails; a closed pipe is not an error.
+    fn print(&self, text: &str) -> ExitStatus {
         let mut stdout = std::io::stdout().lock();
         let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
@@ -58,7 +78,7 @@ impl Output {
     /// Escapes control characters, except the colour codes of tables. Coloured tables are already
     /// escaped.
     fn shown<'t>(&self, text: &'t str) -> Cow<'t, str> {
-        if !self.colour {
+        if !self.display.colour {
             return printable_lines(text);
         }
         let mut out = String::with_capacity(text.len());
@@ -79,7 +99,7 @@ impl Output {
 
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
-            Ok(text) => self.result(text.trim_end()),
+            Ok(text) => self.print(text.trim_end()),
             Err(error) => self.fault(&format_args!("{error:#}")),
         }
     }
@@ -97,14 +117,14 @@ impl Output {
         }
     }
 
-    pub fn error(&self, error: &impl Display) {
+    pub fn error(&self, error: &impl fmt::Display) {
         // an error of standard error cannot be reported
         let error = error.to_string();
         let _ = writeln!(std::io::stderr(), "error: {}", printable_lines(&error));
     }
 
     /// Prints an error of the input or of its use.
-    pub fn refuse(&self, error: &impl Display) -> ExitStatus {
+    pub fn refuse(&self, error: &impl fmt::Display) -> ExitStatus {
         self.error(error);
         ExitStatus::BadInput
     }
@@ -114,7 +134,7 @@ impl Output {
         refused.status()
     }
 
-    pub fn fault(&self, fault: &impl Display) -> ExitStatus {
+    pub fn fault(&self, fault: &impl fmt::Display) -> ExitStatus {
         self.error(fault);
         ExitStatus::InternalFault
     }
@@ -130,7 +150,10 @@ impl Output {
         )
     }
 
-    pub fn note(&self, note: &impl Display) {
+    pub fn note(&self, note: &impl fmt::Display) {
+        if self.quiet {
+            return;
+        }
         let note = note.to_string();
         let _ = writeln!(std::io::stderr(), "note: {}", printable_lines(&note));
     }
@@ -141,6 +164,9 @@ impl Output {
 
     /// Creates a progress bar on standard error; hidden unless that is a terminal.
     pub fn progress(&self, steps: usize) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
         match ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
             Ok(style) => bar.with_style(style),

@@ -9,6 +9,8 @@ use searoom::pipeline::Run;
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure, simulation_figure};
 use searoom::report::page::{HtmlReport, Subject, link_from};
 use searoom::report::write_atomically;
+#[cfg(feature = "recording")]
+use searoom::report::{Display, simulation_text};
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
@@ -216,7 +218,7 @@ impl Products {
                     scenario,
                     document,
                     plans: simulation.plans(),
-                    text: &searoom::report::simulation_text(document, false),
+                    text: &simulation_text(document, Display::default()),
                 };
                 searoom::recording::write_simulation(&simulated, &place.file(stem, "rrd"))?;
             }

@@ -44,6 +44,13 @@ fn every_key_is_on_the_page() {
     }
     all.extend(keys_of(&["compare", "scenarios/colregs", "--json"]));
     all.extend(keys_of(&["simulate", "scenarios/colregs", "--json"]));
+    all.extend(keys_of(&[
+        "check",
+        "--json",
+        "tests/faults",
+        "scenarios/colregs",
+    ]));
+    all.extend(keys_of(&["check", "--json", "Cargo.toml"]));
     assert!(all.len() > 90, "{all:?}");
     named(PAGE, &all);
 }

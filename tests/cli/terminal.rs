@@ -1,0 +1,142 @@
+//! What a person at a terminal sees, and what a pipe gets.
+
+use super::program::{Folder, HEAD_ON, assert_values, command, document, run, stderr, stdout};
+
+/// Tables fit the width that is known, and are whole where none is.
+#[test]
+fn tables_fit_the_terminal() {
+    let shown = |words: &str, columns: Option<&str>| {
+        let mut command = command(&words.split(' ').collect::<Vec<_>>());
+        if let Some(columns) = columns {
+            command.env("COLUMNS", columns);
+        }
+        stdout(&command.assert().success())
+    };
+    let suite = "suite scenarios/colregs";
+    let compare = "compare scenarios/colregs/head-on.toml --planner space-time";
+    for words in [suite, compare] {
+        for width in [80, 120, 200] {
+            let text = shown(words, Some(&width.to_string()));
+            let (table, _) = text.rsplit_once('─').expect("a table");
+            let fits = |line: &str| line.chars().count() <= width;
+            assert!(table.lines().all(fits), "{width}: {text}");
+            assert!(table.contains("safe") && table.contains("breaks"), "{text}");
+            assert_eq!(table.contains("nodes"), width == 200, "{text}");
+        }
+        let whole = shown(words, None);
+        for columns in ["0", "wide"] {
+            assert_eq!(
+                shown(words, Some(columns)).lines().nth(2),
+                whole.lines().nth(2)
+            );
+        }
+        assert!(whole.contains("nodes"), "{whole}");
+    }
+    let cards = shown(suite, Some("60"));
+    assert!(
+        cards.starts_with("scenario      give-way.toml\noutcome       solved\n"),
+        "{cards}"
+    );
+    assert!(!cards.contains('─') && !cards.contains("nodes"), "{cards}");
+}
+
+/// `-` is standard input, in the folder in which the program runs.
+#[test]
+fn a_scenario_is_read_from_standard_input() {
+    let give = |text: &str, words: &str| {
+        let mut command = command(&words.split(' ').collect::<Vec<_>>());
+        command.write_stdin(text).assert()
+    };
+    for (words, shown) in [
+        ("check -", "standard input: ok"),
+        ("plan -", "Head-on: solved"),
+        ("assess -", "Head-on: 1 target"),
+        ("simulate - --duration-s 5", "Head-on: no contact"),
+    ] {
+        let text = stdout(&give(HEAD_ON, words).success());
+        assert!(text.starts_with(shown), "{words}: {text}");
+    }
+    let map = include_str!("../../scenarios/harbour/munkholmen.toml");
+    let map = map.replace("../../maps/", "maps/");
+    give(&map, "check -").success();
+    let foreign = include_str!("../../scenarios/dnv/traffic_situation_01.json");
+    give(foreign, "check -").success();
+    let early = HEAD_ON.rsplit_once("length_m").expect("a target").0;
+    let (half, _) = foreign.split_at(foreign.len() / 2);
+    for command in ["check -", "plan -", "assess -", "simulate -"] {
+        for (text, said) in [
+            (
+                "",
+                "standard input: 1 fault\n  found nothing; allowed: a scenario file",
+            ),
+            ("\n", "found nothing; allowed: a scenario file"),
+            (early, "standard input: "),
+            (half, "standard input: "),
+        ] {
+            let refused = give(text, command).code(2).stdout("");
+            assert!(stderr(&refused).contains(said), "{}", stderr(&refused));
+        }
+    }
+    give(HEAD_ON, "check ./-").code(2);
+}
+
+/// One document holds every fault with its place; valid files are in it, too.
+#[test]
+fn a_check_is_a_document() {
+    let folder = Folder::new();
+    let bad = folder.write(
+        "bad.toml",
+        HEAD_ON.replace("horizon_s = 400.0", "horizon_s = -1"),
+    );
+    let absent = folder.at("absent.toml");
+    let imazu = "scenarios/imazu/imazu.json";
+    let checked = run(&format!("check --json {bad} {absent} {imazu}")).code(2);
+    assert!(stderr(&checked).contains("bad.toml: 1 fault") && !stderr(&checked).contains("note"));
+    let checked = document(&checked);
+    assert_values(
+        &checked,
+        r#"
+/files/0/scenario null
+/files/0/faults/0/line 3
+/files/0/faults/0/field "horizon_s"
+/files/0/faults/0/found "-1"
+/files/0/faults/0/allowed "a number from 0.001 to 1000000"
+/files/1/faults []
+/files/2/error null
+/files/2/scenario "imazu-01"
+"#,
+    );
+    assert_eq!(checked["files"].as_array().map(Vec::len), Some(2 + 22));
+    let said = checked["files"][1]["error"].as_str().expect("a reason");
+    assert!(said.contains("absent.toml: cannot be read"), "{said}");
+    let note = checked["files"][2]["notes"][0].as_str().expect("a note");
+    assert!(note.contains("no size in the file"), "{note}");
+    run("check --json scenarios/colregs").success().stderr("");
+}
+
+#[test]
+fn a_quiet_command_has_an_exit_status_alone() {
+    let imazu = "scenarios/imazu/imazu.json";
+    let folder = Folder::new();
+    for words in [
+        format!("suite {imazu}"),
+        format!("suite scenarios/colregs --plans {folder}/plans"),
+        "suite --lint scenarios/colregs".to_owned(),
+        "plan scenarios/dnv/traffic_situation_01.json --no-return".to_owned(),
+        "simulate scenarios/colregs/head-on.toml scenarios/colregs/stand-on.toml".to_owned(),
+    ] {
+        let quiet = run(&format!("{words} --quiet")).stdout("").stderr("");
+        let loud = run(&words);
+        assert_eq!(
+            quiet.get_output().status,
+            loud.get_output().status,
+            "{words}"
+        );
+        assert!(!stdout(&loud).is_empty(), "{words}");
+        let json = document(&run(&format!("{words} --quiet --json")).stderr(""));
+        assert!(json.is_object(), "{words}");
+    }
+    let bad = folder.write("bad.toml", "title = 3");
+    let refused = run(&format!("plan {bad} --quiet")).code(2).stdout("");
+    assert!(stderr(&refused).contains("bad.toml: "));
+}
