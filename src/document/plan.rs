@@ -1,10 +1,13 @@
 //! Plan document, see docs/documents.md.
 
 pub(super) mod control;
+pub(super) mod legs;
 pub(super) mod path_time;
+pub(super) mod phases;
 
 use control::{ControlDocument, control};
 use path_time::{PathTimeDocument, path_time_document};
+use phases::PhaseDocument;
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +18,6 @@ use super::parts::{
     PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
     StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
-use super::phases::PhaseDocument;
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};

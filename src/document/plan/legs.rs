@@ -1,9 +1,9 @@
 //! The legs of a plan as a navigator reads them: turns and straight runs, and the events on each.
 
-use super::encounter::EncounterDocument;
-use super::lines::{met, passing};
-use super::parts::segment;
-use super::plan::PlanDocument;
+use super::PlanDocument;
+use crate::document::encounter::EncounterDocument;
+use crate::document::lines::{met, passing};
+use crate::document::parts::segment;
 use crate::frame::{clockwise_deg, course_deg_from_heading, wrap};
 use crate::text::tenths;
 use crate::tolerance;

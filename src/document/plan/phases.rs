@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::PlanDocument;
 use super::legs::PlannedLeg;
-use super::memory::PlannedManoeuvreDocument;
-use super::parts::EscapeDocument;
-use super::plan::PlanDocument;
 use crate::colregs::ON_COURSE;
+use crate::document::memory::PlannedManoeuvreDocument;
+use crate::document::parts::EscapeDocument;
 use crate::frame::{heading_from_course_deg, wrap};
 use crate::tolerance;
 
