@@ -24,11 +24,14 @@ fn tables_fit_the_terminal() {
             assert_eq!(table.contains("nodes"), width == 200, "{text}");
         }
         let whole = shown(words, None);
+        // the width of the times differs from run to run
+        let header = |text: &str| {
+            let line = text.lines().find(|line| line.contains("outcome"));
+            let words = line.expect("a header").split_whitespace();
+            words.map(str::to_owned).collect::<Vec<_>>()
+        };
         for columns in ["0", "wide"] {
-            assert_eq!(
-                shown(words, Some(columns)).lines().nth(2),
-                whole.lines().nth(2)
-            );
+            assert_eq!(header(&shown(words, Some(columns))), header(&whole));
         }
         assert!(whole.contains("nodes"), "{whole}");
     }
