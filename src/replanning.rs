@@ -230,7 +230,7 @@ fn memory_after(
         .collect();
     let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S;
     let is_off_route = manoeuvres.iter().any(|m| begun(&m));
-    let samples = OwnSamples::of_past(&sailed, now, own.hull, own.speed);
+    let samples = OwnSamples::of_past(&sailed, now, own);
     let (mut outside_velocities, mut outside_places) = (Vec::new(), Vec::new());
     let limits = &scenario.limits;
     let known = scenario.targets.iter().enumerate().map(|(index, target)| {
@@ -249,7 +249,7 @@ fn memory_after(
         // the domain stays as it is until own ship is on its route again
         let lasting = memory.role.filter(|_| is_off_route);
         let given = scenario.memory.target(index).and_then(|known| known.role);
-        let role = lasting.or_else(|| role_now(&samples, now, ship, &memory, limits));
+        let role = lasting.or_else(|| role_now(&samples, (own, now), ship, &memory, limits));
         // the same role goes on, with the course at its beginning
         let same = |given: Risk| role.filter(|role| role.role == given.role).unwrap_or(given);
         let role = given.map(same).or(role);
@@ -388,7 +388,7 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
 /// The role that own ship has now.
 fn role_now(
     samples: &OwnSamples,
-    now: SteadyShip,
+    (own, now): (&OwnShip, SteadyShip),
     ship: &ShipTrack,
     memory: &TargetMemory,
     thresholds: &Thresholds,
@@ -418,7 +418,7 @@ fn role_now(
             if turned(&risk) > radians_from_deg(NEW_COURSE_DEG)
                 && risk.role.duties().situation != Some(Situation::Overtaking) =>
         {
-            let present = OwnSamples::of_past(&[], now, samples.hull(), samples.ordered_speed());
+            let present = OwnSamples::of_past(&[], now, own);
             let present = ComplianceReport::samples(&present, ship, None, thresholds);
             let role = roles(&present, thresholds)
                 .first()

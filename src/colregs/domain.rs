@@ -1,7 +1,7 @@
 //! Ship domains: the initial set of a target for own ship's centre, enlarged so that the cheapest
 //! plan follows the collision regulations (docs/colregs.md 3.2-3.3).
 
-use super::encounter::{Risk, offset_from_wake, risk_distance};
+use super::encounter::{Risk, offset_from_wake, sweep_distance};
 use super::rules::ClosedSide;
 use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, outer_disc};
@@ -139,7 +139,7 @@ fn ship_domain_about(
     }
 }
 
-/// docs/colregs.md 3.2: passing on the forbidden side takes at least two risk distances more than
+/// docs/colregs.md 3.2: passing on the forbidden side takes at least two sweep distances more than
 /// on the other, where the margin is kept. True for a domain that is not swept or not finite.
 fn keeps_the_design_inequality(
     own: &OwnShip,
@@ -155,7 +155,7 @@ fn keeps_the_design_inequality(
     let places = target.outer_positions();
     let reach = |n: Vector| with_domain.support(n) - n.dot(&centre) - places.support(n);
     let rounding = 1e-9 * (1.0 + centre.norm() + sweep.norm());
-    let short = 2.0 * risk_distance(own, target) - (reach(bad) - reach(-bad));
+    let short = 2.0 * sweep_distance(own, target) - (reach(bad) - reach(-bad));
     short.is_nan() || short <= rounding && reach(-bad) >= own.safety_margin - rounding
 }
 
@@ -262,7 +262,7 @@ const SWEEP_EXCESS: f64 = 0.1;
 const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 
 /// Vector `e` of docs/colregs.md 3.3 by which the base is swept, metres. Passing on the forbidden
-/// side then takes `|e| = 2 (1 + 0.1)` risk distances more than on the other, so that the compliant
+/// side then takes `|e| = 2 (1 + 0.1)` sweep distances more than on the other, so that the compliant
 /// side is cheaper for every miss distance that is a risk (3.2).
 ///
 /// The direction is the normal of the relative velocity at the first instant of risk on the closed
@@ -288,7 +288,7 @@ pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
         0.0 => normal.dot(&otherwise),
         part => part,
     };
-    normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
+    normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * sweep_distance(own, target))
 }
 
 /// A bevelled box about a ship, in ship lengths: its reach to each side, and the fraction of the

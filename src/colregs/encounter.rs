@@ -94,9 +94,9 @@ pub(super) fn state_at(track: &[(f64, SteadyShip)], time: f64) -> Option<SteadyS
     })
 }
 
-/// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
-/// of own safety margin if that is more (docs/colregs.md, section 1.3).
-pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
+/// Metres by which the sweep of a ship domain is scaled: twice the longer ship, or half of own
+/// safety margin if that is more (docs/colregs.md, section 3.2).
+pub fn sweep_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
     (RiskLimits::STANDARD.lengths * own.hull.length.max(target.hull.length))
         .max(0.5 * own.safety_margin)
 }
@@ -115,11 +115,8 @@ pub fn first_risk(
     horizon: f64,
     thresholds: &Thresholds,
 ) -> Option<Risk> {
-    let length = own.hull.length.max(target.hull.length);
-    let allowed = thresholds
-        .risk
-        .distance(length)
-        .max(0.5 * own.safety_margin);
+    let risk = &thresholds.risk;
+    let allowed = risk.distance(&own.hull, own.safety_margin, &target.hull);
     let soon = thresholds.risk_time(own.hull.length);
     desired.legs().iter().find_map(|leg| {
         let from = leg.start_time;
@@ -300,9 +297,11 @@ fn least(
 mod tests {
     use super::super::role::tests::{fixtures as ships, ship};
     use super::*;
+    use crate::colregs::compliance::{EncounterSamples, roles};
     use crate::geometry::ConvexPolygon;
     use crate::target::{DomainKind, Representation, Uncertainty};
     use crate::trajectory::fixtures::desired;
+    use crate::trajectory::{Segment, Trajectory};
     use crate::vessel::{Hull, fixtures};
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -388,6 +387,32 @@ mod tests {
             }
         }
         assert!(found_some > 50);
+    }
+
+    /// A ship that crosses at 206 m, with hulls that may touch a margin of 185 m, is at risk for the
+    /// planner and for the judge; 30 m farther off for neither.
+    #[test]
+    fn a_ship_that_passes_within_the_safety_margin_is_at_risk() {
+        let own = OwnShip {
+            safety_margin: 185.0,
+            ..own_ship()
+        };
+        let way = desired(&[(0.0, 0.0), (2000.0, 0.0)], &[6.0]);
+        let motion = Segment::straight(Pose::new(Vector::zeros(), 0.0), 0.0, 300.0, 6.0);
+        let motion = Trajectory::new(vec![motion]).expect("a trajectory");
+        let reach = 185.0 + 2.0 * own.hull.half_diagonal();
+        for (off, role) in [(206.0, true), (reach - 0.1, true), (reach + 0.1, false)] {
+            // equal speeds at right angles: the centres pass at the offset times sqrt(1/2)
+            let other = ship(900.0 + off * 2.0_f64.sqrt(), -900.0, PI / 2.0, 6.0);
+            let other = track(&other, 50.0);
+            let standard = &Thresholds::STANDARD;
+            assert_eq!(
+                first_risk(&own, &way, &other, 300.0, standard).is_some(),
+                role
+            );
+            let samples = EncounterSamples::along(&motion, &own, &other);
+            assert_eq!(!roles(&samples, standard).is_empty(), role, "{off}");
+        }
     }
 
     #[test]

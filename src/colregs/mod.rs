@@ -12,7 +12,7 @@ mod rules;
 mod thresholds;
 
 pub use domain::{ShipDomain, ship_domain, sweep};
-pub use encounter::{Encounter, Risk, TargetMemory, encounter, first_risk, risk_distance};
+pub use encounter::{Encounter, Risk, TargetMemory, encounter, first_risk, sweep_distance};
 pub use role::{Role, Sectors, SteadyShip, role_within};
 pub(crate) use rules::Duty;
 pub use rules::{

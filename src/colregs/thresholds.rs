@@ -10,6 +10,7 @@ use super::Sectors;
 use crate::frame::radians_from_deg;
 use crate::input::{Fault, Faults, Field, InputError, Range, from_toml, read_text};
 use crate::text::LINE;
+use crate::vessel::Hull;
 
 /// A set of thresholds: radians, m/s, seconds, multiples of the longer ship's length, fractions.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,10 +115,13 @@ pub struct MonitorLimits {
 }
 
 impl RiskLimits {
-    /// Longest distance of the centres at the closest approach, metres; `length` is that of the
-    /// longer ship.
-    pub fn distance(&self, length: f64) -> f64 {
-        self.distance.unwrap_or(self.lengths * length)
+    /// Longest distance of the centres at the closest approach, metres: within it the hulls may come
+    /// nearer than own safety margin, or than the limit.
+    pub fn distance(&self, own: &Hull, safety_margin: f64, target: &Hull) -> f64 {
+        let limit = self
+            .distance
+            .unwrap_or(self.lengths * own.length.max(target.length));
+        limit.max(safety_margin + own.half_diagonal() + target.half_diagonal())
     }
 
     /// Part of [`Thresholds::STANDARD`].

@@ -1,6 +1,8 @@
 //! The plan document in named lines: the one wording of a plan for a terminal, a page and a
 //! recording.
 
+use std::collections::BTreeSet;
+
 use super::{
     ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
     MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
@@ -216,6 +218,10 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
             format!("{dcpa:.1} m to '{target}' at {tcpa:.0} s"),
         );
     }
+    for target in targets_without_role(plan) {
+        let text = format!("'{target}' gives no role: they do not restrict the alteration for it");
+        add("rules", text);
+    }
     for encounter in &plan.encounters {
         let Some(conduct) = encounter.conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
             continue;
@@ -245,6 +251,22 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
             add("", monitor_text(plan, monitor));
         }
     }
+}
+
+/// The tracked ships that give own ship no role, but for which a plan by the rules alters course or
+/// speed.
+fn targets_without_role(plan: &PlanDocument) -> BTreeSet<String> {
+    let legs = if plan.compliance == "rules" {
+        plan.legs()
+    } else {
+        Vec::new()
+    };
+    let targets = legs.into_iter().filter_map(|leg| leg.because_of);
+    let without = |target: &String| {
+        let mut encounters = plan.encounters.iter();
+        encounters.any(|e| e.target == *target && e.role == "none" && e.conduct.is_some())
+    };
+    targets.filter(without).collect()
 }
 
 /// What own ship did against a monitor, when, and by how much. The limits are named if the profile

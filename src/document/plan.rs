@@ -4,6 +4,7 @@ pub(super) mod control;
 pub(super) mod legs;
 pub(super) mod path_time;
 pub(super) mod phases;
+mod reasons;
 
 use control::{ControlDocument, control};
 use path_time::{PathTimeDocument, path_time_document};

@@ -91,8 +91,7 @@ fn compliance(
     thresholds: &Thresholds,
 ) -> Vec<Option<ComplianceReport>> {
     let (own, memory) = (&scenario.own_ship, &scenario.memory);
-    let track = trajectory
-        .map(|trajectory| OwnSamples::along(&memory.sailed, trajectory, own.hull, own.speed));
+    let track = trajectory.map(|trajectory| OwnSamples::along(&memory.sailed, trajectory, own));
     let samples = parallel::map(&scenario.targets, |index, target| {
         let (track, ship) = (track.as_ref()?, target.ship()?);
         let known = memory.target(index);

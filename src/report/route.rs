@@ -22,11 +22,6 @@ const RTZ_RADIUS_NMI: f64 = 5.0;
 /// RTZ stays are shorter, seconds.
 const RTZ_STAY_S: f64 = 86_400.0;
 
-/// Metres, seconds and radians. A shorter and smaller turn beside a waypoint does not count as one.
-const SLIVER_M: f64 = 1.0;
-const SLIVER_S: f64 = 0.5;
-const SLIVER_RAD: f64 = 0.01;
-
 /// Format of a route, by the ending of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RouteFormat {
@@ -235,13 +230,6 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
             all[last].stay += motion.duration;
             continue;
         }
-        let last = all[all.len() - 1].place;
-        if index + 1 < legs.len()
-            && is_sliver(motion)
-            && (motion.start.position - last).norm() < SLIVER_M
-        {
-            continue;
-        }
         if motion.is_arc() {
             all.extend(corners(motion).map(|(place, radius)| at(place, radius, motion.speed)));
         }
@@ -258,13 +246,6 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         all.push(Waypoint { stay: 0.0, ..only });
     }
     all
-}
-
-/// True for a turn that no chart shows.
-fn is_sliver(motion: &Segment) -> bool {
-    let turned = (motion.turn_rate * motion.duration).abs();
-    let is_brief = motion.is_arc() && motion.duration < SLIVER_S;
-    is_brief && motion.length() < SLIVER_M && turned < SLIVER_RAD
 }
 
 /// The corners whose lines touch a turn, and its radius.

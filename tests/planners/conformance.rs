@@ -7,7 +7,7 @@ use searoom::colregs::{Role, Sectors, SteadyShip, Thresholds, role_within};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::target::ShipTrack;
 use searoom::trajectory::{Segment, Trajectory};
-use searoom::vessel::Hull;
+use searoom::vessel::{Hull, OwnShip};
 
 const DOCS: &str = include_str!("../../docs/colregs.md");
 
@@ -15,6 +15,18 @@ const DOCS: &str = include_str!("../../docs/colregs.md");
 const HULL: Hull = Hull::new(50.0, 10.0);
 const SPEED: f64 = 6.0;
 const RADIUS: f64 = 125.0;
+
+fn own_ship() -> OwnShip {
+    OwnShip {
+        pose: Pose::new(Vector::zeros(), 0.0),
+        speed: SPEED,
+        hull: HULL,
+        turning_radius: RADIUS,
+        speeds: vec![SPEED],
+        safety_margin: 0.0,
+        tracking_margin: 0.0,
+    }
+}
 
 fn ship(position: Vector, heading: f64, speed: f64) -> SteadyShip {
     SteadyShip::new(Pose::new(position, heading), speed)
@@ -144,7 +156,7 @@ fn table_of_motions() -> String {
         text += &format!("\n| {name} |");
         for (role, target) in &targets {
             let track = ShipTrack::exact(target.pose, target.speed, HULL);
-            let samples = EncounterSamples::along(&own, HULL, SPEED, &track);
+            let samples = EncounterSamples::along(&own, &own_ship(), &track);
             let report = ComplianceReport::judge(&samples, Thresholds::standard());
             assert_eq!(report.roles[0].role.word(), *role);
             let mut broken: Vec<&str> = report.broken().collect();

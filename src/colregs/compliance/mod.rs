@@ -123,10 +123,9 @@ impl ComplianceReport {
         memory: Option<&TargetMemory>,
         thresholds: &Thresholds,
     ) -> EncounterSamples {
-        let risk = &thresholds.risk;
-        let near = risk.distance(track.hull().length.max(target.hull.length));
+        let near = track.risk_distance(&target.hull, thresholds);
         let factor = thresholds.time_factor(track.hull().length);
-        let soon = factor * risk.time.max(thresholds.monitor.manoeuvre);
+        let soon = factor * thresholds.risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);
         track.encounter(target, memory, far)
     }

@@ -21,7 +21,7 @@ fn at_risk(sample: &EncounterSample, encounter: &EncounterSamples, t: &Threshold
     sample.opening() < 0.0
         && ahead.time >= 0.0
         && ahead.time <= t.risk_time(encounter.own_length())
-        && ahead.distance <= t.risk.distance(encounter.length())
+        && ahead.distance <= encounter.risk_distance(t)
 }
 
 /// The other ship is past and clear, Rule 13(d): the range opens, also on own ship's first course,

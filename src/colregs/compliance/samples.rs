@@ -1,12 +1,12 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
 use crate::colregs::encounter::{NO_RELATIVE_SPEED, state_at};
-use crate::colregs::{Risk, SteadyShip, TargetMemory};
+use crate::colregs::{Risk, SteadyShip, TargetMemory, Thresholds};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
-use crate::vessel::Hull;
+use crate::vessel::{Hull, OwnShip};
 
 /// Seconds between two samples; the joints of a trajectory are samples too.
 const STEP_S: f64 = 1.0;
@@ -109,25 +109,17 @@ pub struct EncounterSamples {
     samples: Vec<EncounterSample>,
     known_role: Option<Risk>,
     own: Hull,
+    safety_margin: f64,
     ordered_speed: f64,
     target: Hull,
 }
 
 impl EncounterSamples {
     /// Samples from the start of a trajectory to its end, the target on its nominal track. Own
-    /// ship's heading is taken for its course: drift is not seen. `ordered_speed` (m/s) is the
-    /// speed before any manoeuvre, also where the trajectory changes it at once. O(duration).
-    pub fn along(
-        trajectory: &Trajectory,
-        own: Hull,
-        ordered_speed: f64,
-        target: &ShipTrack,
-    ) -> Self {
-        OwnSamples::along(&[], trajectory, own, ordered_speed).encounter(
-            target,
-            None,
-            f64::INFINITY,
-        )
+    /// ship's heading is taken for its course: drift is not seen. Its `speed` is that before any
+    /// manoeuvre, also where the trajectory changes it at once. O(duration).
+    pub fn along(trajectory: &Trajectory, own: &OwnShip, target: &ShipTrack) -> Self {
+        OwnSamples::along(&[], trajectory, own).encounter(target, None, f64::INFINITY)
     }
 
     /// Samples of a motion that was sailed, and of a target that kept course and speed from each of
@@ -135,16 +127,11 @@ impl EncounterSamples {
     /// need not begin exactly where the one before ends.
     pub fn of_tracks(
         sailed: &[Segment],
-        (own, ordered_speed): (Hull, f64),
+        own: &OwnShip,
         target: &[(f64, SteadyShip)],
         hull: Hull,
     ) -> Self {
-        let own = OwnSamples {
-            ships: sampled(sailed),
-            hull: own,
-            ordered_speed,
-            greatest_speed: f64::INFINITY,
-        };
+        let own = OwnSamples::new(sampled(sailed), f64::INFINITY, own);
         let sample = |index: usize| {
             let there = state_at(target, own.ships[index].0)?;
             Some(own.sample(index, &hull, there))
@@ -153,7 +140,8 @@ impl EncounterSamples {
             samples: (0..own.ships.len()).filter_map(sample).collect(),
             known_role: None,
             own: own.hull,
-            ordered_speed,
+            safety_margin: own.safety_margin,
+            ordered_speed: own.ordered_speed,
             target: hull,
         }
     }
@@ -171,6 +159,11 @@ impl EncounterSamples {
     /// Length of the longer ship, metres.
     pub fn length(&self) -> f64 {
         self.own.length.max(self.target.length)
+    }
+
+    /// Greatest distance of the centres at a closest approach with risk, metres.
+    pub(crate) fn risk_distance(&self, thresholds: &Thresholds) -> f64 {
+        (thresholds.risk).distance(&self.own, self.safety_margin, &self.target)
     }
 
     /// Length of own ship, metres.
@@ -194,6 +187,7 @@ impl EncounterSamples {
 pub(crate) struct OwnSamples {
     ships: Vec<(f64, SteadyShip)>,
     hull: Hull,
+    safety_margin: f64,
     ordered_speed: f64,
     /// m/s; infinite if unknown.
     greatest_speed: f64,
@@ -201,12 +195,7 @@ pub(crate) struct OwnSamples {
 
 impl OwnSamples {
     /// Along the motion so far, whose times are negative, and a trajectory from t = 0 on.
-    pub(crate) fn along(
-        sailed: &[Segment],
-        trajectory: &Trajectory,
-        hull: Hull,
-        ordered_speed: f64,
-    ) -> Self {
+    pub(crate) fn along(sailed: &[Segment], trajectory: &Trajectory, own: &OwnShip) -> Self {
         let at = |time: f64| SteadyShip::new(trajectory.pose_at(time), trajectory.speed_at(time));
         let mut ships = sampled(sailed);
         let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
@@ -217,33 +206,29 @@ impl OwnSamples {
             Some(_) => f64::INFINITY,
             None => speeds.fold(0.0, f64::max),
         };
-        Self {
-            greatest_speed,
-            ships,
-            hull,
-            ordered_speed,
-        }
+        Self::new(ships, greatest_speed, own)
     }
 
     /// The motion so far alone, and own ship at its end.
-    pub(crate) fn of_past(
-        sailed: &[Segment],
-        now: SteadyShip,
-        hull: Hull,
-        ordered_speed: f64,
-    ) -> Self {
+    pub(crate) fn of_past(sailed: &[Segment], now: SteadyShip, own: &OwnShip) -> Self {
         let mut ships = sampled(sailed);
         ships.push((0.0, now));
+        Self::new(ships, f64::INFINITY, own)
+    }
+
+    fn new(ships: Vec<(f64, SteadyShip)>, greatest_speed: f64, own: &OwnShip) -> Self {
         Self {
-            greatest_speed: f64::INFINITY,
             ships,
-            hull,
-            ordered_speed,
+            hull: own.hull,
+            safety_margin: own.safety_margin,
+            ordered_speed: own.speed,
+            greatest_speed,
         }
     }
 
-    pub(crate) fn ordered_speed(&self) -> f64 {
-        self.ordered_speed
+    /// Greatest distance of the centres at a closest approach with risk, metres.
+    pub(crate) fn risk_distance(&self, target: &Hull, thresholds: &Thresholds) -> f64 {
+        (thresholds.risk).distance(&self.hull, self.safety_margin, target)
     }
 
     pub(crate) fn hull(&self) -> Hull {
@@ -288,6 +273,7 @@ impl OwnSamples {
             samples,
             known_role: memory.and_then(|memory| memory.role),
             own: self.hull,
+            safety_margin: self.safety_margin,
             ordered_speed: self.ordered_speed,
             target: target.hull,
         }
@@ -527,7 +513,7 @@ pub fn speed_changes(samples: &[EncounterSample], ordered_speed: f64, least: f64
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{LENGTH, planned, standard, steady};
+    use super::super::tests::{LENGTH, own_ship, planned, standard, steady};
     use super::super::{ComplianceReport, EncounterSamples};
     use super::*;
     use crate::frame::Pose;
@@ -577,13 +563,14 @@ mod tests {
     fn a_far_target_is_judged_by_its_nearest_sight() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let own = planned(&[(0.0, 240.0), (0.7, 120.0), (-0.9, 300.0)], 6.0);
-        let hull = Hull::new(50.0, 10.0);
-        let track = OwnSamples::along(&[], &own, hull, 6.0);
+        let ours = own_ship();
+        let hull = ours.hull;
+        let track = OwnSamples::along(&[], &own, &ours);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {
             let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
             let target = ShipTrack::exact(pose, speed, hull);
-            let whole = EncounterSamples::along(&own, hull, 6.0, &target);
+            let whole = EncounterSamples::along(&own, &ours, &target);
             let samples = ComplianceReport::samples(&track, &target, None, standard());
             let found = ComplianceReport::judge(&samples, standard());
             assert_eq!(found, ComplianceReport::judge(&whole, standard()));

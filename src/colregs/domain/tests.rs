@@ -1,7 +1,7 @@
 //! Ship domains: nested, swept to the forbidden side, reduced around own ship's start.
 
 use super::*;
-use crate::colregs::{Role, Sectors, SteadyShip, risk_distance, role_within};
+use crate::colregs::{Role, Sectors, SteadyShip, role_within, sweep_distance};
 use crate::frame::{direction, to_port, to_starboard};
 use crate::vessel::Hull;
 use crate::vessel::fixtures::own_ship;
@@ -135,7 +135,7 @@ fn the_design_inequality_holds_whatever_the_hull() {
         let centre = target.pose.position;
         let reach = |n: Vector| domain.support(n) - n.dot(&centre);
         let asymmetry = reach(bad) - reach(-bad);
-        let d_risk = risk_distance(&own, &target);
+        let d_risk = sweep_distance(&own, &target);
         assert!(asymmetry >= 2.0 * d_risk);
         assert!((asymmetry - e.norm()).abs() < 1e-6, "{asymmetry} {e:?}");
         assert!(reach(-bad) >= own.safety_margin);

@@ -1,10 +1,14 @@
 //! The legs of a plan as a navigator reads them: turns and straight runs, and the events on each.
 
 use super::PlanDocument;
+use super::reasons::Before;
 use crate::document::encounter::EncounterDocument;
 use crate::document::lines::{met, passing};
 use crate::document::parts::segment;
-use crate::frame::{clockwise_deg, course_deg_from_heading, wrap};
+use crate::frame::{
+    clockwise_deg, course_deg_from_heading, heading_from_course_deg, heading_of, wrap,
+};
+use crate::obstacle::LAND;
 use crate::text::tenths;
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -19,6 +23,13 @@ const CORNER_RAD: f64 = 1e-6;
 /// Seconds. A shorter segment is no leg: a ship covers some millimetres.
 const SHORTEST_S: f64 = 1e-3;
 
+/// Seconds and radians. A shorter and smaller turn is part of the leg after it, as no chart shows it.
+const SLIVER_S: f64 = 0.5;
+const SLIVER_RAD: f64 = 0.01;
+
+/// Radians. Straight runs whose courses differ by less are one leg: a decimetre in a kilometre.
+const SAME_COURSE_RAD: f64 = 1e-4;
+
 /// m/s. A slower ship lies still.
 const STILL_MPS: f64 = 1e-3;
 
@@ -30,7 +41,9 @@ pub struct PlannedLeg {
     /// Change of course at its start, degrees, positive to starboard. Not 0 at the corners of a
     /// path, where the path-time planner turns at once.
     pub corner_deg: f64,
-    /// Events on the leg, in order of time.
+    /// The target for which the leg alters course or speed, or [`LAND`].
+    pub because_of: Option<String>,
+    /// Events on the leg, in order of time; first the alteration and its target.
     pub events: Vec<String>,
 }
 
@@ -52,9 +65,73 @@ impl PlannedLeg {
 }
 
 impl PlanDocument {
-    /// The legs in order of time: the segments of a millisecond or more, where those that go on in
-    /// the same motion are joined. Empty without a plan, and for a plan under forces.
+    /// The legs in order of time, with what happens on each. Turns of less than half a second and
+    /// 0.01 rad are part of the leg that follows, which begins where the turn does: its places are
+    /// off by some centimetres. Empty without a plan, and for a plan under forces.
     pub fn legs(&self) -> Vec<PlannedLeg> {
+        let mut legs: Vec<PlannedLeg> = Vec::new();
+        let mut sliver: Option<Segment> = None;
+        let all = self.motions();
+        let last = all.len().saturating_sub(1);
+        for (index, mut leg) in all.into_iter().enumerate() {
+            if let Some(turn) = sliver.take() {
+                leg.motion.start.position = turn.start.position;
+                leg.motion.start_time = turn.start_time;
+                leg.motion.duration += turn.duration;
+            }
+            if index < last && is_sliver(&leg.motion) {
+                sliver = Some(leg.motion);
+                continue;
+            }
+            match legs
+                .last_mut()
+                .and_then(|last| one_line(&last.motion, &leg.motion).map(|line| (last, line)))
+            {
+                Some((last, line)) => last.motion = line,
+                None => legs.push(leg),
+            }
+        }
+        for (time, event) in self.events() {
+            let mut until = legs
+                .iter_mut()
+                .filter(|leg| time >= 0.0 && leg.motion.start_time <= time);
+            // the plan ends with the last leg
+            if let Some(leg) = until.next_back()
+                && time <= leg.motion.end_time() + tolerance::TIME_S
+            {
+                leg.events.push(event);
+            }
+        }
+        let mut before = Before {
+            heading: heading_from_course_deg(self.own_ship.course_deg),
+            speed: self.own_ship.speed_mps,
+        };
+        for index in 0..legs.len() {
+            let returns = self.manoeuvres.iter().any(|m| {
+                let time = legs[index].motion.start_time + tolerance::TIME_S;
+                m.returns_s <= time && time < m.joins_s
+            });
+            let reason = self.reason(&before, &legs[index..]).filter(|_| !returns);
+            let reason = reason.map(str::to_owned);
+            let known = index
+                .checked_sub(1)
+                .and_then(|last| legs[last].because_of.as_ref());
+            let is_new = known != reason.as_ref();
+            let leg = &mut legs[index];
+            if let Some(target) = reason.as_ref().filter(|_| is_new) {
+                leg.events.insert(0, alters_for(leg, &before, target));
+            }
+            leg.because_of = reason;
+            before = Before {
+                heading: leg.motion.end().heading,
+                speed: leg.motion.speed,
+            };
+        }
+        legs
+    }
+
+    /// The segments of a millisecond or more, where those that go on in the same motion are joined.
+    pub(super) fn motions(&self) -> Vec<PlannedLeg> {
         let segments = self.trajectory.as_ref().and_then(|t| t.segments.as_ref());
         let segments = segments.into_iter().flatten().map(segment);
         let mut legs: Vec<PlannedLeg> = Vec::new();
@@ -72,19 +149,9 @@ impl PlanDocument {
             legs.push(PlannedLeg {
                 motion,
                 corner_deg,
+                because_of: None,
                 events: Vec::new(),
             });
-        }
-        for (time, event) in self.events() {
-            let mut until = legs
-                .iter_mut()
-                .filter(|leg| time >= 0.0 && leg.motion.start_time <= time);
-            // the plan ends with the last leg
-            if let Some(leg) = until.next_back()
-                && time <= leg.motion.end_time() + tolerance::TIME_S
-            {
-                leg.events.push(event);
-            }
         }
         legs
     }
@@ -108,6 +175,44 @@ impl PlanDocument {
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
         events
     }
+}
+
+/// What own ship does, and for which target.
+fn alters_for(leg: &PlannedLeg, before: &Before, target: &str) -> String {
+    let motion = &leg.motion;
+    let verb = if leg.waits() {
+        "waits"
+    } else if motion.is_arc() || leg.corner_deg != 0.0 {
+        "turns"
+    } else if motion.speed < before.speed {
+        "slows"
+    } else {
+        "goes faster"
+    };
+    match target {
+        LAND => format!("{verb} for land"),
+        target => format!("{verb} for '{target}'"),
+    }
+}
+
+/// Two straight runs at one speed on nearly one course as the line between their ends.
+fn one_line(last: &Segment, next: &Segment) -> Option<Segment> {
+    let bend = wrap(next.start.heading - last.start.heading).abs();
+    if last.is_arc() || next.is_arc() || bend > SAME_COURSE_RAD || !are_one(last, next) {
+        return None;
+    }
+    let way = next.end().position - last.start.position;
+    let mut line = *last;
+    line.duration += next.duration;
+    if last.speed > 0.0 {
+        line.start.heading = heading_of(way);
+    }
+    Some(line)
+}
+
+fn is_sliver(motion: &Segment) -> bool {
+    let turned = (motion.turn_rate * motion.duration).abs();
+    motion.is_arc() && motion.duration < SLIVER_S && turned < SLIVER_RAD
 }
 
 /// True for two motions of one speed and one rate of turn.

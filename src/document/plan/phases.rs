@@ -45,7 +45,7 @@ pub struct PhaseDocument {
 impl PlanDocument {
     /// The phases that follow from the document's motion, manoeuvres and escape.
     pub(crate) fn phases_of_motion(&self) -> Vec<PhaseDocument> {
-        phases(&self.legs(), &self.manoeuvres, self.escape.as_ref())
+        phases(&self.motions(), &self.manoeuvres, self.escape.as_ref())
     }
 }
 
@@ -127,6 +127,7 @@ mod tests {
             PlannedLeg {
                 motion,
                 corner_deg: 0.0,
+                because_of: None,
                 events: Vec::new(),
             }
         });

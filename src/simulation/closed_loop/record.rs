@@ -23,8 +23,7 @@ impl Simulation {
         let own = &self.scenario.own_ship;
         let samples: Vec<EncounterSamples> = (self.targets.iter())
             .map(|target| {
-                let hulls = (own.hull, own.speed);
-                EncounterSamples::of_tracks(&self.sailed, hulls, &target.states, target.truth.hull)
+                EncounterSamples::of_tracks(&self.sailed, own, &target.states, target.truth.hull)
             })
             .collect();
         let reports = if self.sailed.is_empty() {

@@ -129,8 +129,7 @@ impl Entry {
         let thresholds = scenario.judged_by();
         let ships = scenario.targets.iter().filter_map(|target| target.ship());
         let own = &scenario.own_ship;
-        let samples =
-            ships.map(|ship| EncounterSamples::along(trajectory, own.hull, own.speed, ship));
+        let samples = ships.map(|ship| EncounterSamples::along(trajectory, own, ship));
         let samples: Vec<_> = samples.collect();
         ComplianceReport::of_all(samples.iter(), thresholds)
     }

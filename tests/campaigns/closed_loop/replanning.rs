@@ -188,7 +188,7 @@ pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
     let first_cost = plan.cost;
     let (own, ship) = (&first.own_ship, first.targets[0].ship().expect("a ship"));
     let judged = |sailed: &[Segment], track: &[(f64, SteadyShip)]| {
-        let meeting = EncounterSamples::of_tracks(sailed, (own.hull, own.speed), track, ship.hull);
+        let meeting = EncounterSamples::of_tracks(sailed, own, track, ship.hull);
         ComplianceReport::judge(&meeting, Thresholds::standard())
     };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -44,7 +44,7 @@ fn seen(run: &Run) -> Seen {
     let ship = run.scenario.targets[0].ship().expect("a ship");
     let evaluation = run.evaluation.as_ref().expect("judged");
     let own = &run.scenario.own_ship;
-    let meeting = EncounterSamples::along(&plan.trajectory, own.hull, own.speed, ship);
+    let meeting = EncounterSamples::along(&plan.trajectory, own, ship);
     let report = ComplianceReport::judge(&meeting, Thresholds::standard());
     let manoeuvre = report.manoeuvre;
     let times = plan.trajectory.sample_times(1.0, u32::MAX);

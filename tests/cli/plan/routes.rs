@@ -206,3 +206,28 @@ fn a_route_is_a_mission() {
         .code(2)
         .stderr(contains("mission.route: found").and(contains("km from the origin")));
 }
+
+/// Own ship begins a little off its route: the turn of a moment is no leg of its own.
+#[test]
+fn a_turn_of_a_moment_is_part_of_the_next_leg() {
+    let folder = Folder::new();
+    let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
+    let file = folder.write(
+        "off.toml",
+        alone.replacen("course_deg = 90.0", "course_deg = 90.3", 1),
+    );
+    let route = folder.at("off.csv");
+    searoom(&["plan", &file, "--route", &route]).success();
+    let rows = fs::read_to_string(&route).expect("written");
+    let mut from = 0.0;
+    for row in rows.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [start, end] = [cells[1], cells[2]].map(|cell| cell.parse::<f64>().expect("a time"));
+        assert_eq!(start, from, "{rows}");
+        assert!(end - start > 1.0, "{rows}");
+        from = end;
+    }
+    let document = json(&format!("plan {file} --json"));
+    let segments = list(&document["trajectory"]["segments"]);
+    assert!(number(&segments[0]["duration_s"]) < 0.5, "{segments:?}");
+}

@@ -162,3 +162,29 @@ fn thresholds_that_are_wrong_are_named() {
         "
     ));
 }
+
+/// A ship that passes at 250 m, beyond the limit, but whose set reaches own ship's way.
+#[test]
+fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
+    let folder = Folder::new();
+    let scene = |limit: &str| {
+        format!(
+            "title = \"Far coaster\"\nhorizon_s = 700.0\n{limit}\n[own_ship]\n\
+             position = {{ east_m = 0.0, north_m = 0.0 }}\ncourse_deg = 90.0\nspeed_mps = 5.0\n\
+             length_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\n[mission]\n\
+             waypoints = [{{ east_m = 0.0, north_m = 0.0 }}, {{ east_m = 2500.0, north_m = 0.0 }}]\n\
+             [[targets]]\nname = \"coaster\"\nposition = {{ east_m = 1350.0, north_m = -1000.0 }}\n\
+             course_deg = 0.0\nspeed_mps = 5.0\nlength_m = 60.0\nbeam_m = 12.0\n\
+             speed_spread_mps = 0.6\ncourse_spread_deg = 6.0\n"
+        )
+    };
+    let note = "'coaster' gives no role: they do not restrict the alteration for it";
+    let file = folder.write("far.toml", scene(""));
+    searoom(&["plan", &file])
+        .success()
+        .stdout(contains(note).and(contains("turns for 'coaster'")));
+    let file = folder.write("near.toml", scene("planner = { cpa_limit_m = 400.0 }"));
+    searoom(&["plan", &file])
+        .success()
+        .stdout(contains("give-way with 'coaster'").and(contains(note).not()));
+}

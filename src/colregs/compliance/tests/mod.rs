@@ -9,7 +9,7 @@ use crate::frame::{Pose, Vector};
 use crate::target::ShipTrack;
 use crate::text::rows;
 use crate::trajectory::{Segment, Trajectory};
-use crate::vessel::Hull;
+use crate::vessel::{Hull, OwnShip, fixtures};
 
 /// Metres, of both ships.
 pub const LENGTH: f64 = 50.0;
@@ -56,6 +56,16 @@ fn sailed(legs: &str) -> Trajectory {
 
 const HULL: Hull = Hull::new(LENGTH, 10.0);
 
+/// Own ship at 6 m/s, with this hull and without a margin.
+pub fn own_ship() -> OwnShip {
+    OwnShip {
+        speed: 6.0,
+        hull: HULL,
+        safety_margin: 0.0,
+        ..fixtures::own_ship(&[6.0])
+    }
+}
+
 pub fn standard() -> &'static Thresholds {
     Thresholds::standard()
 }
@@ -67,7 +77,7 @@ fn track(pose: Pose, speed: f64) -> ShipTrack {
 /// Own ship and a target that holds course and speed.
 pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> EncounterSamples {
     let pose = Pose::new(Vector::new(x, y), heading);
-    EncounterSamples::along(own, HULL, 6.0, &track(pose, speed))
+    EncounterSamples::along(own, &own_ship(), &track(pose, speed))
 }
 
 const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
@@ -145,7 +155,7 @@ fn the_judges_do_not_see_where_the_scene_lies() {
         let own = Trajectory::new(segments.collect()).expect("a trajectory");
         let crossing = Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2);
         let target = track(turned(&crossing), 6.0);
-        let samples = EncounterSamples::along(&own, HULL, 6.0, &target);
+        let samples = EncounterSamples::along(&own, &own_ship(), &target);
         ComplianceReport::judge(&samples, standard())
     };
     let here = judge(0.0, Vector::zeros());

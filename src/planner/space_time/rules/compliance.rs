@@ -48,7 +48,7 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
         return usize::MAX;
     };
     let thresholds = problem.thresholds;
-    let own = OwnSamples::along(&[], &trajectory, problem.own.hull, problem.own.speed);
+    let own = OwnSamples::along(&[], &trajectory, problem.own);
     let samples = problem.encountered.iter().map(|e| {
         let track = ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull);
         // a role that has begun before the plan is kept

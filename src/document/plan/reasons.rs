@@ -1,0 +1,242 @@
+//! Why own ship alters course or speed: the set that it would enter if it held on.
+
+use super::PlanDocument;
+use super::legs::PlannedLeg;
+use crate::document::parts::{ObstacleDocument, PositionDocument};
+use crate::frame::{Pose, Vector, heading_of, wrap};
+use crate::geometry::{ConvexPolygon, ConvexSet, Window};
+use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
+use crate::target::Uncertainty;
+use crate::trajectory::Segment;
+use crate::vessel::Hull;
+
+/// Metres. Plans run along the edges of sets: what is no deeper in a set does not enter it.
+const DEPTH_M: f64 = 0.01;
+
+/// Radians. A smaller departure from the mission's course is none.
+const COURSE_RAD: f64 = 0.01;
+
+/// Speeds that differ by a smaller fraction are one.
+const SPEED: f64 = 0.01;
+
+/// Own ship before an alteration: the last leg, or its course and speed at the present.
+pub(super) struct Before {
+    pub heading: f64,
+    pub speed: f64,
+}
+
+impl PlanDocument {
+    /// What a leg alters course or speed for: the target whose set own ship would enter first with
+    /// the course and speed `before`, or [`LAND`]. `legs` begins with this leg.
+    ///
+    /// `None` where the leg alters nothing, or comes back to the mission's course or speed, or
+    /// where nothing would be entered until the horizon. Along a path own ship would keep to the
+    /// path. The sets are those that the plan keeps out of. O(sets × legs).
+    pub(super) fn reason(&self, before: &Before, legs: &[PlannedLeg]) -> Option<&str> {
+        let leg = &legs[0].motion;
+        let (course, speed) = self.desired_at(leg.start.position)?;
+        let off = |heading: f64| wrap(heading - course).abs();
+        let turns = off(leg.end().heading) > off(before.heading) + COURSE_RAD;
+        let differs = |a: f64, b: f64| (a - b).abs() > SPEED * a.max(b);
+        let changes_speed = differs(leg.speed, before.speed)
+            && (leg.speed - speed).abs() > (before.speed - speed).abs();
+        let is_along_path = self.path_time.is_some();
+        if !(before.speed > 0.0 && (changes_speed || turns && !is_along_path)) {
+            return None;
+        }
+        let held: Vec<Segment> = if is_along_path {
+            at_one_speed(legs, before.speed)
+        } else {
+            let start = Pose::new(leg.start.position, before.heading);
+            let left = self.horizon_s - leg.start_time;
+            vec![Segment::straight(start, leg.start_time, left, before.speed)]
+        };
+        self.entered(&held)
+    }
+
+    /// Direction and speed of the mission's nearest leg.
+    fn desired_at(&self, place: Vector) -> Option<(f64, f64)> {
+        let mission = &self.mission;
+        let points: Vec<Vector> = mission
+            .waypoints
+            .iter()
+            .map(PositionDocument::point)
+            .collect();
+        let away = |from: Vector, to: Vector| {
+            let along = to - from;
+            let part = ((place - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (from + along * part - place).norm()
+        };
+        let legs = points.windows(2).zip(&mission.leg_speeds_mps);
+        let legs = legs.map(|(ends, speed)| (away(ends[0], ends[1]), ends[1] - ends[0], *speed));
+        let (_, along, speed) = legs.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((heading_of(along), speed))
+    }
+
+    /// The target whose set a motion enters first, or [`LAND`].
+    fn entered(&self, held: &[Segment]) -> Option<&str> {
+        let ends = held
+            .iter()
+            .flat_map(|s| [s.start.position, s.end().position]);
+        let reach = held
+            .iter()
+            .map(|s| if s.is_arc() { s.length() } else { 0.0 });
+        let ends: Vec<Vector> = ends.collect();
+        let swept = Window::around(&ends)?.grown(reach.fold(0.0, f64::max));
+        let first = |obstacle: &dyn SpaceTimeObstacle, from: f64, until: f64| {
+            let parts = held
+                .iter()
+                .filter(|s| s.start_time <= until && s.end_time() >= from);
+            let mut parts = parts.map(|s| {
+                let part = s.between(s.start_time.max(from), s.end_time().min(until));
+                Segment {
+                    start_time: part.start_time - from,
+                    ..part
+                }
+            });
+            parts
+                .find_map(|part| obstacle.first_contact(&part, DEPTH_M))
+                .map(|time| from + time)
+        };
+        let of_target = |set: &ObstacleDocument| {
+            let [from, until] = set.valid_s;
+            let (initial, velocity) = (set.initial_set.set().ok()?, set.velocity_set.set().ok()?);
+            let moved = window(&velocity);
+            let moved = moved.low.abs().sup(&moved.high.abs()).max();
+            if !window(&initial).grown(moved * (until - from)).meets(&swept) {
+                return None;
+            }
+            let sets = Uncertainty::constant(initial, velocity);
+            first(&Obstacle::new("", sets).ok()?, from, until)
+        };
+        let targets = self.obstacles.iter();
+        let targets = targets.filter_map(|set| Some((of_target(set)?, set.name.as_str())));
+        let own = &self.own_ship;
+        let radius = Hull::new(own.length_m, own.beam_m).half_diagonal() + own.land_margin_m;
+        let pieces = self.land.iter().filter_map(|piece| {
+            let vertices: Vec<Vector> = piece.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+            let near = Window::around(&vertices)?.grown(radius).meets(&swept);
+            near.then(|| ConvexPolygon::hull(&vertices).ok())?
+        });
+        let pieces: Vec<ConvexPolygon> = pieces.collect();
+        let land = LandObstacle::around(&pieces, radius);
+        let ashore = held.iter().find_map(|s| land.first_contact(s, DEPTH_M));
+        let all = targets.chain(ashore.map(|time| (time, LAND)));
+        Some(all.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
+    }
+}
+
+/// The motion of legs without their waits and with one speed, m/s.
+fn at_one_speed(legs: &[PlannedLeg], speed: f64) -> Vec<Segment> {
+    let mut time = legs[0].motion.start_time;
+    let moving = legs.iter().filter(|leg| !leg.waits());
+    let at_speed = moving.map(|leg| {
+        let motion = &leg.motion;
+        let duration = motion.length() / speed;
+        let turned = motion.turn_rate * motion.duration;
+        let segment = Segment::new(motion.start, time, duration, speed, turned / duration);
+        time += duration;
+        segment
+    });
+    at_speed.collect()
+}
+
+/// The smallest box around a set.
+fn window(set: &ConvexSet) -> Window {
+    let most = |x: f64, y: f64| set.support(Vector::new(x, y));
+    let low = Vector::new(-most(-1.0, 0.0), -most(0.0, -1.0));
+    Window::new(low, Vector::new(most(1.0, 0.0), most(0.0, 1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::scenario::Scenario;
+
+    fn planned(name: &str) -> PlanDocument {
+        let file = format!("scenarios/{name}.toml");
+        let scenario = Scenario::read(file.as_ref()).expect("valid");
+        PlanDocument::of(&pipeline::run(scenario))
+    }
+
+    /// The first of the sets in which a place at each half second is, by their sections.
+    fn scanned(plan: &PlanDocument, held: &Segment) -> Option<String> {
+        let steps = (held.duration / 0.5) as u32;
+        let times = (0..=steps).map(|k| held.start_time + 0.5 * f64::from(k));
+        let mut times = times.filter(|time| *time <= plan.horizon_s);
+        times.find_map(|time| {
+            let place = held.pose_at(time).position;
+            let mut sets = plan.obstacles.iter();
+            let inside = sets.find(|set| {
+                let [from, until] = set.valid_s;
+                let initial = set.initial_set.set().expect("convex");
+                let velocity = set.velocity_set.set().expect("convex");
+                let sets = Uncertainty::constant(initial, velocity);
+                (from..=until).contains(&time)
+                    && sets.outer_section(time - from).signed_distance(place) < -DEPTH_M
+            });
+            Some(inside?.name.clone())
+        })
+    }
+
+    /// Against the definition: sections of all sets, every half second.
+    #[test]
+    fn an_alteration_is_for_the_set_that_would_be_entered_first() {
+        let mut found = 0;
+        let mut without = 0;
+        for name in [
+            "colregs/give-way",
+            "colregs/head-on",
+            "colregs/overtaking",
+            "colregs/stand-on",
+            "uncertainty/turning",
+        ] {
+            let plan = planned(name);
+            let mut before = Before {
+                heading: crate::frame::heading_from_course_deg(plan.own_ship.course_deg),
+                speed: plan.own_ship.speed_mps,
+            };
+            let legs = plan.motions();
+            for (index, leg) in legs.iter().enumerate() {
+                let start = Pose::new(leg.motion.start.position, before.heading);
+                let left = plan.horizon_s - leg.motion.start_time;
+                let held = Segment::straight(start, leg.motion.start_time, left, before.speed);
+                match plan.reason(&before, &legs[index..]) {
+                    Some(target) => {
+                        found += 1;
+                        assert_eq!(Some(target), scanned(&plan, &held).as_deref(), "{name}");
+                    }
+                    None => without += 1,
+                }
+                before = Before {
+                    heading: leg.motion.end().heading,
+                    speed: leg.motion.speed,
+                };
+            }
+        }
+        assert!(found >= 5 && without >= 15, "{found} {without}");
+    }
+
+    #[test]
+    fn the_first_alteration_has_its_target_and_the_return_has_none() {
+        let plan = planned("colregs/give-way");
+        let legs = plan.legs();
+        let because: Vec<Option<&str>> = legs.iter().map(|l| l.because_of.as_deref()).collect();
+        assert_eq!(because[1], Some("target"), "{because:?}");
+        assert_eq!(because.iter().flatten().count(), 1, "{because:?}");
+        assert_eq!(legs[1].events[0], "turns for 'target'");
+    }
+
+    #[test]
+    fn along_a_path_own_ship_slows_for_the_ship_that_it_would_meet() {
+        for (name, target) in [
+            ("harbour/ferry-crossing", "trawler"),
+            ("harbour/ferry-crossing-slowest", "sailing boat"),
+        ] {
+            let legs = planned(name).legs();
+            let because = legs.iter().filter_map(|l| l.because_of.as_deref());
+            assert_eq!(because.collect::<Vec<_>>(), [target], "{legs:?}");
+        }
+    }
+}
