@@ -62,6 +62,8 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
+            && then.route.is_empty()
+            && ship.route.is_empty()
             && !memory.is_outside(&target.name)
         {
             keep_sets(ship, then, elapsed);

@@ -1,6 +1,7 @@
 //! A target: a tracked ship or explicit sets, with its possible positions at t = 0 and its possible
 //! velocities.
 
+pub(crate) mod route;
 mod uncertainty;
 
 pub use uncertainty::{TimedVelocitySet, Uncertainty};
@@ -9,12 +10,20 @@ use crate::frame::{Pose, Vector, direction, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_disc};
 use crate::tolerance::SIGMAS;
 use crate::vessel::Hull;
+use route::{RouteLeg, RoutePoint, Spread, Track};
 
 /// Half the angle between two tangents of the outer arc, radians: 5°.
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
 /// Turn within one time interval of a turning target, radians: 5°.
 const TURN_PER_INTERVAL: f64 = std::f64::consts::PI / 36.0;
+
+/// Largest radius of a turn on a known route, in lengths of the ship: the advance of a turn by 90°
+/// with full rudder is at most 4.5 lengths (IMO resolution MSC.137(76)).
+const TURN_LENGTHS: f64 = 4.5;
+
+/// Most velocity sets of a ship on a known route.
+const ROUTE_SETS: usize = 50;
 
 /// Sides of a turned hull's outer polygon shorter than this fraction of the half-diagonal are
 /// omitted.
@@ -40,6 +49,15 @@ pub enum DomainKind {
         /// To starboard.
         starboard: f64,
     },
+}
+
+/// A leg of a target's known route.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownLeg {
+    /// Where it ends, metres.
+    pub to: Vector,
+    /// Nominal speed on it, m/s, positive.
+    pub speed: f64,
 }
 
 /// A tracked ship: nominal motion and its uncertainty.
@@ -73,6 +91,10 @@ pub struct ShipTrack {
     /// Velocities that the ship is known to keep to, given or from earlier plans; `None` for any,
     /// and for a ship that may turn.
     pub kept_velocities: Option<ConvexPolygon>,
+    /// The ship's known route from its position on, with the speeds of the legs; empty for a ship
+    /// that keeps course and speed. Heading and speed at t = 0 are those of the first leg. It goes
+    /// on beyond the last place.
+    pub route: Vec<KnownLeg>,
     /// The requested ship domain.
     pub domain: DomainKind,
 }
@@ -93,6 +115,7 @@ impl ShipTrack {
             turn_rate: 0.0,
             kept_positions: None,
             kept_velocities: None,
+            route: Vec::new(),
             domain: DomainKind::Hull,
         }
     }
@@ -124,17 +147,104 @@ impl ShipTrack {
         }
     }
 
-    /// Estimated velocity, m/s.
+    /// The ship on a known route, with the heading and the speed of its first leg. The places
+    /// differ from one another and the first from the ship's position.
+    pub fn with_route(mut self, route: Vec<KnownLeg>) -> Self {
+        if let Some(first) = route.first() {
+            self.pose.heading = heading_of(first.to - self.pose.position);
+            self.speed = first.speed;
+        }
+        self.route = route;
+        self
+    }
+
+    /// Estimated velocity at t = 0, m/s.
     pub fn velocity(&self) -> Vector {
         self.pose.ahead() * self.speed
     }
 
-    /// Estimated pose at `time`.
+    /// The nominal motion as straight runs: the start of each in seconds, the pose and the speed
+    /// then. The first begins at t = 0, the last has no end.
+    pub fn runs(&self) -> impl Iterator<Item = (f64, Pose, f64)> + '_ {
+        let (mut time, mut place) = (0.0, self.pose.position);
+        let legs = self.route.iter().map(move |leg| {
+            let way = leg.to - place;
+            let run = (time, Pose::new(place, heading_of(way)), leg.speed);
+            (time, place) = (time + way.norm() / leg.speed, leg.to);
+            run
+        });
+        let steady = self.route.is_empty();
+        let steady = steady.then_some((0.0, self.pose, self.speed));
+        steady.into_iter().chain(legs)
+    }
+
+    /// The nominal velocities over time. Runs that are too short to end at a time of their own are
+    /// left out.
+    pub(crate) fn nominal_velocities(&self) -> Vec<TimedVelocitySet> {
+        let ends = self.runs().skip(1).map(|run| run.0).chain([f64::INFINITY]);
+        let runs = self.runs().zip(ends);
+        let timed = runs.map(|((_, pose, speed), until)| {
+            TimedVelocitySet::new(until, ConvexPolygon::point(pose.ahead() * speed))
+        });
+        timed.collect()
+    }
+
+    /// Estimated pose at `time`; before t = 0 as if the ship had come straight.
     pub fn pose_at(&self, time: f64) -> Pose {
-        Pose::new(
-            self.pose.position + self.velocity() * time,
-            self.pose.heading,
-        )
+        self.nominal_at(time).0
+    }
+
+    /// Estimated pose and speed at `time`. O(legs of a known route).
+    pub fn nominal_at(&self, time: f64) -> (Pose, f64) {
+        let mut now = (0.0, self.pose, self.speed);
+        if !self.route.is_empty() {
+            now = self
+                .runs()
+                .take_while(|run| run.0 <= time)
+                .last()
+                .unwrap_or(now);
+        }
+        let (since, pose, speed) = now;
+        let moved = pose.ahead() * speed * (time - since);
+        (Pose::new(pose.position + moved, pose.heading), speed)
+    }
+
+    /// Greatest nominal speed, m/s.
+    pub fn greatest_speed(&self) -> f64 {
+        self.runs()
+            .map(|(.., speed)| speed)
+            .fold(self.speed, f64::max)
+    }
+
+    /// The known route as a track with turns on radii of up to `TURN_LENGTHS`; `None` without one.
+    fn track(&self) -> Option<Track> {
+        let start = (!self.route.is_empty()).then_some(self.pose.position)?;
+        let places = std::iter::once(start).chain(self.route.iter().map(|leg| leg.to));
+        let points = places.map(|position| RoutePoint {
+            position,
+            turn_radius: None,
+        });
+        let legs = self.route.iter().map(|leg| RouteLeg {
+            slow: leg.speed,
+            fast: leg.speed,
+        });
+        let radius = TURN_LENGTHS * self.hull.length;
+        let (points, legs): (Vec<_>, Vec<_>) = (points.collect(), legs.collect());
+        // no turn has a radius of its own that might not fit
+        Track::along(&points, &legs, radius, None).ok()
+    }
+
+    /// The middle of the headings until the end of a known route, radians, and half their width,
+    /// without what the ship may do beside the route.
+    fn route_headings(&self) -> (f64, f64) {
+        let (mut heading, mut low, mut high) = (self.pose.heading, 0.0_f64, 0.0_f64);
+        let mut off = 0.0;
+        for (_, pose, _) in self.runs() {
+            off += wrap(pose.heading - heading);
+            heading = pose.heading;
+            (low, high) = (low.min(off), high.max(off));
+        }
+        (self.pose.heading + 0.5 * (low + high), 0.5 * (high - low))
     }
 
     /// The middle of the possible courses, radians.
@@ -159,21 +269,19 @@ impl ShipTrack {
         self.speed_spread + SIGMAS * self.speed_std
     }
 
-    /// The position, with the heading in the middle of the possible ones.
-    fn middle_pose(&self) -> Pose {
-        Pose::new(self.pose.position, self.middle_course())
-    }
-
-    /// Half-width of the heading, and so of the course, at `time` about the middle, radians: at most
-    /// half a turn.
-    pub fn heading_spread(&self, time: f64) -> f64 {
-        let turned = if self.turn_rate == 0.0 {
-            0.0
+    /// The middle of the headings that the ship may have until `time`, and half their width, radians:
+    /// at most half a turn. Of a known route every leg counts, at any time.
+    pub fn headings(&self, time: f64) -> (f64, f64) {
+        let (middle, turned) = if !self.route.is_empty() {
+            self.route_headings()
+        } else if self.turn_rate == 0.0 {
+            (self.middle_course(), 0.0)
         } else {
-            self.turn_rate.abs() * time
+            (self.middle_course(), self.turn_rate.abs() * time)
         };
         // `min` of a NaN and a number is the number: every heading
-        (self.course_half_width() + turned).min(std::f64::consts::PI)
+        let half = (self.course_half_width() + turned).min(std::f64::consts::PI);
+        (middle, half)
     }
 
     /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of
@@ -192,7 +300,8 @@ impl ShipTrack {
     /// larger. Its sides are among those of [`crate::geometry::outer_disc`] about the heading, so
     /// the sum with such a disc has no more vertices than the disc.
     pub fn outer_hull(&self, time: f64) -> ConvexPolygon {
-        let (spread, pose) = (self.heading_spread(time), self.middle_pose());
+        let (middle, spread) = self.headings(time);
+        let pose = Pose::new(self.pose.position, middle);
         if spread == 0.0 {
             return self.hull.polygon(&pose);
         }
@@ -245,9 +354,24 @@ impl ShipTrack {
     /// most until 5° of turn, so a half-width is at most 5° too wide. All courses are possible from
     /// `horizon` seconds on, or earlier where they are. A rate of 0 gives one set; a rate that is
     /// not finite gives every course at once.
+    ///
+    /// On a known route each set holds the velocities of all legs and turns that the ship may be on
+    /// in its interval: it has made good their lengths at a speed within its spread.
     pub fn outer_velocity_sets(&self, turn_rate: f64, horizon: f64) -> Vec<TimedVelocitySet> {
         let timed =
             |until, spread| TimedVelocitySet::new(until, self.outer_velocities_within(spread));
+        if let Some(track) = self.track() {
+            let spread = Spread {
+                speed: self.speed_half_width(),
+                course: self.course_half_width(),
+            };
+            let sets = track
+                .outer_velocity_sets(&spread, horizon, ROUTE_SETS)
+                .into_iter();
+            return sets
+                .map(|(until, set)| TimedVelocitySet::new(until, set))
+                .collect();
+        }
         let rate = turn_rate.abs();
         if rate == 0.0 {
             return vec![timed(f64::INFINITY, self.course_half_width())];

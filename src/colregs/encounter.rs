@@ -87,11 +87,7 @@ impl TargetMemory {
 pub(super) fn state_at(track: &[(f64, SteadyShip)], time: f64) -> Option<SteadyShip> {
     let known = track.partition_point(|(t, _)| *t <= time);
     let (then, ship) = track.get(known.checked_sub(1)?)?;
-    let moved = ship.velocity() * (time - then);
-    Some(SteadyShip {
-        pose: Pose::new(ship.pose.position + moved, ship.pose.heading),
-        ..*ship
-    })
+    Some(ship.moved(time - then))
 }
 
 /// Metres by which the sweep of a ship domain is scaled: twice the longer ship, or half of own
@@ -118,15 +114,14 @@ pub fn first_risk(
     let risk = &thresholds.risk;
     let allowed = risk.distance(&own.hull, own.safety_margin, &target.hull);
     let soon = thresholds.risk_time(own.hull.length);
-    desired.legs().iter().find_map(|leg| {
-        let from = leg.start_time;
-        let until = leg.end_time().min(horizon);
-        let relative = leg.direction * leg.speed - target.velocity();
+    stretches(desired, target, horizon).find_map(|(leg, [from, until], theirs)| {
+        let theirs = theirs(from);
+        let relative = leg.direction * leg.speed - theirs.velocity();
         let speed = relative.norm();
         if !(speed > NO_RELATIVE_SPEED && from < until) {
             return None;
         }
-        let offset = target.pose_at(from).position - leg.start;
+        let offset = theirs.pose.position - steady_on(leg, from).pose.position;
         let closest = from + offset.dot(&relative) / (speed * speed);
         let distance = cross(relative, offset).abs() / speed;
         let time = from.max(closest - soon);
@@ -141,6 +136,31 @@ pub fn first_risk(
             own,
             target,
         })
+    })
+}
+
+/// The legs of the desired trajectory until the horizon, and the straight runs of the target: each
+/// pair with its time interval, and the target's nominal motion in it.
+fn stretches<'a>(
+    desired: &'a DesiredTrajectory,
+    target: &'a ShipTrack,
+    horizon: f64,
+) -> impl Iterator<Item = (&'a DesiredLeg, [f64; 2], impl Fn(f64) -> SteadyShip)> {
+    let ends = target
+        .runs()
+        .skip(1)
+        .map(|run| run.0)
+        .chain([f64::INFINITY]);
+    let runs: Vec<_> = target.runs().zip(ends).collect();
+    desired.legs().iter().flat_map(move |leg| {
+        let [start, end] = [leg.start_time, leg.end_time().min(horizon)];
+        runs.clone()
+            .into_iter()
+            .filter_map(move |((begins, pose, speed), ends)| {
+                let (from, until) = (start.max(begins), end.min(ends));
+                let motion = move |time: f64| SteadyShip::new(pose, speed).moved(time - begins);
+                (from <= until).then_some((leg, [from, until], motion))
+            })
     })
 }
 
@@ -162,34 +182,47 @@ pub fn encounter(
         undisturbed_dcpa: f64::INFINITY,
         undisturbed_tcpa: 0.0,
     };
-    for leg in desired.legs() {
-        let (from, until) = (leg.start_time, leg.end_time().min(horizon));
-        if !(from <= until) {
-            break;
+    let mut see = |closest: Closest| {
+        if closest.distance < found.undisturbed_dcpa {
+            found.undisturbed_dcpa = closest.distance;
+            found.undisturbed_tcpa = closest.time;
         }
-        let position = |time: f64| leg.start + leg.direction * (leg.speed * (time - from));
-        let closest = match &target.motion {
-            Motion::Ship(ship) => {
+        found.undisturbed_dcpa
+    };
+    let mut known = f64::INFINITY;
+    match &target.motion {
+        Motion::Ship(ship) => {
+            for (leg, [from, until], theirs) in stretches(desired, ship, horizon) {
                 // the headings are constant: the Minkowski difference of the hulls only translates
                 let heading = Pose::new(Vector::zeros(), heading_of(leg.direction));
-                let other = Pose::new(Vector::zeros(), ship.pose.heading);
+                let first = theirs(from);
+                let other = Pose::new(Vector::zeros(), first.pose.heading);
                 let both = ship
                     .hull
                     .polygon(&other)
                     .minkowski_sum(&own.hull.polygon(&heading).negated());
-                let closing = leg.speed + ship.speed;
-                least([from, until], closing, found.undisturbed_dcpa, |time| {
-                    both.signed_distance(position(time) - ship.pose_at(time).position)
-                })
+                let closing = leg.speed + first.speed;
+                known = see(least([from, until], closing, known, |time| {
+                    let ours = leg.start + leg.direction * (leg.speed * (time - leg.start_time));
+                    both.signed_distance(ours - theirs(time).pose.position)
+                }));
             }
-            Motion::Sets(sets) => {
-                let known = found.undisturbed_dcpa;
-                closest_to_sets(sets, position, leg.speed, [from, until], known)
+        }
+        Motion::Sets(sets) => {
+            for leg in desired.legs() {
+                let (from, until) = (leg.start_time, leg.end_time().min(horizon));
+                if !(from <= until) {
+                    break;
+                }
+                let position = |time: f64| leg.start + leg.direction * (leg.speed * (time - from));
+                known = see(closest_to_sets(
+                    sets,
+                    position,
+                    leg.speed,
+                    [from, until],
+                    known,
+                ));
             }
-        };
-        if closest.distance < found.undisturbed_dcpa {
-            found.undisturbed_dcpa = closest.distance;
-            found.undisturbed_tcpa = closest.time;
         }
     }
     found
@@ -299,7 +332,7 @@ mod tests {
     use super::*;
     use crate::colregs::compliance::{EncounterSamples, roles};
     use crate::geometry::ConvexPolygon;
-    use crate::target::{DomainKind, Representation, Uncertainty};
+    use crate::target::{DomainKind, KnownLeg, Representation, Uncertainty};
     use crate::trajectory::fixtures::desired;
     use crate::trajectory::{Segment, Trajectory};
     use crate::vessel::{Hull, fixtures};
@@ -356,12 +389,21 @@ mod tests {
     fn risk_matches_a_dense_scan_of_its_definition() {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let own = own_ship();
-        let mut found_some = 0;
+        let (mut found_some, mut turning) = (0, 0);
         for _ in 0..1500 {
             let mut within = |r: f64| rng.random_range(-r..r);
             let points = [(0.0, 0.0), (700.0, within(300.0)), (1200.0, within(600.0))];
             let desired = desired(&points, &[6.0; 2]);
-            let other = track(&anywhere(&mut within), 50.0);
+            let mut other = track(&anywhere(&mut within), 50.0);
+            // every second one turns on its route
+            if within(1.0) > 0.0 {
+                let place = other.pose.position + other.velocity() * (60.0 + within(50.0));
+                let next = place + Vector::new(within(900.0), within(900.0));
+                let speeds = [other.speed, 5.0 + within(3.0)];
+                let legs = [place, next].into_iter().zip(speeds);
+                other = other.with_route(legs.map(|(to, speed)| KnownLeg { to, speed }).collect());
+                turning += 1;
+            }
             let horizon = 200.0;
             let risk = first_risk(&own, &desired, &other, horizon, &Thresholds::STANDARD);
             let scan = (0..20_000)
@@ -370,8 +412,9 @@ mod tests {
                 .find(|t| {
                     let leg = &desired.legs()[usize::from(*t >= desired.legs()[1].start_time)];
                     let x = leg.start + leg.direction * (leg.speed * (t - leg.start_time));
-                    let r = other.pose_at(*t).position - x;
-                    let w = leg.direction * leg.speed - other.velocity();
+                    let there = SteadyShip::on_track(&other, *t);
+                    let r = there.pose.position - x;
+                    let w = leg.direction * leg.speed - there.velocity();
                     let tcpa = r.dot(&w) / w.dot(&w);
                     tcpa > 0.0 && tcpa <= 420.0 && (r - w * tcpa).norm() <= 100.0
                 });
@@ -386,7 +429,7 @@ mod tests {
                 other => panic!("{other:?}"),
             }
         }
-        assert!(found_some > 50);
+        assert!(found_some > 50 && turning > 600, "{found_some} {turning}");
     }
 
     /// A ship that crosses at 206 m, with hulls that may touch a margin of 185 m, is at risk for the
@@ -422,7 +465,16 @@ mod tests {
         let (own, desired) = (own_ship(), desired(&way, &[6.0; 2]));
         for _ in 0..60 {
             let mut within = |r: f64| rng.random_range(-r..r);
-            let other = track(&anywhere(&mut within), 80.0);
+            let mut other = track(&anywhere(&mut within), 80.0);
+            if within(1.0) > 0.0 {
+                let to = other.pose.position + other.velocity() * (50.0 + within(40.0));
+                let next = to + Vector::new(within(900.0), within(900.0));
+                let legs = [to, next].map(|to| KnownLeg {
+                    to,
+                    speed: other.speed,
+                });
+                other = other.with_route(legs.to_vec());
+            }
             let found = met(&way, Motion::Ship(other.clone()), 150.0);
             let scan = (0..=15_000)
                 .map(|i| {

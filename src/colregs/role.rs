@@ -102,7 +102,14 @@ impl SteadyShip {
 
     /// A target on its nominal track at a time, seconds.
     pub fn on_track(track: &ShipTrack, time: f64) -> Self {
-        Self::new(track.pose_at(time), track.speed)
+        let (pose, speed) = track.nominal_at(time);
+        Self::new(pose, speed)
+    }
+
+    /// The ship `time` seconds later, on the same course at the same speed.
+    pub fn moved(&self, time: f64) -> Self {
+        let place = self.pose.position + self.velocity() * time;
+        Self::new(Pose::new(place, self.pose.heading), self.speed)
     }
 
     /// m/s.

@@ -11,7 +11,7 @@ use crate::frame::{
 };
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::scenario::Fault;
-use crate::target::{DomainKind, ShipTrack, Target, TimedVelocitySet};
+use crate::target::{DomainKind, KnownLeg, ShipTrack, Target, TimedVelocitySet};
 use crate::vessel::Hull;
 use sets::{InitialSetDocument, VelocitySetDocument};
 
@@ -50,6 +50,16 @@ pub struct ShipDocument {
     pub kept_positions: Option<InitialSetDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_velocities: Option<VelocitySetDocument>,
+    /// The known route from the position on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub route: Vec<KnownLegDocument>,
+}
+
+/// Leg of a known route.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KnownLegDocument {
+    pub to: PositionDocument,
+    pub speed_mps: f64,
 }
 
 /// Velocity set with the end of its time interval.
@@ -92,6 +102,21 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
         kept_positions: (track.kept_positions.clone()).map(|set| (&ConvexSet::from(set)).into()),
         kept_velocities: (track.kept_velocities.clone()).map(|set| (&ConvexSet::from(set)).into()),
+        route: (track.route.iter())
+            .map(|leg| KnownLegDocument {
+                to: position(leg.to),
+                speed_mps: leg.speed,
+            })
+            .collect(),
+    }
+}
+
+impl KnownLegDocument {
+    fn leg(&self) -> KnownLeg {
+        KnownLeg {
+            to: self.to.point(),
+            speed: self.speed_mps,
+        }
     }
 }
 
@@ -117,6 +142,7 @@ impl ShipDocument {
             turn_rate: radians_from_deg(self.turn_rate_deg_per_s),
             kept_positions: kept("kept_positions", positions)?,
             kept_velocities: kept("kept_velocities", velocities)?,
+            route: self.route.iter().map(KnownLegDocument::leg).collect(),
             domain: DomainKind::Hull,
         })
     }

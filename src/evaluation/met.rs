@@ -8,8 +8,8 @@ use crate::evaluation::distance::piece::{Piece, at_rest};
 use crate::evaluation::distance::turn::{Turn, least_while_turning};
 use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::evaluation::sets::space_time_set::{end_of, since};
-use crate::frame::{Side, cross, direction};
-use crate::geometry::{ConvexPolygon, ConvexSet, outer_enclosing_ellipse};
+use crate::frame::{Pose, Side, cross, direction};
+use crate::geometry::{ConvexSet, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 
@@ -56,9 +56,20 @@ pub(super) fn passage<P: Piece>(
                 least.certified &= turning.certified;
                 least
             };
-            let hull = ship.hull.polygon(&ship.pose);
-            let held = Uncertainty::constant(hull, ConvexPolygon::point(ship.velocity()));
-            let nominal = MovingSlabs::new(&held);
+            // on each run of a known route the hull has the heading of the run
+            let runs: Vec<_> = ship.runs().collect();
+            let hull_until = |until: f64| {
+                let begun = runs.iter().take_while(|(since, ..)| *since < until);
+                let heading = begun
+                    .last()
+                    .map_or(ship.pose.heading, |(_, pose, _)| pose.heading);
+                ship.hull.polygon(&Pose::new(ship.pose.position, heading))
+            };
+            let velocities = ship.nominal_velocities();
+            let nominal = match velocities.len() {
+                1 => MovingSlabs::new(&Uncertainty::new(hull_until(f64::INFINITY), velocities)),
+                _ => MovingSlabs::growing(hull_until, &velocities, end),
+            };
             let unknown = ship.outer_positions();
             let turned = |until: f64| {
                 let hull = TurnedHull::of(ship, until).outer_polygon();

@@ -4,7 +4,7 @@ use crate::geometry::ConvexPolygon;
 use crate::numerics::bisected;
 use crate::obstacle::{ConvexObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::NominalTarget;
-use crate::target::{Motion, Target};
+use crate::target::{Motion, Target, Uncertainty};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
@@ -30,11 +30,18 @@ pub(super) fn nominal(target: &Target, hard: &Obstacle, own: Hull) -> NominalTar
         };
     };
     let moving = |initial: ConvexPolygon| {
+        let sets = Uncertainty::new(initial, ship.nominal_velocities());
         let velocity = ConvexPolygon::point(ship.velocity());
-        PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
+        Obstacle::new(target.name.clone(), sets.clone()).unwrap_or_else(|_| {
+            PolytopeObstacle::new(target.name.clone(), hard.outer_section(0.0), velocity).into()
+        })
+    };
+    let hull = match ship.route.is_empty() {
+        true => ship.hull.polygon(&ship.pose),
+        false => ship.outer_hull(0.0),
     };
     NominalTarget {
-        hull: moving(ship.hull.polygon(&ship.pose)),
+        hull: moving(hull),
         set: moving(hard.outer_section(0.0)),
         own,
     }

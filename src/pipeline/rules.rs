@@ -57,8 +57,12 @@ fn asking<'a>(
     both.filter_map(|(target, sets)| {
         let track = target.ship()?;
         let role = sets.encounter.role;
-        let ship = SteadyShip::on_track(track, 0.0);
         let risk = sets.encounter.risk?;
+        // on a known route the course on which the risk begins, as if it had come straight
+        let ship = match risk.time > 0.0 && !track.route.is_empty() {
+            true => risk.target.moved(-risk.time),
+            false => SteadyShip::on_track(track, 0.0),
+        };
         let tcpa = if risk.time < 0.0 {
             risk.with_ships_at(0.0, scenario.own_ship.pose.position, ship)
                 .tcpa()

@@ -46,14 +46,17 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     }
     let is_aside = |target: &Target| {
         let ship = target.ship();
-        ship.is_some_and(|ship| ship.starboard_turn != 0.0 || ship.kept_velocities.is_some())
+        ship.is_some_and(|ship| {
+            let is_known = ship.kept_velocities.is_some() || !ship.route.is_empty();
+            ship.starboard_turn != 0.0 || is_known
+        })
     };
     if scenario.max_risk > 0.0 && scenario.targets.iter().any(is_aside) {
         faults.push(Fault::new(
             "planner.max_risk",
             scenario.max_risk,
             "0: risk counts from the middle of the velocities, which is not the expected one of a \
-             target with starboard_turn_deg or velocity_set",
+             target with starboard_turn_deg, velocity_set or waypoints",
         ));
     }
     faults.extend(lag(scenario));

@@ -295,9 +295,24 @@ fn alternatives(field: &Field, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
 }
 
 fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
-    let points: Vec<Option<Vector>> = fields.iter().map(|e| plane.position(e)).collect();
+    let (first, others) = fields.split_first()?;
+    let first = plane.position(first);
+    let others = waypoints_from(first, others, plane);
+    let mut points = vec![first?];
+    points.extend(others?);
+    Some(points)
+}
+
+/// Waypoints after a known place.
+pub(super) fn waypoints_from(
+    start: Option<Vector>,
+    fields: &[Field],
+    plane: &Plane,
+) -> Option<Vec<Vector>> {
+    let points = fields.iter().map(|field| plane.position(field));
+    let points: Vec<Option<Vector>> = std::iter::once(start).chain(points).collect();
     let mut sound = true;
-    for (pair, field) in points.windows(2).zip(&fields[1..]) {
+    for (pair, field) in points.windows(2).zip(fields) {
         let [Some(before), Some(here)] = pair else {
             continue;
         };
@@ -317,7 +332,7 @@ fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
             sound = false;
         }
     }
-    let points: Option<Vec<Vector>> = points.into_iter().collect();
+    let points: Option<Vec<Vector>> = points.into_iter().skip(1).collect();
     points.filter(|_| sound)
 }
 

@@ -2,18 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use super::check::{hull, pose};
+use super::check::{hull, pose, waypoints_from};
 use super::plane::Plane;
 use super::simulation::{SimulatedTarget, simulated};
 use super::{Behaviour, NotReported, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
-use crate::frame::{Pose, heading_from_course_deg, radians_from_deg};
+use crate::frame::{
+    Pose, Vector, course_deg_from_heading, deg_from_radians, heading_from_course_deg,
+    radians_from_deg, wrap,
+};
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::input::{Field, Table};
-use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use crate::target::{DomainKind, KnownLeg, Motion, Representation, ShipTrack, Target};
 use crate::text::LINE;
 use crate::tolerance;
 use crate::vessel::OwnShip;
+
+/// Degrees by which the first leg of a route may differ from the course beside the spread.
+const ROUTE_COURSE_DEG: f64 = 1.0;
 
 /// Keys of what a tracked ship may do, and of the accuracy of its velocity.
 const SPREADS: [&str; 8] = [
@@ -155,9 +161,11 @@ fn motion(table: &mut Table, plane: &Plane) -> Option<(Motion, Representation)> 
         {
             "\"polytope\": polygons of velocities one after another have no ellipsoid"
         }
-        (Motion::Ship(ship), Representation::Ellipsoid) if ship.turn_rate > 0.0 => {
-            "\"polytope\": a ship that may turn has velocity sets one after another, \
-             which have no ellipsoid"
+        (Motion::Ship(ship), Representation::Ellipsoid)
+            if ship.turn_rate > 0.0 || !ship.route.is_empty() =>
+        {
+            "\"polytope\": a ship that may turn, or has waypoints, has velocity sets one after \
+             another, which have no ellipsoid"
         }
         _ => "",
     };
@@ -174,6 +182,9 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let position_std = table.number("position_std_m", limits::DISTANCE);
     let domain = table.read_or("domain", DomainKind::Colregs, domain);
     let given = table.has("velocity_set").then(|| velocities(table));
+    let has_route = table.has("waypoints");
+    let start = pose.map(|pose| pose.position);
+    let route = route(table, plane, start, speed);
     let speed_std = table.speed("speed_std", limits::SPEED);
     let course_std = table.number("course_std_deg", limits::COURSE_SPREAD);
     let speed_spread = table.speed("speed_spread", limits::SPEED);
@@ -191,6 +202,9 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         domain,
         ..ShipTrack::exact(pose?, speed?, hull?)
     };
+    if has_route {
+        return on_route(ship, route?);
+    }
     let Some(given) = given else {
         return Some(ship);
     };
@@ -202,6 +216,77 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         );
     }
     Some(ship.with_velocities(velocities))
+}
+
+/// The known route of a ship from its position on, with the field that has it; `None` for a fault,
+/// and without one.
+fn route<'a>(
+    table: &mut Table<'a>,
+    plane: &Plane,
+    start: Option<Vector>,
+    speed: Option<f64>,
+) -> Option<(Field<'a>, Vec<KnownLeg>)> {
+    let Some(field) = table.take("waypoints") else {
+        let nothing = "nothing: the target has no waypoints";
+        table.forbid("leg_speeds_mps", nothing);
+        table.forbid("leg_speeds_kn", nothing);
+        return None;
+    };
+    for key in ["velocity_set", "starboard_turn_deg", "turn_rate_deg_per_s"] {
+        table.forbid(
+            key,
+            "nothing beside waypoints: they say where the target turns",
+        );
+    }
+    let places = field.list(1..=limits::TARGET_WAYPOINTS, "positions");
+    let speeds = table.speeds("leg_speeds", limits::WAY);
+    let places = places?;
+    let route = waypoints_from(start, &places, plane);
+    let speeds = match speeds {
+        Some((field, speeds)) => {
+            let (found, legs) = (speeds?, places.len());
+            if found.len() != legs {
+                let allowed = format_args!("{legs}, one for each waypoint");
+                return field.reject(format_args!("{} speeds", found.len()), allowed);
+            }
+            found
+        }
+        None if limits::WAY.contains(speed?) => vec![speed?; places.len()],
+        None => {
+            let found = "a route of a target at rest";
+            return field.reject(found, "leg_speeds_mps, or a speed above 0");
+        }
+    };
+    let legs = route?.into_iter().zip(speeds);
+    let legs = legs.map(|(to, speed)| KnownLeg { to, speed });
+    Some((field, legs.collect()))
+}
+
+/// The ship on its route, if its course and speed are those of the first leg within what it may do.
+fn on_route(ship: ShipTrack, (field, route): (Field, Vec<KnownLeg>)) -> Option<ShipTrack> {
+    let (course, speed) = (ship.pose.heading, ship.speed);
+    let (widest, fastest) = (ship.course_half_width(), ship.speed_half_width());
+    let ship = ship.with_route(route);
+    let off = wrap(course - ship.pose.heading).abs();
+    if !(off <= widest + radians_from_deg(ROUTE_COURSE_DEG)) {
+        let found = format_args!(
+            "a first leg of course {:.1}°, which is {:.1}° from course_deg",
+            course_deg_from_heading(ship.pose.heading),
+            deg_from_radians(off)
+        );
+        return field.reject(
+            found,
+            "a first leg within course_spread_deg and 1° of course_deg",
+        );
+    }
+    if !((speed - ship.speed).abs() <= fastest + tolerance::ALTERATION_MPS) {
+        let found = format_args!("{} m/s on the first leg, and {speed} m/s now", ship.speed);
+        return field.reject(
+            found,
+            "a first leg_speeds_mps within speed_spread_mps of speed_mps",
+        );
+    }
+    Some(ship)
 }
 
 /// The velocities that a tracked ship may take, given as a polygon in place of its spreads.

@@ -194,6 +194,46 @@ fn a_ship_may_have_its_velocities_as_a_set() {
     }
 }
 
+/// The keys of a target on a route west from (1000, 0) at 5 m/s, and the key of the fault, if any.
+const ROUTES: &str = r#"
+waypoints = [{ east_m = 500, north_m = 0 }, { east_m = 500, north_m = 400 }] |
+waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_kn = [10] | targets[0].waypoints
+waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_kn = [10]\nspeed_spread_mps = 0.2 |
+waypoints = [{ east_m = 500, north_m = 12 }]\ncourse_spread_deg = 1 |
+waypoints = [{ east_m = 500, north_m = 12 }] | targets[0].waypoints
+waypoints = [] | targets[0].waypoints
+waypoints = [{ east_m = 1000, north_m = 0 }] | targets[0].waypoints[0]
+waypoints = [{ east_m = -9000000, north_m = 0 }] | targets[0].waypoints[0]
+waypoints = [{ east_m = 500, north_m = 0 }, { east_m = 500, north_m = 0 }] | targets[0].waypoints[1]
+waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_mps = [5, 5] | targets[0].leg_speeds_mps
+waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_mps = [0] | targets[0].leg_speeds_mps[0]
+waypoints = [{ east_m = 500, north_m = 0 }]\nturn_rate_deg_per_s = 1 | targets[0].turn_rate_deg_per_s
+waypoints = [{ east_m = 500, north_m = 0 }]\nstarboard_turn_deg = 1 | targets[0].starboard_turn_deg
+waypoints = [{ east_m = 500, north_m = 0 }]\nvelocity_set = { vertices_mps = [[-5, 0]] } | targets[0].velocity_set
+waypoints = [{ east_m = 500, north_m = 0 }]\nrepresentation = "ellipsoid" | targets[0].representation
+leg_speeds_mps = [5] | targets[0].leg_speeds_mps
+"#;
+
+#[test]
+fn a_route_of_a_target_agrees_with_its_course_and_speed() {
+    let ship = "[[targets]]\nname = \"other\"\nposition = { east_m = 1000, north_m = 0 }\n\
+                course_deg = 270\nspeed_mps = 5\nlength_m = 50\nbeam_m = 10\n";
+    for [keys, path] in rows(ROUTES) {
+        let keys = keys.replace("\\n", "\n");
+        let text = format!("{SCENARIO}\n{ship}{keys}");
+        let found = Scenario::parse(&text);
+        let expected: Vec<&str> = (!path.is_empty()).then_some(path).into_iter().collect();
+        match found {
+            Ok(_) => assert!(expected.is_empty(), "{keys}"),
+            Err(_) => assert_eq!(paths(&text), expected, "{keys}"),
+        }
+    }
+    let risky = format!(
+        "{SCENARIO}[planner]\nmax_risk = 0.1\n{ship}waypoints = [{{ east_m = 500, north_m = 0 }}]"
+    );
+    assert_eq!(paths(&risky), ["planner.max_risk"]);
+}
+
 /// Own ship's keys, the rest of the file, and the key of the fault, if any. From 2.5 to 5 m/s at
 /// 0.1 m/s² it is 31.25 m off; the path-time planner also stops, which takes 125 m.
 const ACCELERATIONS: &str = r#"

@@ -57,6 +57,120 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
     }
 }
 
+/// Places and speeds of a route of up to four legs, its first along the ship's course.
+fn routed_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
+    let ship = ShipTrack {
+        speed_spread: rng.random_range(0.0..1.0),
+        course_spread: rng.random_range(0.0..0.3),
+        ..ShipTrack::exact(
+            Pose::new(Vector::new(200.0, -50.0), 0.0),
+            5.0,
+            Hull::new(rng.random_range(10.0..60.0), 10.0),
+        )
+    };
+    let (mut place, mut heading) = (ship.pose.position, rng.random_range(-3.0..3.0));
+    let legs = (0..rng.random_range(1..5)).map(|_| {
+        place += direction(heading) * rng.random_range(100.0..800.0);
+        heading += rng.random_range(-2.0..2.0);
+        KnownLeg {
+            to: place,
+            speed: rng.random_range(2.0..8.0),
+        }
+    });
+    let legs = legs.collect();
+    ship.with_route(legs)
+}
+
+#[test]
+fn the_nominal_motion_of_a_route_passes_its_places_in_time() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);
+    for _ in 0..100 {
+        let ship = routed_ship(&mut rng);
+        let (mut place, mut time) = (ship.pose.position, 0.0);
+        assert_eq!(ship.pose_at(-1.0).position, place - ship.velocity());
+        for leg in &ship.route {
+            let way = leg.to - place;
+            let middle = ship.nominal_at(time + 0.5 * way.norm() / leg.speed);
+            assert!((middle.0.position - place - way * 0.5).norm() < 1e-6);
+            assert!((middle.0.ahead() - way.normalize()).norm() < 1e-9);
+            assert_eq!(middle.1, leg.speed);
+            (place, time) = (leg.to, time + way.norm() / leg.speed);
+            assert!((ship.pose_at(time).position - place).norm() < 1e-6);
+        }
+        let on = ship.nominal_at(time + 10.0);
+        assert!((on.0.position - place - on.0.ahead() * (10.0 * on.1)).norm() < 1e-6);
+    }
+}
+
+/// Ships that keep to the assumption, each with a speed and an error of course of its own that
+/// change at random, and turns on a radius of its own. Their places and hulls are in the sets.
+#[test]
+fn a_ship_on_its_route_stays_within_its_sets() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+    let mut turned = 0;
+    for _ in 0..300 {
+        let ship = routed_ship(&mut rng);
+        let sets = ship.outer_velocity_sets(0.0, 600.0);
+        assert!(sets.windows(2).all(|w| w[0].until < w[1].until));
+        let sets = Uncertainty::new(ConvexPolygon::point(ship.pose.position), sets);
+        let hull = ship.outer_hull(600.0).translated(-ship.pose.position);
+        let radius = rng.random_range(0.0..TURN_LENGTHS) * ship.hull.length;
+        let (mut place, mut leg, mut made_good) = (ship.pose.position, 0, 0.0);
+        let (mut speed, mut error, mut since) = (0.0, 0.0, f64::INFINITY);
+        let starts: Vec<Vector> = std::iter::once(ship.pose.position)
+            .chain(ship.route.iter().map(|l| l.to))
+            .collect();
+        let ways: Vec<Vector> = starts.windows(2).map(|w| w[1] - w[0]).collect();
+        let step = 0.25;
+        for k in 0..2400 {
+            if since >= 20.0 {
+                speed = rng.random_range(-1.0..=1.0) * ship.speed_spread;
+                error = rng.random_range(-1.0..=1.0) * ship.course_spread;
+                since = 0.0;
+            }
+            since += step;
+            let length = ways[leg].norm();
+            let mut course = heading_of(ways[leg]);
+            let mut own = ship.route[leg].speed;
+            // a turn on an arc that fits: it begins before the place and ends after it
+            if let Some(next) = ways.get(leg + 1) {
+                let turn = wrap(heading_of(*next) - course);
+                let room = 0.5 * length.min(next.norm());
+                let ahead = (radius * (0.5 * turn.abs()).tan()).min(room);
+                let arc = ahead / (0.5 * turn.abs()).tan() * turn.abs();
+                let over = made_good - (length - ahead);
+                if over >= arc {
+                    (leg, made_good) = (leg + 1, ahead + (over - arc));
+                    turned += 1;
+                    course = heading_of(*next);
+                    own = ship.route[leg].speed;
+                } else if over > 0.0 {
+                    course += turn * over / arc;
+                }
+            }
+            let now = (own + speed).max(0.0);
+            place += direction(course + error) * (now * step);
+            made_good += now * error.cos() * step;
+            let time = step * f64::from(k + 1);
+            let reached = sets.outer_section(time);
+            // a step over a joint of the legs
+            assert!(
+                reached.signed_distance(place) <= 10.0 * step,
+                "{ship:?} {time}"
+            );
+            let lies = ship
+                .hull
+                .polygon(&Pose::new(Vector::zeros(), course + error));
+            assert!(
+                lies.vertices()
+                    .iter()
+                    .all(|p| hull.signed_distance(*p) < 1e-9)
+            );
+        }
+    }
+    assert!(turned > 300, "{turned}");
+}
+
 /// A tanker, a ferry and a raft: at every possible heading the hull is inside the outer hull, which
 /// is only slightly larger.
 #[test]

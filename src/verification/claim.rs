@@ -7,11 +7,12 @@ use crate::document::{
     TargetDocument, planner_names,
 };
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
-use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::frame::{Pose, Vector, heading_from_course_deg, wrap};
 use crate::geometry::Polygon;
 use crate::input::Fault;
-use crate::target::{Motion, Representation, Target, TimedVelocitySet, Uncertainty};
+use crate::target::{Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use crate::text::short_numbers;
+use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
@@ -19,6 +20,9 @@ use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 pub(super) const PATH_TIME: &str = "path-time";
 /// Name of the planner whose plans are motions under forces.
 pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
+
+/// Metres; the least leg of a scenario file.
+const SHORTEST_LEG_M: f64 = 1e-3;
 
 const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
 const OBJECTIVES: [&str; 5] = [
@@ -304,7 +308,9 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
             within(&course_spread, ship.course_spread_deg, 0.0, 180.0)?;
             let turn = at("starboard_turn_deg");
             within(&turn, ship.starboard_turn_deg, -180.0, 180.0)?;
-            Motion::Ship(placed(&format!("{path}.ship"), ship.track())?)
+            let track = placed(&format!("{path}.ship"), ship.track())?;
+            known_route(&at("route"), &track)?;
+            Motion::Ship(track)
         }
         (None, Some(initial)) if !target.velocity_sets.is_empty() => {
             explicit(path, initial, target)?
@@ -319,6 +325,31 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
         motion,
         representation: *representation,
     })
+}
+
+/// A known route goes from place to place, and begins with the course and the speed of the ship.
+fn known_route(path: &str, ship: &ShipTrack) -> Result<(), ClaimError> {
+    let mut place = ship.pose.position;
+    for (index, leg) in ship.route.iter().enumerate() {
+        positive(&format!("{path}[{index}].speed_mps"), leg.speed)?;
+        // negated on purpose: a NaN is no way
+        if !((leg.to - place).norm() >= SHORTEST_LEG_M) {
+            let found = "the place before it again";
+            return Err(fault(
+                &format!("{path}[{index}].to"),
+                found,
+                "another place",
+            ));
+        }
+        place = leg.to;
+    }
+    let begun = ship.clone().with_route(ship.route.clone());
+    let turned = wrap(begun.pose.heading - ship.pose.heading).abs();
+    if turned <= tolerance::JOINT_RAD && begun.speed == ship.speed {
+        return Ok(());
+    }
+    let found = "a first leg with another course or speed";
+    Err(fault(path, found, "those of the ship"))
 }
 
 fn explicit(

@@ -101,7 +101,9 @@ impl<'a> Known<'a> {
             Motion::Sets(sets) => supports(&sets.initial),
         };
         let motion = match &target.motion {
-            Motion::Ship(ship) if scale == 1.0 && ship.kept_velocities.is_none() => {
+            Motion::Ship(ship)
+                if scale == 1.0 && ship.kept_velocities.is_none() && ship.route.is_empty() =>
+            {
                 Moving::Ship(ship.clone())
             }
             _ => {

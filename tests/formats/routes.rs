@@ -3,8 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Vector, direction, heading_of, wrap};
+use searoom::geometry::outer_disc;
 use searoom::scenario::import::{Assumed, Contents, Imported};
-use searoom::target::Target;
+use searoom::target::{Motion, Target, Uncertainty};
 use serde_json::{Value, json};
 
 use super::{dnv_01, imported, situations};
@@ -138,7 +139,7 @@ const INSIDE: f64 = 1e-4;
 fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     let (speed_spread, course_spread) = (0.5, 5.0_f64.to_radians());
-    let (mut deepest, mut followed) = (f64::NEG_INFINITY, 0);
+    let (mut deepest, mut followed, mut known) = (f64::NEG_INFINITY, 0, 0);
     for _ in 0..60 {
         let declared = Declared::random(&mut rng);
         let situation =
@@ -156,7 +157,18 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let Imported {
             scenario, notes, ..
         } = imported(&situation);
-        let target = &scenario.targets[0];
+        let mut target = scenario.targets[0].clone();
+        if let Some(ship) = target.ship() {
+            known += 1;
+            assert_eq!(ship.route.len(), declared.knots.len());
+            let velocities = ship.outer_velocity_sets(0.0, scenario.horizon);
+            let own = &scenario.own_ship;
+            let hulls = ship.hull.half_diagonal() + own.hull.half_diagonal();
+            let around = outer_disc(hulls + own.safety_margin, 0.0);
+            let initial = around.translated(ship.pose.position);
+            target.motion = Motion::Sets(Uncertainty::new(initial, velocities));
+        }
+        let target = &target;
         let sets = &target.sets().expect("sets").velocities;
         assert!(sets.len() > 1 && sets.len() <= 50, "{}", sets.len());
         let late = notes.iter().any(|n| n.contains("appears after"));
@@ -220,7 +232,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
             }
         }
     }
-    assert!(followed > 500, "{followed}");
+    assert!(followed > 500 && known >= 3, "{followed} {known}");
     // the sets are not so large that the test cannot fail
     assert!(deepest > -400.0, "{deepest}");
 }

@@ -59,6 +59,12 @@ a larger target | /targets/0/initial_set/shape_m2/0/0 * 1.1 | too small for the 
 a faster target | /targets/0/velocity_sets/0/shape_m2_per_s2/1/1 * 1.1 | too small for the velocity set
 a larger ellipse | /obstacles/0/initial_set/shape_m2/*/* * 9 | set of 'tracked': distance
 "#;
+const ROUTE: &str = r#"
+a later turn | /targets/0/ship/route/0/to/east_m + -60 | too small for the velocities of the target
+a turn beyond | /targets/0/ship/route/1/to/east_m + -300 | too small for the velocities of the target
+a faster leg | /targets/0/ship/route/1/speed_mps + 0.5 | too small for the velocities of the target
+no route | /targets/0/ship/route = [] | too small for the velocities of the target
+"#;
 const RISK: &str = r#"
 less risk than was taken | /cost/max_risk * 0.9 | cost.max_risk
 less risk accepted | /max_risk = 0.1 |
@@ -103,6 +109,8 @@ fn what_only_some_plans_have_is_held_too() {
     let slabs = turning["obstacles"].as_array();
     assert!(slabs.is_some_and(|slabs| slabs.len() > 1));
     assert_rejected(&turning, TURNING);
+    let route = document(scenario("uncertainty/known-route.toml"));
+    assert_rejected(&route, ROUTE);
     assert_rejected(
         &document(scenario("uncertainty/changing-velocities.toml")),
         TIMED_SETS,

@@ -237,7 +237,7 @@ impl OwnSamples {
 
     /// Greatest closing speed of own ship and a target, m/s.
     pub(crate) fn closing(&self, target: &ShipTrack) -> f64 {
-        self.greatest_speed + target.speed
+        self.greatest_speed + target.greatest_speed()
     }
 
     /// All samples of a target, or the nearest sample alone if the hulls are never within `far`
@@ -250,7 +250,7 @@ impl OwnSamples {
     ) -> EncounterSamples {
         let nominal = |time: f64| SteadyShip::on_track(target, time);
         let near = || match memory {
-            None if far.is_finite() => self.nearest(target),
+            None if far.is_finite() && target.route.is_empty() => self.nearest(target),
             _ => None,
         };
         let samples = match near() {

@@ -28,11 +28,12 @@ impl TurnedHull {
     pub fn of(ship: &ShipTrack, time: f64) -> Self {
         let (l, b) = (ship.hull.length, ship.hull.beam);
         let corners = [(l, b), (-l, b), (-l, -b), (l, -b)];
+        let (middle, spread) = ship.headings(time);
         Self {
             center: ship.pose.position,
-            corners: corners.map(|(x, y)| ship.middle_course() + y.atan2(x)),
+            corners: corners.map(|(x, y)| middle + y.atan2(x)),
             reach: 0.5 * l.hypot(b),
-            spread: ship.heading_spread(time),
+            spread,
         }
     }
 

@@ -1,10 +1,10 @@
 //! Imazu's encounters as one JSON file: `own_ship` for all of them, `cases` and `variants` of them.
 
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::track::Track;
 use crate::frame::{Pose, Side, Vector, heading_from_course_deg, wrap};
 use crate::input::{Fault, Faults, Field, every};
 use crate::scenario::limits;
+use crate::target::route::Track;
 
 /// Cases of one file.
 const CASES: usize = 10_000;

@@ -3,11 +3,13 @@
 
 use super::assumed::{ASSUMED_SPEEDS, Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
 use super::situation::{GivenHull, Other, Own, Situation};
-use super::track::{Spread, Track};
-use crate::frame::{Geographic, Pose, Vector, course_deg_from_heading, deg_from_radians};
+use crate::frame::{
+    Geographic, Pose, Vector, course_deg_from_heading, deg_from_radians, heading_of,
+};
 use crate::geometry::{ConvexPolygon, outer_disc};
 use crate::input::Fault;
 use crate::scenario::{Scenario, limits};
+use crate::target::route::{Spread, Track};
 use crate::vessel::Hull;
 
 /// A scenario made from an imported situation.
@@ -172,6 +174,21 @@ impl Writing<'_> {
                 under_way(&steady.pose, steady.speed),
                 steady.speed_spread
             );
+        } else if let Some(legs) = track.known_legs(limits::TARGET_WAYPOINTS) {
+            let Hull { length, beam } = hull;
+            let first = Pose::new(track.start, heading_of(legs[0].to - track.start));
+            let places: Vec<String> = legs.iter().map(|leg| position(leg.to)).collect();
+            let speeds: Vec<f64> = legs.iter().map(|leg| leg.speed).collect();
+            self.text += &format!(
+                "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
+                 course_spread_deg = {:?}\nwaypoints = [{}]\nleg_speeds_mps = {speeds:?}\n",
+                under_way(&first, legs[0].speed),
+                spread.speed,
+                deg_from_radians(spread.course),
+                places.join(", ")
+            );
+            self.notes
+                .push(format!("{name}: a track with changes, as waypoints"));
         } else {
             // explicit sets have no hull: the initial set contains both hulls and the margin
             let around = outer_disc(hull.half_diagonal() + clearance, 0.0);

@@ -4,7 +4,7 @@ use crate::frame::{Georeference, Pose, Side, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::vessel::Hull;
 
-use super::track::Track;
+use crate::target::route::Track;
 
 /// A checked situation in SI units and the east-north plane; [`Situation::scenario`] makes a
 /// scenario of it.

@@ -478,6 +478,10 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
                 ("a set of velocities".to_owned(), allowed.to_owned())
             },
         )?;
+        refuse_if(!ship.route.is_empty(), &format!("{path}.waypoints"), || {
+            let allowed = "nothing: the loop estimates a course; behaviour = \"track\" turns";
+            ("a known route".to_owned(), allowed.to_owned())
+        })?;
         let path = format!("{path}.not_reported");
         let missing = settings.not_reported.get(index).copied();
         let missing = missing.unwrap_or_default();

@@ -7,11 +7,11 @@ mod problem;
 use roxmltree::Document;
 
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::track::{RouteLeg, RoutePoint, Track};
 use super::xml::Xml;
 use crate::frame::{Pose, Vector, wrap};
 use crate::input::{Fault, Faults, Range, abbreviated};
 use crate::scenario::limits;
+use crate::target::route::{RouteLeg, RoutePoint, Track};
 use crate::text::is_line;
 use crate::vessel::Hull;
 use geometry::{Shape, State, shapes, state};

@@ -8,13 +8,13 @@ use std::collections::BTreeSet;
 
 use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::track::{RouteLeg, RoutePoint, TightTurn, Track};
 use crate::frame::{
     Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
 };
 use crate::input::{Fault, Faults, Field, Range};
 use crate::scenario::{limits, plane};
+use crate::target::route::{RouteLeg, RoutePoint, TightTurn, Track};
 use ship::{Initial, fixed, initial};
 
 /// Degrees: a heading nearer to the first leg's course than this is that course, rounded.

@@ -2,9 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::{DomainKind, KnownLeg, ShipTrack};
 use crate::frame::{Pose, Vector, heading_of, wrap};
 use crate::geometry::ConvexPolygon;
-use crate::target::{DomainKind, ShipTrack};
+use crate::tolerance;
 use crate::vessel::Hull;
 
 /// Half-widths up to which consecutive stretches become one: radians (1°) and m/s.
@@ -21,18 +22,18 @@ const MOST_CHANGES: usize = 1000;
 const NO_LENGTH: f64 = 1e-3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RoutePoint {
+pub(crate) struct RoutePoint {
     /// Metres.
-    pub(super) position: Vector,
+    pub(crate) position: Vector,
     /// Radius of the turn here, metres; `None` if unknown.
-    pub(super) turn_radius: Option<f64>,
+    pub(crate) turn_radius: Option<f64>,
 }
 
 /// A leg of a route: least and greatest speed, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RouteLeg {
-    pub(super) slow: f64,
-    pub(super) fast: f64,
+pub(crate) struct RouteLeg {
+    pub(crate) slow: f64,
+    pub(crate) fast: f64,
 }
 
 /// A stretch of a track: length, courses and speeds.
@@ -84,19 +85,19 @@ impl Stretch {
 
 /// Allowed deviation from the declared track.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spread {
+pub(crate) struct Spread {
     /// Half-width, m/s.
-    pub(super) speed: f64,
+    pub(crate) speed: f64,
     /// Half-width, radians.
-    pub(super) course: f64,
+    pub(crate) course: f64,
 }
 
 /// The turn at a point does not fit into the legs beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TightTurn {
-    pub(super) point: usize,
+pub(crate) struct TightTurn {
+    pub(crate) point: usize,
     /// Metres from the point at which the turn would begin.
-    pub(super) begins: f64,
+    pub(crate) begins: f64,
 }
 
 /// A declared track. The ship rests at its start until `appears`, follows the track, and continues
@@ -107,16 +108,18 @@ pub(super) struct TightTurn {
 /// `spread.speed`. It reaches the next stretch when it has made good the length of this one. At a
 /// point without a radius it turns on the spot, or on an arc of any radius up to the assumed one.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Track {
+pub(crate) struct Track {
     /// First position, metres.
-    pub(super) start: Vector,
+    pub(crate) start: Vector,
     appears: f64,
     stretches: Vec<Stretch>,
+    /// The legs, if each has one speed, and no turn has a radius of its own.
+    legs: Vec<KnownLeg>,
 }
 
 impl Track {
     /// A straight track without end, or a ship at rest: `course` radians, `speed` m/s.
-    pub(super) fn straight(start: Vector, course: f64, speed: f64) -> Self {
+    pub(crate) fn straight(start: Vector, course: f64, speed: f64) -> Self {
         let only = Stretch {
             shortest: f64::INFINITY,
             longest: f64::INFINITY,
@@ -129,13 +132,14 @@ impl Track {
             start,
             appears: 0.0,
             stretches: vec![only],
+            legs: Vec::new(),
         }
     }
 
     /// The track along a route of at least two different points; `legs` has one entry less. A point
     /// without a radius allows arcs up to `usual_radius`, if they fit. `heading` is the heading at
     /// the start, if it is not the course of the first leg.
-    pub(super) fn along(
+    pub(crate) fn along(
         points: &[RoutePoint],
         legs: &[RouteLeg],
         usual_radius: f64,
@@ -212,11 +216,12 @@ impl Track {
             start: points.first().map_or(Vector::zeros(), |p| p.position),
             appears: 0.0,
             stretches: joined_stretches(stretches),
+            legs: known_legs(points, legs, heading).unwrap_or_default(),
         })
     }
 
     /// This track, on which the ship appears at `time` seconds.
-    pub(super) fn appearing(self, time: f64) -> Self {
+    pub(crate) fn appearing(self, time: f64) -> Self {
         Self {
             appears: time,
             ..self
@@ -225,14 +230,14 @@ impl Track {
 
     /// Time at the end of the track at the mean speed of every stretch, seconds; infinite if the
     /// track has no end.
-    pub(super) fn end(&self) -> f64 {
+    pub(crate) fn end(&self) -> f64 {
         let took = |s: &Stretch| 0.5 * (s.shortest + s.longest) / (0.5 * (s.slow + s.fast));
         self.appears + self.stretches.iter().map(took).sum::<f64>()
     }
 
     /// A ship of constant course and speed, if the track is a single stretch that begins at t = 0.
     /// The velocities within its spreads contain those of the stretch; it has no hull.
-    pub(super) fn steady(&self, spread: &Spread) -> Option<ShipTrack> {
+    pub(crate) fn steady(&self, spread: &Spread) -> Option<ShipTrack> {
         match self.stretches.as_slice() {
             [only] if self.appears <= 0.0 => {
                 let mut ship = only.ship(spread);
@@ -243,6 +248,12 @@ impl Track {
         }
     }
 
+    /// The route as at most `most` legs that a tracked ship may have; `None` for another track.
+    pub(crate) fn known_legs(&self, most: usize) -> Option<&[KnownLeg]> {
+        let fits = self.appears <= 0.0 && (1..=most).contains(&self.legs.len());
+        fits.then_some(&self.legs)
+    }
+
     /// At most `most` velocity sets with their ends that contain, at every instant, the velocity of
     /// every ship that follows the track within the spread. Its position is then in the start ⊕
     /// their sum.
@@ -251,7 +262,7 @@ impl Track {
     /// the latest on the longest way at the least speed made good. Each set is the hull of the
     /// velocities of all stretches possible in its time interval. Excess changes are omitted: a
     /// longer interval has the hull of more stretches, which errs outward. O(stretches²).
-    pub(super) fn outer_velocity_sets(
+    pub(crate) fn outer_velocity_sets(
         &self,
         spread: &Spread,
         horizon: f64,
@@ -317,6 +328,42 @@ impl Track {
         };
         self.stretches.iter().enumerate().map(time).collect()
     }
+}
+
+/// Legs of one speed each, with those on one line at one speed as one.
+fn known_legs(
+    points: &[RoutePoint],
+    legs: &[RouteLeg],
+    heading: Option<f64>,
+) -> Option<Vec<KnownLeg>> {
+    let same = |leg: &RouteLeg| leg.slow == leg.fast && leg.slow > 0.0;
+    let given = points.iter().any(|point| point.turn_radius.is_some());
+    if heading.is_some() || given || !legs.iter().all(same) {
+        return None;
+    }
+    let mut known: Vec<KnownLeg> = Vec::new();
+    let mut from = points.first()?.position;
+    for (pair, leg) in points.windows(2).zip(legs) {
+        let to = pair[1].position;
+        let next = KnownLeg {
+            to,
+            speed: leg.fast,
+        };
+        match known.last_mut() {
+            Some(last) if is_one_line([from, last.to, to]) && last.speed == next.speed => {
+                *last = next;
+            }
+            _ => {
+                from = pair[0].position;
+                known.push(next);
+            }
+        }
+    }
+    Some(known)
+}
+
+fn is_one_line([from, by, to]: [Vector; 3]) -> bool {
+    wrap(heading_of(to - by) - heading_of(by - from)).abs() <= tolerance::JOINT_RAD
 }
 
 fn joined_stretches(stretches: Vec<Stretch>) -> Vec<Stretch> {
