@@ -65,6 +65,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("roxmltree", &["scenario/import/"]),
     ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
+    ("textwrap", &["cli/output/mod.rs"]),
     ("to_degrees", &["frame.rs"]),
     ("to_radians", &["frame.rs"]),
     // nothing outside asks which planner it has

@@ -71,7 +71,7 @@ fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<Str
         Ok(Imported {
             scenario, notes, ..
         }) if errors.is_empty() => {
-            notes.iter().for_each(|note| output.note(note));
+            output.notes(None, &[(String::new(), notes)]);
             Ok((scenario, query))
         }
         _ => Err(errors),

@@ -30,9 +30,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
         Ok((run, notes)) => {
-            for note in notes {
-                output.note(&note);
-            }
+            output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {
                 output.note(&no_return_reason(&run));

@@ -34,6 +34,10 @@ use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
+/// The JSON schema of a scenario file. It says what the reader accepts, key by key; what one key
+/// says of another is left to the reader.
+pub const SCHEMA: &str = include_str!("../../docs/schema/scenario.schema.json");
+
 /// Degree to which a plan follows the collision regulations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compliance {
