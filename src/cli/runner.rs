@@ -127,7 +127,7 @@ pub fn attempt(
             ..Refused::new(file, NOT_APPLICABLE, ScenarioError::faults(wrong, faults))
         };
         if let Err(faults) = shared.apply(&mut scenario) {
-            return Err(unfit(&scenario, file, faults));
+            return Err(unfit(&scenario, file, scene.located(faults)));
         }
         if let Some(previous) = previous {
             match previous.remember(&mut scenario) {

@@ -136,7 +136,7 @@ fn sail(
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);
-    let refused = |fault: Fault| ScenarioError::faults(file, vec![fault]);
+    let refused = |fault: Fault| ScenarioError::faults(file, scene.located(vec![fault]));
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();

@@ -136,6 +136,12 @@ impl Scenario {
         applicability::unfit(self)
     }
 
+    /// Such faults, and those of [`crate::simulation::Simulation::new`], with their lines in the text
+    /// of the scenario.
+    pub fn located(text: &str, faults: Vec<Fault>) -> Vec<Fault> {
+        check::located(text, faults)
+    }
+
     /// True for an allowed `max_risk`.
     pub fn allows_max_risk(risk: f64) -> bool {
         limits::RISK.contains(risk)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use searoom::input::InputError;
+use searoom::input::{Fault, InputError};
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
 use searoom::scenario::{FILE_MEBIBYTES, Scenario};
 
@@ -42,6 +42,14 @@ impl Scene {
             }
         };
         made.map_err(|faults| Refused::input(file, InputError::faults(file, faults)))
+    }
+
+    /// Faults with their lines in the file, where it is a scenario file.
+    pub fn located(&self, faults: Vec<Fault>) -> Vec<Fault> {
+        match &self.source {
+            Source::Text(text) => Scenario::located(text, faults),
+            Source::Situation(..) => faults,
+        }
     }
 
     /// True for a situation of another format.
