@@ -11,6 +11,7 @@ use searoom::colregs::Thresholds;
 use searoom::document::{PlanDocument, breaks};
 use searoom::pipeline::Run;
 use searoom::planner::{Planner, SearchKind, planner_words};
+use searoom::report::figure::{FigureFormat, FigureOptions};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
@@ -105,6 +106,9 @@ pub struct CheckArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("figure", |arg| arg.value_name("FILE").help(
+    "Draw the sections, their risk, and dCPA: a file ending in .svg, .png or .pdf"
+)))]
 pub struct AssessArgs {
     /// A scenario file, or a file of another format with one situation; - is standard input
     #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
@@ -127,9 +131,8 @@ pub struct AssessArgs {
     /// Use the ship domains instead of the hard sets
     #[arg(long, alias = "shaped")]
     pub domains: bool,
-    /// Draw the sections, their risk, and dCPA: a file ending in .svg or .png
-    #[arg(long, value_name = "PATH")]
-    pub figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub drawn: Drawn,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -191,8 +194,8 @@ pub struct SuiteArgs {
         "Write one Rerun recording per scenario: a file ending in .rrd, or a folder"
     )),
     mut_arg("figure", |arg| arg.help(
-        "Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, \
-         or a folder"
+        "Draw the tracks of all ships and the closest approach: a file ending in .svg, .png or \
+         .pdf, or a folder for SVG"
     )),
 )]
 pub struct SimulateArgs {
@@ -238,7 +241,8 @@ pub struct ImportArgs {
          or a folder"
     )),
     mut_arg("figure", |arg| arg.value_name("FILE").help(
-        "Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png"
+        "Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg, .png \
+         or .pdf"
     )),
 )]
 pub struct CompareArgs {
@@ -322,16 +326,59 @@ pub struct Asked {
     pub thresholds: Option<Arc<Thresholds>>,
 }
 
+/// A figure.
+#[derive(Debug, Args)]
+pub struct Drawn {
+    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg, .png
+    /// or .pdf, or a folder for SVG
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
+    /// Size of the figure in millimetres, such as 170x120
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "figure")]
+    #[arg(allow_hyphen_values = true)]
+    pub size: Option<[f64; 2]>,
+    /// Resolution of a PNG in dots per inch [default: 192]
+    #[arg(long, value_name = "N", value_parser = dpi, requires = "figure")]
+    #[arg(allow_hyphen_values = true)]
+    pub dpi: Option<f64>,
+}
+
+impl Drawn {
+    /// Options of the figure, with marked times.
+    pub fn options(&self, times: &[f64]) -> FigureOptions {
+        FigureOptions {
+            size_mm: self.size,
+            dpi: self.dpi,
+            times: times.to_vec(),
+        }
+    }
+
+    /// Rejects a resolution without a raster image.
+    pub fn refuse_dpi(&self) -> anyhow::Result<()> {
+        match (&self.figure, self.dpi) {
+            (Some(file), Some(dpi)) if FigureFormat::of(file) != Some(FigureFormat::Png) => {
+                anyhow::bail!(
+                    "--dpi {dpi}: found the figure {}; allowed: with a file that ends in .png",
+                    file.display()
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Where results go.
 #[derive(Debug, Args)]
 pub struct Written {
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
-    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or
-    /// .png, or a folder
-    #[arg(long, value_name = "PATH")]
-    pub figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub drawn: Drawn,
+    /// Times in seconds at which the chart marks all ships, instead of round ones
+    #[arg(long, value_name = "T,T,..", value_parser = time, value_delimiter = ',')]
+    #[arg(requires = "figure", allow_hyphen_values = true)]
+    pub times: Vec<f64>,
     /// Write a report for a browser, index.html and its figures, into this folder
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub report: Option<PathBuf>,
@@ -428,13 +475,15 @@ impl Asked {
 
 impl Written {
     /// The files to be written.
-    pub fn wanted(&self) -> Wanted<'_> {
-        Wanted {
+    pub fn wanted(&self) -> anyhow::Result<Wanted<'_>> {
+        self.drawn.refuse_dpi()?;
+        Ok(Wanted {
             recordings: self.rrd.as_deref(),
-            figures: self.figure.as_deref(),
+            figures: self.drawn.figure.as_deref(),
+            drawn: self.drawn.options(&self.times),
             plans: None,
             report: self.report.as_deref(),
-        }
+        })
     }
 }
 
@@ -539,6 +588,19 @@ fn budget(word: &str) -> Result<Duration, String> {
     let seconds = word.parse().ok().filter(|s| *s > 0.0);
     let budget = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
     budget.ok_or_else(|| "allowed: a positive number of seconds".to_owned())
+}
+
+/// Millimetres of width and height.
+fn size(word: &str) -> Result<[f64; 2], String> {
+    const ALLOWED: &str = "WIDTHxHEIGHT in millimetres, each from 20 to 2000, such as 170x120";
+    let side = |word| number(word, |mm| (20.0..=2000.0).contains(&mm), ALLOWED);
+    let (width, height) = word.split_once('x').ok_or(format!("allowed: {ALLOWED}"))?;
+    Ok([side(width)?, side(height)?])
+}
+
+fn dpi(word: &str) -> Result<f64, String> {
+    let allowed = "dots per inch from 30 to 2400";
+    number(word, |dpi| (30.0..=2400.0).contains(&dpi), allowed)
 }
 
 fn duration(word: &str) -> Result<f64, String> {

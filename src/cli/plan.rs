@@ -23,7 +23,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
     let found = std::slice::from_ref(&scene.found);
-    let products = Products::prepare(found, args.shared.written.wanted())?;
+    let products = Products::prepare(found, args.shared.written.wanted()?)?;
     let route = args.route.as_deref().map(Route::at).transpose()?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));

@@ -27,7 +27,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let scenes = scenes::open(&args.paths, &args.assumed, output);
     let wanted = Wanted {
         plans: args.plans.as_deref(),
-        ..args.written.wanted()
+        ..args.written.wanted()?
     };
     let products = Products::prepare(&scenes::found(&scenes), wanted)?;
     let mut status = ExitStatus::Good;

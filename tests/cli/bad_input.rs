@@ -107,7 +107,7 @@ fn files_that_are_none_are_named() {
         check DIR/bytes.toml | found bytes that are not text at byte 1
         plan | Usage
         suite --json --figure x.svg | --figure x.svg: a file, but there are
-        suite --figure x.pdf | --figure: x.pdf | .svg
+        suite --figure x.eps | --figure: x.eps | .svg
         ",
     );
     let empty = Folder::new();
