@@ -8,7 +8,7 @@ use std::path::Path;
 
 use searoom::document::PlanDocument;
 use searoom::pipeline;
-use searoom::report::figure::{comparison_figure, plan_figure, simulation_figure};
+use searoom::report::figure::{FigureOptions, comparison_figure, plan_figure, simulation_figure};
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::compare;
@@ -43,19 +43,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let stem = name.rsplit('/').next().unwrap_or(name);
         folder.join(format!("{stem}{end}.svg"))
     };
+    let natural = FigureOptions::default();
     for name in PLANS {
         let run = pipeline::run(read(name)?);
-        plan_figure(&run, &PlanDocument::of(&run)).write(&picture(name, ""))?;
+        plan_figure(&run, &PlanDocument::of(&run), &natural)?.write(&picture(name, ""))?;
     }
     let scenario = read(SAILED)?;
     let mut simulation = Simulation::new(scenario.clone(), false).map_err(|f| f.to_string())?;
     while !simulation.finished() {
         simulation.step();
     }
-    simulation_figure(&scenario, &simulation.record()).write(&picture(SAILED, ""))?;
+    simulation_figure(&scenario, &simulation.record(), &natural)?.write(&picture(SAILED, ""))?;
     let (name, risks) = COMPARED;
     let scenario = read(name)?;
     let entries = compare(&scenario, &risks);
-    comparison_figure(&[(&scenario, &entries)]).write(&picture(name, "-compared"))?;
+    comparison_figure(&[(&scenario, &entries)], &natural)?.write(&picture(name, "-compared"))?;
     Ok(())
 }

@@ -8,6 +8,7 @@ use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
+use crate::text::rounded;
 use crate::tolerance::{self, SIGMAS};
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
@@ -54,7 +55,7 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         own.pose = plan.now;
     }
     let mut memory = memory_after(previous, scenario, plan)?;
-    if is_near && !is_on {
+    if !is_on {
         memory.off_plan = off;
     }
     for target in &mut scenario.targets {
@@ -137,7 +138,7 @@ fn remaining_plan(
         ));
     };
     if !(elapsed >= 0.0 && elapsed <= last.end_time()) {
-        let until = previous.time_s + last.end_time();
+        let until = rounded(previous.time_s + last.end_time());
         return Err(Fault::new(
             "time_s",
             format_args!("a plan from {} s to {until} s", previous.time_s),

@@ -89,6 +89,11 @@ pub(crate) fn short_numbers(text: &str) -> String {
     out + rest
 }
 
+/// A number as a message shows it, without the digits of its rounding: to a millionth.
+pub fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
 /// A count with its word, which has an s unless the count is one.
 pub fn counted(count: usize, word: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };

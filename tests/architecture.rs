@@ -31,10 +31,10 @@ evaluation: parallel frame tolerance geometry vessel target trajectory
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
-simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning
+simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
-replanning: document frame tolerance trajectory vessel target colregs planner scenario
+replanning: document frame tolerance trajectory vessel target colregs planner scenario text
 report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
 recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output
 ";
@@ -65,6 +65,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("roxmltree", &["scenario/import/"]),
     ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
+    ("textwrap", &["cli/output/mod.rs"]),
     ("to_degrees", &["frame.rs"]),
     ("to_radians", &["frame.rs"]),
     // nothing outside asks which planner it has

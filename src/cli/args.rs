@@ -1,14 +1,17 @@
 //! The arguments.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Args, Parser, Subcommand, ValueHint};
 use searoom::colregs::Thresholds;
 use searoom::document::{PlanDocument, breaks};
 use searoom::pipeline::Run;
 use searoom::planner::{Planner, SearchKind, planner_words};
+use searoom::report::figure::{FigureFormat, FigureOptions};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
@@ -16,6 +19,14 @@ use searoom::scenario::{Compliance, Fault, Scenario};
 use super::input::rows;
 use super::output::products::Wanted;
 use super::output::status::ExitStatus;
+use super::shell::schema_kinds;
+
+/// The text below the options of a command.
+macro_rules! example {
+    ($words:literal) => {
+        concat!("Example:\n  ", $words)
+    };
+}
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
@@ -30,38 +41,55 @@ use super::output::status::ExitStatus;
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+    /// Print errors alone, and a document if one is asked for
+    #[arg(long, global = true, display_order = 998)]
+    pub quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Writes a commented scenario file to begin with
+    #[command(after_help = example!("searoom init mine.toml"))]
     Init(InitArgs),
     /// Reads and checks scenario files, plans nothing; reports every fault at once
+    #[command(after_help = example!("searoom check scenarios/colregs"))]
     Check(CheckArgs),
     /// Gives risk, closest approach, velocity obstacle and least alteration, without planning
+    #[command(after_help = example!("searoom assess scenarios/colregs/head-on.toml --at 700,0,120 --section 120"))]
     Assess(AssessArgs),
     /// Plans one scenario, prints the verdict and the costs
+    #[command(after_help = example!("searoom plan scenarios/colregs/head-on.toml --figure head-on.svg"))]
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
+    #[command(after_help = example!("searoom suite scenarios/colregs --report report"))]
     Suite(SuiteArgs),
     /// Sails scenarios in the closed loop: plans again and again while the targets move
+    #[command(after_help = example!("searoom simulate scenarios/closed-loop/head-on-radar.toml --seed 2"))]
     Simulate(SimulateArgs),
     /// Turns files of other formats into scenario files
+    #[command(after_help = example!("searoom import scenarios/dnv --out imported"))]
     Import(ImportArgs),
     /// Compares all planners that apply, and two baselines, on the same scenarios
+    #[command(after_help = example!("searoom compare scenarios/colregs --csv compared.csv"))]
     Compare(CompareArgs),
     /// Shows the contents of a recording
+    #[command(after_help = example!("searoom inspect head-on.rrd"))]
     Inspect(InspectArgs),
     /// Checks plan documents from their own content, without the code of the planners
+    #[command(after_help = example!("searoom plan scenarios/colregs/head-on.toml --json | searoom verify -"))]
     Verify(VerifyArgs),
     /// Prints the completion script of a shell
+    #[command(after_help = example!("searoom completions bash > ~/.local/share/bash-completion/completions/searoom"))]
     Completions(CompletionsArgs),
+    /// Prints the JSON schema of scenario files, or of the document of a command
+    #[command(after_help = example!("searoom schema scenario > scenario.schema.json"))]
+    Schema(SchemaArgs),
 }
 
 #[derive(Debug, Args)]
 pub struct InitArgs {
     /// The new file
-    #[arg(value_name = "FILE.toml")]
+    #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
 }
 
@@ -78,21 +106,24 @@ pub struct CheckArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("figure", |arg| arg.value_name("FILE").help(
+    "Draw the sections, their risk, and dCPA: a file ending in .svg, .png or .pdf"
+)))]
 pub struct AssessArgs {
     /// A scenario file, or a file of another format with one situation; - is standard input
-    #[arg(value_name = "SCENARIO")]
+    #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
     pub scenario: PathBuf,
     /// A point and a time: metres, metres, seconds; repeatable
     #[arg(long, value_name = "EAST,NORTH,T", value_parser = point, allow_hyphen_values = true)]
     pub at: Vec<[f64; 3]>,
     /// Points from a CSV file with the header east_m,north_m,t_s
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub points: Option<PathBuf>,
     /// A velocity of own ship from t = 0 on, m/s; repeatable
     #[arg(long, value_name = "EAST,NORTH", value_parser = velocity, allow_hyphen_values = true)]
     pub velocity: Vec<[f64; 2]>,
     /// Velocities from a CSV file with the header east_mps,north_mps
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub velocities: Option<PathBuf>,
     /// A time in seconds at which to print the sets; repeatable
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
@@ -100,9 +131,8 @@ pub struct AssessArgs {
     /// Use the ship domains instead of the hard sets
     #[arg(long, alias = "shaped")]
     pub domains: bool,
-    /// Draw the sections, their risk, and dCPA: a file ending in .svg or .png
-    #[arg(long, value_name = "PATH")]
-    pub figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub drawn: Drawn,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -113,7 +143,7 @@ pub struct AssessArgs {
 #[derive(Debug, Args)]
 pub struct PlanArgs {
     /// A scenario file, or a file of another format with one situation; - is standard input
-    #[arg(value_name = "SCENARIO")]
+    #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
@@ -122,11 +152,11 @@ pub struct PlanArgs {
     #[arg(long)]
     pub no_return: bool,
     /// Write the legs: a file ending in .csv, .geojson or .rtz; the last two need an origin
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub route: Option<PathBuf>,
-    /// The plan that own ship follows now, as `plan --json` wrote it. The new plan keeps its roles
-    /// and its manoeuvre
-    #[arg(long, value_name = "PLAN.json")]
+    /// The plan that own ship follows now, as `plan --json` wrote it; - is standard input. The new
+    /// plan keeps its roles and its manoeuvre
+    #[arg(long, value_name = "PLAN.json", value_hint = ValueHint::FilePath)]
     pub previous: Option<PathBuf>,
     /// Ignore the previous plan if it does not fit
     #[arg(long, requires = "previous")]
@@ -139,13 +169,13 @@ pub struct PlanArgs {
 #[derive(Debug, Args)]
 pub struct SuiteArgs {
     /// Scenario files, files of other formats, or folders. A folder is searched for .toml, .json
-    /// and .xml files, except hidden ones
+    /// and .xml files, except hidden ones; - is standard input
     #[arg(value_name = "PATH", default_value = "scenarios")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
     pub shared: Shared,
     /// Write one plan document per scenario into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub plans: Option<PathBuf>,
     /// Plan nothing: report where ships would meet, and errors in the scenarios
     #[arg(long, conflicts_with_all = [
@@ -164,12 +194,12 @@ pub struct SuiteArgs {
         "Write one Rerun recording per scenario: a file ending in .rrd, or a folder"
     )),
     mut_arg("figure", |arg| arg.help(
-        "Draw the tracks of all ships and the closest approach: a file ending in .svg or .png, \
-         or a folder"
+        "Draw the tracks of all ships and the closest approach: a file ending in .svg, .png or \
+         .pdf, or a folder for SVG"
     )),
 )]
 pub struct SimulateArgs {
-    /// Scenario files, files of other formats, or folders of them
+    /// Scenario files, files of other formats, or folders of them; - is standard input
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     /// Seed of the random numbers instead of the scenario's
@@ -182,7 +212,7 @@ pub struct SimulateArgs {
     #[arg(long)]
     pub measured_delay: bool,
     /// Write the document of every plan into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub plans: Option<PathBuf>,
     #[command(flatten)]
     pub written: Written,
@@ -196,7 +226,7 @@ pub struct ImportArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Folder for the scenario files; created if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
     #[command(flatten)]
     pub assumed: AssumedArgs,
@@ -204,18 +234,19 @@ pub struct ImportArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("planner", |arg| arg.help(planners("Only this planner, beside the baselines"))),
-    mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra, thorough")),
+    mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines")),
+    mut_arg("search", |arg| arg.help("Only this search")),
     mut_arg("rrd", |arg| arg.help(
         "Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, \
          or a folder"
     )),
     mut_arg("figure", |arg| arg.value_name("FILE").help(
-        "Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png"
+        "Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg, .png \
+         or .pdf"
     )),
 )]
 pub struct CompareArgs {
-    /// Scenario files, files of other formats, or folders of them
+    /// Scenario files, files of other formats, or folders of them; - is standard input
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -224,7 +255,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "R,R,..", value_parser = max_risk, value_delimiter = ',')]
     pub max_risk: Vec<f64>,
     /// Write the rows as CSV
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub csv: Option<PathBuf>,
     #[command(flatten)]
     pub written: Written,
@@ -235,7 +266,7 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct InspectArgs {
     /// A recording
-    #[arg(value_name = "FILE.rrd")]
+    #[arg(value_name = "FILE.rrd", value_hint = ValueHint::FilePath)]
     pub recording: PathBuf,
     /// Print the plan document in it, as `plan --json` wrote it
     #[arg(long, conflicts_with_all = ["csv", "json"])]
@@ -251,7 +282,7 @@ pub struct InspectArgs {
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
     /// Plan documents, as `plan --json` and `suite --plans` write them, recordings (.rrd), or
-    /// folders of them
+    /// folders of them; - is standard input
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
     /// Seconds for each document; a check that takes longer counts as not verified
@@ -270,28 +301,70 @@ pub struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
+#[derive(Debug, Args)]
+pub struct SchemaArgs {
+    /// A scenario file, or the command that prints the document with --json
+    #[arg(value_name = "KIND", value_parser = PossibleValuesParser::new(schema_kinds()))]
+    pub kind: String,
+}
+
 /// Settings that replace those of a scenario.
 #[derive(Debug, Args)]
 pub struct Asked {
-    #[arg(
-        long,
-        value_name = "KIND",
-        value_parser = |found: &str| word(&planner_words(), found),
-        help = planners("Planner instead of the scenario's")
-    )]
+    /// Planner instead of the scenario's
+    #[arg(long, value_name = "KIND", value_parser = words(planner_words()))]
     pub planner: Option<&'static dyn Planner>,
-    /// Search instead of the scenario's: a-star, dijkstra, thorough (several targets: slower,
-    /// cheaper)
-    #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
+    /// Search instead of the scenario's; thorough: with several targets slower, cheaper
+    #[arg(long, value_name = "KIND", value_parser = words(SearchKind::WORDS))]
     pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (domains
-    /// and rules)
-    #[arg(long, value_name = "C", value_parser = |found: &str| word(Compliance::WORDS, found))]
+    /// Compliance instead of the scenario's: with hulls alone, ship domains, or domains and rules
+    #[arg(long, value_name = "C", value_parser = words(Compliance::WORDS))]
     pub compliance: Option<Compliance>,
-    /// Thresholds of rule compliance, without effect on the plan: searoom, dnv-trafficgen,
-    /// sfi-autoship, or a TOML file
-    #[arg(long, value_name = "PROFILE|FILE", value_parser = thresholds)]
+    /// Thresholds of rule compliance, without effect on the plan: a published profile, or a TOML
+    /// file
+    #[arg(long, value_name = "PROFILE|FILE", value_parser = ThresholdsParser)]
     pub thresholds: Option<Arc<Thresholds>>,
+}
+
+/// A figure.
+#[derive(Debug, Args)]
+pub struct Drawn {
+    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg, .png
+    /// or .pdf, or a folder for SVG
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
+    /// Size of the figure in millimetres, such as 170x120
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "figure")]
+    #[arg(allow_hyphen_values = true)]
+    pub size: Option<[f64; 2]>,
+    /// Resolution of a PNG in dots per inch [default: 192]
+    #[arg(long, value_name = "N", value_parser = dpi, requires = "figure")]
+    #[arg(allow_hyphen_values = true)]
+    pub dpi: Option<f64>,
+}
+
+impl Drawn {
+    /// Options of the figure, with marked times.
+    pub fn options(&self, times: &[f64]) -> FigureOptions {
+        FigureOptions {
+            size_mm: self.size,
+            dpi: self.dpi,
+            times: times.to_vec(),
+        }
+    }
+
+    /// Rejects a resolution without a raster image.
+    pub fn refuse_dpi(&self) -> anyhow::Result<()> {
+        match (&self.figure, self.dpi) {
+            (Some(file), Some(dpi)) if FigureFormat::of(file) != Some(FigureFormat::Png) => {
+                anyhow::bail!(
+                    "--dpi {dpi}: found the figure {}; allowed: with a file that ends in .png",
+                    file.display()
+                )
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Where results go.
@@ -300,19 +373,18 @@ pub struct Written {
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
-    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or
-    /// .png, or a folder
-    #[arg(long, value_name = "PATH")]
-    pub figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub drawn: Drawn,
+    /// Times in seconds at which the chart marks all ships, instead of round ones
+    #[arg(long, value_name = "T,T,..", value_parser = time, value_delimiter = ',')]
+    #[arg(requires = "figure", allow_hyphen_values = true)]
+    pub times: Vec<f64>,
     /// Write a report for a browser, index.html and its figures, into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub report: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
-    /// Print errors alone, and a document if one is asked for
-    #[arg(long)]
-    pub quiet: bool,
 }
 
 /// Options of `plan` and `suite`.
@@ -401,29 +473,17 @@ impl Asked {
     }
 }
 
-impl Command {
-    /// True if the command shall print no text and no notes.
-    pub fn quiet(&self) -> bool {
-        let written = match self {
-            Self::Plan(args) => &args.shared.written,
-            Self::Suite(args) => &args.shared.written,
-            Self::Simulate(args) => &args.written,
-            Self::Compare(args) => &args.written,
-            _ => return false,
-        };
-        written.quiet
-    }
-}
-
 impl Written {
     /// The files to be written.
-    pub fn wanted(&self) -> Wanted<'_> {
-        Wanted {
+    pub fn wanted(&self) -> anyhow::Result<Wanted<'_>> {
+        self.drawn.refuse_dpi()?;
+        Ok(Wanted {
             recordings: self.rrd.as_deref(),
-            figures: self.figure.as_deref(),
+            figures: self.drawn.figure.as_deref(),
+            drawn: self.drawn.options(&self.times),
             plans: None,
             report: self.report.as_deref(),
-        }
+        })
     }
 }
 
@@ -472,21 +532,38 @@ fn time(text: &str) -> Result<f64, String> {
     rows::option(text, &rows::TIME).map(|[time]| time)
 }
 
-/// The value with this word.
-fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
-    let known = words.iter().find(|(word, _)| *word == found);
-    known.map(|(_, value)| *value).ok_or_else(|| {
-        let words: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        format!("allowed: {}", words.join(", "))
+/// One of these words, which the help lists and shells complete.
+fn words<T: Copy + Send + Sync + 'static>(
+    words: impl AsRef<[(&'static str, T)]>,
+) -> impl TypedValueParser<Value = T> {
+    let words = words.as_ref().to_vec();
+    let known = PossibleValuesParser::new(words.iter().map(|(word, _)| *word));
+    known.try_map(move |found| {
+        let value = words.iter().find(|(word, _)| *word == found);
+        value.map(|(_, value)| *value).ok_or("not a known word")
     })
 }
 
-/// Help that ends with the names of all planners.
-fn planners(help: &str) -> String {
-    format!(
-        "{help}: {}",
-        planner_words().map(|(word, _)| word).join(", ")
-    )
+/// The name of published thresholds, which shells complete, or a file.
+#[derive(Debug, Clone)]
+struct ThresholdsParser;
+
+impl TypedValueParser for ThresholdsParser {
+    type Value = Arc<Thresholds>;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Self::Value, clap::Error> {
+        thresholds.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let names = Thresholds::all().iter();
+        Some(Box::new(names.map(|t| PossibleValue::new(&*t.name))))
+    }
 }
 
 /// Published thresholds by name, before a file of that name; `./NAME` is the file.
@@ -513,6 +590,19 @@ fn budget(word: &str) -> Result<Duration, String> {
     budget.ok_or_else(|| "allowed: a positive number of seconds".to_owned())
 }
 
+/// Millimetres of width and height.
+fn size(word: &str) -> Result<[f64; 2], String> {
+    const ALLOWED: &str = "WIDTHxHEIGHT in millimetres, each from 20 to 2000, such as 170x120";
+    let side = |word| number(word, |mm| (20.0..=2000.0).contains(&mm), ALLOWED);
+    let (width, height) = word.split_once('x').ok_or(format!("allowed: {ALLOWED}"))?;
+    Ok([side(width)?, side(height)?])
+}
+
+fn dpi(word: &str) -> Result<f64, String> {
+    let allowed = "dots per inch from 30 to 2400";
+    number(word, |dpi| (30.0..=2400.0).contains(&dpi), allowed)
+}
+
 fn duration(word: &str) -> Result<f64, String> {
     let allowed = "seconds above 0, at most 1000000";
     number(word, |s| s > 0.0 && s <= 1e6, allowed)
@@ -524,4 +614,25 @@ fn max_risk(word: &str) -> Result<f64, String> {
         Scenario::allows_max_risk,
         &Scenario::max_risk_allowed(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn every_command_has_an_example_that_it_accepts() {
+        for command in Arguments::command().get_subcommands() {
+            let help = command.get_after_help().map(ToString::to_string);
+            let help = help.unwrap_or_default();
+            let example = help.strip_prefix("Example:\n  ").expect("an example");
+            assert!(example.contains(&format!("searoom {}", command.get_name())));
+            for part in example.split(['|', '>']).filter(|p| p.contains("searoom ")) {
+                let parsed = Arguments::try_parse_from(part.split_whitespace());
+                assert!(parsed.is_ok(), "{part}");
+            }
+        }
+    }
 }

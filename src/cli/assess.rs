@@ -19,7 +19,9 @@ use super::runner::guarded;
 
 pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
-    args.figure.as_deref().map_or(Ok(()), prepare_figure)?;
+    args.drawn.refuse_dpi()?;
+    let figure = args.drawn.figure.as_deref();
+    figure.map_or(Ok(()), prepare_figure)?;
     let assessed = guarded(|| match read(args, output) {
         Ok((scenario, query)) => show(args, &scenario, &query, output),
         Err(errors) => {
@@ -71,7 +73,7 @@ fn read(args: &AssessArgs, output: &Output) -> Result<(Scenario, Query), Vec<Str
         Ok(Imported {
             scenario, notes, ..
         }) if errors.is_empty() => {
-            notes.iter().for_each(|note| output.note(note));
+            output.notes(None, &[(String::new(), notes)]);
             Ok((scenario, query))
         }
         _ => Err(errors),
@@ -89,10 +91,11 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     let situation = OwnSituation::of(scenario, &obstacles);
     let sets = if args.domains { "domains" } else { "hard" };
     let assessment = answer(&scenario.title, sets, &situation, query);
-    let drawn = args.figure.as_ref().map(|path| {
-        let figure = assessment_figure(&situation, &query.sections)
-            .titled(&format!("{}, {sets} sets", scenario.title));
-        match figure.write(path) {
+    let drawn = args.drawn.figure.as_ref().map(|path| {
+        let title = format!("{}, {sets} sets", scenario.title);
+        let options = args.drawn.options(&[]);
+        let figure = assessment_figure(&situation, &query.sections, &options, &title);
+        match figure.and_then(|figure| figure.write(path)) {
             Ok(()) => output.wrote(path),
             Err(error) => return output.refuse(&error),
         }

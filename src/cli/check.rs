@@ -5,26 +5,31 @@ use searoom::document::{CheckDocument, CheckedDocument, FaultDocument};
 use super::args::CheckArgs;
 use super::input::files::Refused;
 use super::input::scenes;
-use super::output::Output;
 use super::output::status::ExitStatus;
+use super::output::{Noted, Output};
 
-/// Prints one line per valid scenario with its assumptions, and every fault of the others.
+/// Prints one line per valid scenario, every fault of the others, and then the assumptions.
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let mut document = CheckDocument::default();
+    // by file
+    let mut noted: Vec<(String, Vec<Noted>)> = Vec::new();
     for scene in scenes::open(&args.paths, &args.assumed, output) {
-        let made = scene.and_then(|scene| Ok((scene.label(), scene.scenario()?, scene.found.file)));
+        let made = scene.and_then(|scene| Ok((scene.scenario()?, scene)));
         match made {
-            Ok((_, made, file)) if args.json => document.files.push(CheckedDocument {
-                file: file.display().to_string(),
+            Ok((made, scene)) if args.json => document.files.push(CheckedDocument {
+                file: scene.found.file.display().to_string(),
                 scenario: Some(made.scenario.title),
                 notes: made.notes,
                 ..CheckedDocument::default()
             }),
-            Ok((label, made, _)) => {
-                status = status.max(output.result(&format!("{label}: ok")));
-                for note in made.notes {
-                    output.note(&format_args!("{label}: {note}"));
+            Ok((made, scene)) => {
+                status = status.max(output.result(&format!("{}: ok", scene.label())));
+                let file = scene.found.file.display().to_string();
+                let notes = (scene.name().unwrap_or_default().to_owned(), made.notes);
+                match noted.last_mut().filter(|(last, _)| *last == file) {
+                    Some((_, all)) => all.push(notes),
+                    None => noted.push((file, vec![notes])),
                 }
             }
             Err(refused) => {
@@ -32,6 +37,9 @@ pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
                 document.files.push(wrong(refused));
             }
         }
+    }
+    for (file, notes) in noted {
+        output.notes(Some(&file), &notes);
     }
     match args.json {
         true => status.max(output.document(&document)),

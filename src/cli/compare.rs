@@ -32,13 +32,13 @@ struct Compared {
 /// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
-    let figure = args.written.figure.as_deref();
+    let figure = args.written.drawn.figure.as_deref();
     figure.map_or(Ok(()), prepare_figure)?;
     let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
-        ..args.written.wanted()
+        ..args.written.wanted()?
     };
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let asked = all.into_iter().map(|scene| ask(&scene?, args));
@@ -57,7 +57,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     let documents: Vec<_> = asked.iter().map(document).collect();
     match write(args, &asked, &documents) {
         Ok(()) => {
-            let files = args.csv.iter().chain(&args.written.figure);
+            let files = args.csv.iter().chain(&args.written.drawn.figure);
             files
                 .filter(|file| file.exists())
                 .for_each(|file| output.wrote(file));
@@ -189,12 +189,13 @@ fn write(
         }
         write_atomically(file, &csv(rows)?)?;
     }
-    if let Some(file) = &args.written.figure {
+    if let Some(file) = &args.written.drawn.figure {
         let drawn = asked.iter().flatten();
         let drawn: Vec<(&Scenario, &[Entry])> =
             drawn.map(|c| (&c.scenario, c.entries.as_slice())).collect();
         if !drawn.is_empty() {
-            comparison_figure(&drawn).write(file)?;
+            let options = args.written.drawn.options(&args.written.times);
+            comparison_figure(&drawn, &options)?.write(file)?;
         }
     }
     Ok(())

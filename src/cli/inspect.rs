@@ -22,12 +22,12 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
     let recorded = read(&args.recording)?;
     if args.plan {
         let document = document_of(&recorded, &args.recording)?;
-        return Ok(output.result(document.trim_end()));
+        return Ok(output.print(document.trim_end()));
     }
     if let Some(entity) = &args.csv {
         let table = table(&recorded, entity, &args.recording)?;
         let text = String::from_utf8(csv(table.csv_rows())?)?;
-        return Ok(output.result(text.trim_end()));
+        return Ok(output.print(text.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
     Ok(output.show(args.json, &contents, || contents.text(output.display)))

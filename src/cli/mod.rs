@@ -30,7 +30,7 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::usage(&error),
     };
-    let output = Output::new(arguments.command.quiet());
+    let output = Output::new(arguments.quiet);
     let run = || match &arguments.command {
         Command::Init(args) => Ok(import::init(args, &output)),
         Command::Check(args) => Ok(check::check(args, &output)),
@@ -49,6 +49,7 @@ pub fn main() -> ExitCode {
         ),
         Command::Verify(args) => Ok(verify::verify(args, &output)),
         Command::Completions(args) => Ok(shell::completions(args, &output)),
+        Command::Schema(args) => Ok(shell::schema(args, &output)),
     };
     let status = match runner::guarded(run) {
         Ok(Ok(status)) => status,

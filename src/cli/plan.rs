@@ -23,16 +23,14 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
     let found = std::slice::from_ref(&scene.found);
-    let products = Products::prepare(found, args.shared.written.wanted())?;
+    let products = Products::prepare(found, args.shared.written.wanted()?)?;
     let route = args.route.as_deref().map(Route::at).transpose()?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
         Ok((run, notes)) => {
-            for note in notes {
-                output.note(&note);
-            }
+            output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {
                 output.note(&no_return_reason(&run));

@@ -8,7 +8,6 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use searoom::document::{NOT_APPLICABLE, PLAN_MEBIBYTES, PlanDocument};
-use searoom::input::read_text;
 use searoom::pipeline::{self, Run};
 use searoom::replanning::remember;
 use searoom::scenario::import::Imported;
@@ -16,7 +15,7 @@ use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
 use super::args::Shared;
-use super::input::files::Refused;
+use super::input::files::{self, Refused};
 use super::input::scenes::Scene;
 
 thread_local! {
@@ -89,15 +88,12 @@ pub struct Previous {
 impl Previous {
     /// Reads a plan document, which has to be one that verifies. The error includes the file.
     pub fn read(file: &Path, ignore: bool) -> Result<Self, String> {
-        let name = file.display();
-        let text = read_text(file, PLAN_MEBIBYTES, "a plan document");
+        let text = files::text(file, PLAN_MEBIBYTES, "a plan document");
         let text = text.map_err(|error| error.to_string())?;
-        let plan = verified_plan(&text).map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self {
-            file: file.to_owned(),
-            plan,
-            ignore,
-        })
+        let file = files::name(file);
+        let plan = verified_plan(&text);
+        let plan = plan.map_err(|error| format!("{}: {error}", file.display()))?;
+        Ok(Self { file, plan, ignore })
     }
 
     /// Adds what the plan leaves to a scenario; a note where it does not fit and is ignored.
@@ -131,7 +127,7 @@ pub fn attempt(
             ..Refused::new(file, NOT_APPLICABLE, ScenarioError::faults(wrong, faults))
         };
         if let Err(faults) = shared.apply(&mut scenario) {
-            return Err(unfit(&scenario, file, faults));
+            return Err(unfit(&scenario, file, scene.located(faults)));
         }
         if let Some(previous) = previous {
             match previous.remember(&mut scenario) {

@@ -1,16 +1,35 @@
-//! `searoom completions`, generated from the argument definitions.
+//! `searoom completions` and `searoom schema`: for shells and editors.
 
 use clap::CommandFactory;
 use clap_complete::generate;
+use searoom::document::SCHEMAS;
+use searoom::scenario;
 
-use super::args::{Arguments, CompletionsArgs};
+use super::args::{Arguments, CompletionsArgs, SchemaArgs};
 use super::output::Output;
 use super::output::status::ExitStatus;
 
+/// The kind of schema that is of a file, not of a document.
+const SCENARIO: &str = "scenario";
+
+/// Prints the completion script, generated from the argument definitions.
 pub fn completions(args: &CompletionsArgs, output: &Output) -> ExitStatus {
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();
     let mut text = Vec::new();
     generate(args.shell, &mut command, name, &mut text);
-    output.result(String::from_utf8_lossy(&text).trim_end())
+    output.print(String::from_utf8_lossy(&text).trim_end())
+}
+
+/// The files and documents that have a schema.
+pub fn schema_kinds() -> impl Iterator<Item = &'static str> {
+    std::iter::once(SCENARIO).chain(SCHEMAS.iter().map(|(kind, _)| *kind))
+}
+
+/// Prints a JSON schema.
+pub fn schema(args: &SchemaArgs, output: &Output) -> ExitStatus {
+    match SCHEMAS.iter().find(|(kind, _)| *kind == args.kind) {
+        Some((_, schema)) => output.document(&schema()),
+        None => output.print(scenario::SCHEMA.trim_end()),
+    }
 }

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use searoom::document::{NOT_APPLICABLE, SimulationDocument, SimulationsDocument};
+use searoom::document::{
+    NOT_APPLICABLE, SimulatedDocument, SimulationDocument, SimulationsDocument,
+};
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
 use searoom::scenario::import::Imported;
@@ -25,7 +27,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     let scenes = scenes::open(&args.paths, &args.assumed, output);
     let wanted = Wanted {
         plans: args.plans.as_deref(),
-        ..args.written.wanted()
+        ..args.written.wanted()?
     };
     let products = Products::prepare(&scenes::found(&scenes), wanted)?;
     let mut status = ExitStatus::Good;
@@ -85,15 +87,16 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
     all_written = all_written.max(written);
     let sailed = !documents.is_empty();
     if args.written.json {
-        status = status.max(match documents.pop() {
-            Some(document) if !several => output.document(&document),
+        let document = match documents.pop() {
+            Some(document) if !several => SimulatedDocument::One(Box::new(document)),
             last => {
                 documents.extend(last);
-                output.document(&SimulationsDocument {
+                SimulatedDocument::Several(SimulationsDocument {
                     simulations: documents,
                 })
             }
-        });
+        };
+        status = status.max(output.document(&document));
     } else if several {
         status = status.max(output.result(&simulations_line(&documents, failed)));
     }
@@ -128,14 +131,12 @@ fn sail(
     output: &Output,
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
-    for note in &made.notes {
-        output.note(note);
-    }
+    output.notes(None, &[(String::new(), made.notes)]);
     let mut scenario = made.scenario;
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);
-    let refused = |fault: Fault| ScenarioError::faults(file, vec![fault]);
+    let refused = |fault: Fault| ScenarioError::faults(file, scene.located(vec![fault]));
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();

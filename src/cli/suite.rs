@@ -52,7 +52,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     let wanted = Wanted {
         plans: args.plans.as_deref(),
-        ..args.shared.written.wanted()
+        ..args.shared.written.wanted()?
     };
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use anyhow::anyhow;
 use searoom::document::{PLAN_MEBIBYTES, VerificationDocument, VerifiedPlanDocument};
-use searoom::input::read_text;
 use searoom::report::{Display, printable, simulation_verification_text, verification_text};
 use searoom::verification::{
     SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
@@ -32,7 +31,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 continue;
             }
         };
-        let name = path.display().to_string();
+        let name = files::name(&path).display().to_string();
         let display = output.display;
         let reached = match guarded_within(args.budget_s, move || one(&path, display)) {
             None => {
@@ -91,9 +90,9 @@ fn one(file: &Path, display: Display) -> anyhow::Result<Vec<(VerifiedPlanDocumen
         recorded(file)?
     } else {
         // the message already includes its source
-        read_text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
+        files::text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
     };
-    let name = || file.display().to_string();
+    let name = || files::name(file).display().to_string();
     let plan = |plan: &Verification| {
         let document = VerifiedPlanDocument::of(name(), plan);
         (document, verification_text(plan, display))

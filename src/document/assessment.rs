@@ -1,11 +1,12 @@
 //! Assessment document, see docs/documents.md.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::targets::sets::InitialSetDocument;
 
 /// Results of `assess`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AssessmentDocument {
     pub scenario: String,
     pub horizon_s: f64,
@@ -18,7 +19,7 @@ pub struct AssessmentDocument {
 }
 
 /// Sets of possible positions of a target.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetSectionsDocument {
     pub name: String,
     pub representation: String,
@@ -26,7 +27,7 @@ pub struct TargetSectionsDocument {
 }
 
 /// Set of possible positions at one time, `[east, north]`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SectionDocument {
     pub t_s: f64,
     #[serde(flatten)]
@@ -34,7 +35,7 @@ pub struct SectionDocument {
 }
 
 /// Risk at one point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PointDocument {
     pub east_m: f64,
     pub north_m: f64,
@@ -43,7 +44,7 @@ pub struct PointDocument {
 }
 
 /// Risk of one target at one point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PointRiskDocument {
     pub name: String,
     pub inside: bool,
@@ -52,13 +53,13 @@ pub struct PointRiskDocument {
 }
 
 /// Result of constant course and speed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HoldCourseDocument {
     pub targets: Vec<HeldDocument>,
 }
 
 /// Result of constant course and speed for one target.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldDocument {
     pub name: String,
     pub dcpa_m: f64,
@@ -67,7 +68,7 @@ pub struct HeldDocument {
 }
 
 /// Least alterations that leave every velocity obstacle; null if none does.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AlterationDocument {
     pub starboard_deg: Option<f64>,
     pub port_deg: Option<f64>,
@@ -75,7 +76,7 @@ pub struct AlterationDocument {
 }
 
 /// Closest approaches for one velocity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VelocityDocument {
     pub east_mps: f64,
     pub north_mps: f64,
@@ -83,7 +84,7 @@ pub struct VelocityDocument {
 }
 
 /// Closest approach of one target for one velocity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ApproachDocument {
     pub name: String,
     pub dcpa_m: f64,

@@ -1,17 +1,18 @@
 //! Document of `check`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::Fault;
 
 /// Checked files, in order.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckDocument {
     pub files: Vec<CheckedDocument>,
 }
 
 /// A scenario, or a file without one. A scenario without an error is valid.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckedDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -21,7 +22,7 @@ pub struct CheckedDocument {
 }
 
 /// One thing wrong in a file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FaultDocument {
     pub line: Option<usize>,
     pub field: Option<String>,

@@ -1,17 +1,18 @@
 //! Comparison document: the candidates of every scenario.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
 
 /// All compared scenarios, in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparisonDocument {
     pub comparisons: Vec<ScenarioComparisonDocument>,
 }
 
 /// One scenario. For an unreadable file, `error` gives the reason and the rest is empty.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScenarioComparisonDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -21,7 +22,7 @@ pub struct ScenarioComparisonDocument {
 }
 
 /// Result of one candidate.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EntryDocument {
     pub method: String,
     pub max_risk: f64,
@@ -41,7 +42,7 @@ pub struct EntryDocument {
 }
 
 /// Position at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrackPointDocument {
     pub t_s: f64,
     #[serde(flatten)]
@@ -49,7 +50,7 @@ pub struct TrackPointDocument {
 }
 
 /// Method that does not apply to the scenario.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InapplicableDocument {
     pub method: String,
     pub reason: String,

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::plan::finite;
@@ -17,7 +18,7 @@ const CROSSING_STEP: f64 = 1.0;
 const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// Encounter with a target. Without a plan, its figures are null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EncounterDocument {
     pub target: String,
     pub role: String,
@@ -35,7 +36,7 @@ pub struct EncounterDocument {
 }
 
 /// Role of own ship and its time interval along the plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RoleDocument {
     pub role: String,
     pub from_s: f64,
@@ -43,7 +44,7 @@ pub struct RoleDocument {
 }
 
 /// Rule violation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RuleViolationDocument {
     pub rule: String,
     pub what: String,
@@ -51,7 +52,7 @@ pub struct RuleViolationDocument {
 }
 
 /// Verdict of a compliance monitor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MonitorDocument {
     pub monitor: String,
     pub verdict: String,
@@ -61,7 +62,7 @@ pub struct MonitorDocument {
 }
 
 /// Own ship's behaviour toward one target along the plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConductDocument {
     pub roles: Vec<RoleDocument>,
     pub scores: BTreeMap<String, f64>,
@@ -73,7 +74,7 @@ pub struct ConductDocument {
 }
 
 /// Own ship's alterations in its first role toward a target, until the closest approach.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ManoeuvreDocument {
     /// Time from the first alteration to the closest approach that it changes; null without one.
     pub lead_s: Option<f64>,

@@ -10,7 +10,7 @@ use super::{
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
-use crate::text::{printable, signed, square_metres, tenths};
+use crate::text::{printable, rounded, signed, square_metres, tenths};
 
 const LISTED: usize = 3;
 
@@ -122,7 +122,13 @@ fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     }
     if memory.off_plan_m > 0.0 {
         let (off, most) = (memory.off_plan_m, plan.own_ship.tracking_margin_m);
-        let text = format!("{off:.1} m off the plan; its tracking margin is {most} m");
+        let text = match off <= most {
+            true => format!("{off:.1} m off the plan; its tracking margin is {most} m"),
+            false => format!(
+                "{off:.1} m from the previous plan, more than its tracking margin of {most} m: the \
+                 rest of that plan is not used"
+            ),
+        };
         add("own ship", text);
     }
     for name in &memory.outside_velocities {
@@ -205,7 +211,7 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
         add("encounter", text);
         if let (Some(dcpa), Some(tcpa)) = (encounter.dcpa_m, encounter.tcpa_s) {
             let passing = passing(encounter);
-            let text = format!("planned {dcpa:.1} m at {tcpa:.0} s, passing {passing}");
+            let text = format!("expected {dcpa:.1} m at {tcpa:.0} s, passing {passing}");
             add("", text);
         }
     }
@@ -215,7 +221,7 @@ fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
     {
         add(
             "closest",
-            format!("{dcpa:.1} m to '{target}' at {tcpa:.0} s"),
+            format!("expected {dcpa:.1} m to '{target}' at {tcpa:.0} s"),
         );
     }
     for target in targets_without_role(plan) {
@@ -363,7 +369,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         };
         let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
         let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
-        let text = format!("{clearance} m; after {end} {after} m within {hold} s");
+        let text = format!("worst case {clearance} m; after {end} {after} m within {hold} s");
         add("clearance", text);
         if cost.hold_clearance_m.is_some_and(|after| after < 0.0) {
             add(
@@ -384,7 +390,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
 fn risk(plan: &PlanDocument, largest: f64) -> String {
     let mut text = format!("{largest:.3} at most");
     if plan.max_risk > 0.0 {
-        text += &format!(" ({} accepted)", plan.max_risk);
+        text += &format!(" ({} accepted)", rounded(plan.max_risk));
     }
     for encounter in &plan.encounters {
         if let (Some(risk), Some(time)) = (encounter.max_risk, encounter.max_risk_t_s) {

@@ -1,16 +1,17 @@
 //! Document of `suite --lint`, see docs/formats.md.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Findings for many scenarios, without planning.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LintDocument {
     pub scenarios: Vec<LintScenarioDocument>,
     pub summary: LintSummaryDocument,
 }
 
 /// Findings for one scenario. For an unreadable file, `error` gives the reason.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LintScenarioDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -21,7 +22,7 @@ pub struct LintScenarioDocument {
 }
 
 /// One target on its nominal motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LintTargetDocument {
     pub name: String,
     pub role: String,
@@ -32,7 +33,7 @@ pub struct LintTargetDocument {
 }
 
 /// Summary counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LintSummaryDocument {
     pub scenarios: usize,
     pub targets: usize,

@@ -1,6 +1,7 @@
 //! Memory that a plan leaves to the next one: own ship's motion so far, the targets' tracks, roles,
 //! and the plan that own ship follows.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{SegmentDocument, StartDocument};
@@ -13,7 +14,7 @@ use crate::pipeline::Run;
 use crate::planner::PlannedManoeuvre;
 
 /// Memory from before the plan. Times count from the plan, and are negative.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MemoryDocument {
     /// True where the plan is the remainder of the previous one.
     pub keeps_plan: bool,
@@ -35,7 +36,7 @@ pub struct MemoryDocument {
 }
 
 /// Memory of one target from before the plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetMemoryDocument {
     pub name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,7 +47,7 @@ pub struct TargetMemoryDocument {
 }
 
 /// A role that own ship has had since before the plan, and both ships when it began.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KnownRoleDocument {
     pub role: String,
     pub own_ship: StateDocument,
@@ -68,7 +69,7 @@ impl KnownRoleDocument {
 }
 
 /// A ship at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StateDocument {
     #[serde(flatten)]
     pub at: StartDocument,
@@ -76,7 +77,7 @@ pub struct StateDocument {
 }
 
 /// A manoeuvre by the rules.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlannedManoeuvreDocument {
     pub begins_s: f64,
     pub returns_s: f64,

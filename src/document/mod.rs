@@ -18,6 +18,9 @@ mod suite;
 mod targets;
 mod verification;
 
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+
 pub use assessment::*;
 pub use check::{CheckDocument, CheckedDocument, FaultDocument};
 pub use comparison::*;
@@ -38,6 +41,27 @@ pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument};
 pub use targets::*;
 pub use verification::*;
+
+/// Makes the JSON schema of a document.
+pub type MakeSchema = fn() -> Schema;
+
+/// The JSON schemas of the documents, by the command that prints each with `--json`.
+pub const SCHEMAS: [(&str, MakeSchema); 8] = [
+    ("plan", schema::<PlanDocument>),
+    ("suite", schema::<SuiteDocument>),
+    ("lint", schema::<LintDocument>),
+    ("compare", schema::<ComparisonDocument>),
+    ("simulate", schema::<SimulatedDocument>),
+    ("assess", schema::<AssessmentDocument>),
+    ("check", schema::<CheckDocument>),
+    ("verify", schema::<VerificationDocument>),
+];
+
+fn schema<T: JsonSchema>() -> Schema {
+    // of what is written: a reader also accepts documents without later keys
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<T>()
+}
 
 fn is_zero(value: &f64) -> bool {
     *value == 0.0

@@ -1,5 +1,6 @@
 //! Parts shared by the documents.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::targets::sets::{InitialSetDocument, VelocitySetDocument};
@@ -8,7 +9,7 @@ pub use crate::planner::SearchStats as SearchStatsDocument;
 use crate::trajectory::Segment;
 
 /// Point in the plane.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PositionDocument {
     pub east_m: f64,
     pub north_m: f64,
@@ -21,7 +22,7 @@ impl PositionDocument {
 }
 
 /// Own ship and its limits, with the keys of the scenario file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OwnShipDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
@@ -37,7 +38,7 @@ pub struct OwnShipDocument {
 }
 
 /// Desired trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MissionDocument {
     pub waypoints: Vec<PositionDocument>,
     pub leg_speeds_mps: Vec<f64>,
@@ -48,7 +49,7 @@ pub struct MissionDocument {
 }
 
 /// Relaxation of one constraint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RelaxationDocument {
     pub kind: String,
     pub target: String,
@@ -60,7 +61,7 @@ pub struct RelaxationDocument {
 }
 
 /// Escape of a stand-on ship.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EscapeDocument {
     pub policy: String,
     pub held_until_s: f64,
@@ -70,14 +71,14 @@ pub struct EscapeDocument {
 }
 
 /// Violation found by the independent checker.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ViolationDocument {
     pub what: String,
     pub t_s: Option<f64>,
 }
 
 /// Costs of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
@@ -103,7 +104,7 @@ pub struct CostDocument {
 }
 
 /// Alteration of course to one side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TurnDocument {
     pub side: String,
     pub turn_deg: f64,
@@ -111,13 +112,13 @@ pub struct TurnDocument {
 }
 
 /// Planning time, the only value that differs between two runs.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimingDocument {
     pub plan_s: f64,
 }
 
 /// Pose at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartDocument {
     pub t_s: f64,
     pub east_m: f64,
@@ -126,7 +127,7 @@ pub struct StartDocument {
 }
 
 /// Line or arc; starboard turns are positive.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SegmentDocument {
     pub start: StartDocument,
     pub duration_s: f64,
@@ -152,7 +153,7 @@ pub(crate) fn segment(document: &SegmentDocument) -> Segment {
 }
 
 /// Pose at a time, with the speed from then on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampleDocument {
     pub t_s: f64,
     pub east_m: f64,
@@ -164,7 +165,7 @@ pub struct SampleDocument {
 }
 
 /// State at a node and the forces held until the next one. Starboard and clockwise are positive.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NodeDocument {
     pub heading_deg: f64,
     pub surge_mps: f64,
@@ -177,14 +178,14 @@ pub struct NodeDocument {
 
 /// Trajectory, exact and sampled. Samples are one second apart, or a 20,000th of a longer
 /// trajectory, and include all segment ends and nodes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrajectoryDocument {
     pub segments: Option<Vec<SegmentDocument>>,
     pub samples: Vec<SampleDocument>,
 }
 
 /// Space-time obstacle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ObstacleDocument {
     pub name: String,
     pub valid_s: [f64; 2],

@@ -10,6 +10,7 @@ use control::{ControlDocument, control};
 use path_time::{PathTimeDocument, path_time_document};
 use phases::PhaseDocument;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::encounter::{EncounterDocument, encounters};
@@ -44,7 +45,7 @@ const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
 /// Self-contained plan: everything needed to verify it again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,

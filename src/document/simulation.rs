@@ -1,5 +1,6 @@
 //! Simulation document, see docs/documents.md. The closed loop fills it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::encounter::ConductDocument;
@@ -12,7 +13,7 @@ use crate::vessel::Hull;
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
 
 /// A scenario that was sailed in the closed loop. Times count from the scenario's present.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationDocument {
     pub format: String,
     pub build: String,
@@ -64,14 +65,22 @@ impl SimulatedTargetDocument {
 }
 
 /// Several simulations, and nothing else.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimulationsDocument {
     pub simulations: Vec<SimulationDocument>,
 }
 
+/// The document of `simulate`: of one scenario, or of several.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SimulatedDocument {
+    One(Box<SimulationDocument>),
+    Several(SimulationsDocument),
+}
+
 /// How the scenario was sailed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationSettingsDocument {
     pub step_s: f64,
     /// Longest time between plans, and whether events ask for one before.
@@ -94,7 +103,7 @@ pub struct SimulationSettingsDocument {
 }
 
 /// A target as it was.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulatedTargetDocument {
     pub name: String,
     pub behaviour: String,
@@ -114,7 +123,7 @@ pub struct SimulatedTargetDocument {
 }
 
 /// Own hull and the land.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SailedLandDocument {
     /// Least distance of own hull from land, null where it is no number; negative on land. Infinite
     /// distances, without any land in the map, are null too, and `grounded` is then false.
@@ -127,7 +136,7 @@ pub struct SailedLandDocument {
 }
 
 /// Own ship's conduct over the whole simulation.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SailedDocument {
     /// Space-time error of the sailed motion and of the first plan.
     pub cost_m2: f64,
@@ -151,7 +160,7 @@ pub struct SailedDocument {
 }
 
 /// Something that a navigator would be called for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AlarmDocument {
     pub t_s: f64,
     pub alarm: String,
@@ -159,7 +168,7 @@ pub struct AlarmDocument {
 }
 
 /// One cycle of planning.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReplanDocument {
     /// Time of the data, and from which the plan holds.
     pub t_s: f64,
@@ -183,7 +192,7 @@ pub struct ReplanDocument {
 }
 
 /// A target as a plan assumes it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EstimateDocument {
     pub target: String,
     pub age_s: f64,
@@ -204,7 +213,7 @@ pub struct EstimateDocument {
 }
 
 /// Wall clock, the only values that differ between two runs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CycleTimingDocument {
     pub plan_s: Vec<f64>,
 }

@@ -1,5 +1,6 @@
 //! Suite document, see docs/documents.md.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::encounter::{EncounterDocument, breaks};
@@ -19,7 +20,7 @@ pub const INTERNAL_FAULT: &str = "internal-fault";
 pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteDocument {
     pub runs: Vec<SuiteRunDocument>,
     pub summary: SuiteSummaryDocument,
@@ -27,7 +28,7 @@ pub struct SuiteDocument {
 
 /// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
 /// `error`, or [`NOT_APPLICABLE`] with a `reason`. Keys without meaning are null.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -51,7 +52,7 @@ pub struct SuiteRunDocument {
 }
 
 /// Summary counts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteSummaryDocument {
     pub scenarios: usize,
     pub solved: usize,

@@ -2,6 +2,7 @@
 
 pub(super) mod sets;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::PositionDocument;
@@ -16,7 +17,7 @@ use crate::vessel::Hull;
 use sets::{InitialSetDocument, VelocitySetDocument};
 
 /// Tracked ship, or the sets of an explicit target as given by the scenario.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetDocument {
     pub name: String,
     pub representation: String,
@@ -29,7 +30,7 @@ pub struct TargetDocument {
 }
 
 /// Tracked ship, with the keys of the scenario file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ShipDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
@@ -63,7 +64,7 @@ pub struct KnownLegDocument {
 }
 
 /// Velocity set with the end of its time interval.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimedSetDocument {
     pub until_s: Option<f64>,
     #[serde(flatten)]

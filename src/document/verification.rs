@@ -1,5 +1,6 @@
 //! Results of checking plan documents.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::ViolationDocument;
@@ -9,7 +10,7 @@ const UNREADABLE: &str = "unreadable";
 const UNPROVEN: &str = "unproven";
 
 /// All requested documents, in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VerificationDocument {
     pub plans: Vec<VerifiedPlanDocument>,
     pub verified: usize,
@@ -17,7 +18,7 @@ pub struct VerificationDocument {
 }
 
 /// One document. Unknown values of an unreadable or unproven one are null.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VerifiedPlanDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -33,7 +34,7 @@ pub struct VerifiedPlanDocument {
 }
 
 /// Margins to one target.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MarginDocument {
     pub target: String,
     pub claimed_from_s: f64,

@@ -23,15 +23,24 @@ const OTHER_WORDS: [(&str, &str); 10] = [
 ];
 
 /// Suffix of a key and the size of its unit.
-type Unit = (&'static str, f64);
+pub(super) type Unit = (&'static str, f64);
 
 /// Units of speeds in m/s and of distances in metres.
-const SPEED_UNITS: [Unit; 2] = [("mps", 1.0), ("kn", NAUTICAL_MILE_M / 3600.0)];
-const DISTANCE_UNITS: [Unit; 3] = [
+static SPEED_UNITS: [Unit; 2] = [("mps", 1.0), ("kn", NAUTICAL_MILE_M / 3600.0)];
+static DISTANCE_UNITS: [Unit; 3] = [
     ("m", 1.0),
     ("nmi", NAUTICAL_MILE_M),
-    ("cbl", 0.1 * NAUTICAL_MILE_M),
+    ("cbl", NAUTICAL_MILE_M / 10.0),
 ];
+
+/// The units of the quantity that has this one.
+pub(super) fn units_like(unit: &str) -> &'static [Unit] {
+    let all: [&[Unit]; 2] = [&SPEED_UNITS, &DISTANCE_UNITS];
+    let like = all
+        .into_iter()
+        .find(|units| units.iter().any(|(name, _)| *name == unit));
+    like.unwrap_or_default()
+}
 
 /// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
 #[derive(Debug)]
@@ -132,7 +141,12 @@ impl<'a> Table<'a> {
     /// A distance in metres from `<stem>_m`, `<stem>_nmi` or `<stem>_cbl`; the range is in metres.
     pub(crate) fn distance(&mut self, stem: &str, range: Range) -> Option<f64> {
         let (field, unit) = self.field_in(stem, &DISTANCE_UNITS)?;
-        Some(field.number(range.in_units_of(unit))? * unit)
+        let distance = field.number(range.in_units_of(unit))?;
+        // 2.1 cables are 388.92 m: the unit has a decimal, and no more digits than these
+        Some(match unit == 1.0 {
+            true => distance,
+            false => (distance * unit * 1e9).round() / 1e9,
+        })
     }
 
     /// A distance that must be there in one of the units.

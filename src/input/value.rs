@@ -45,23 +45,42 @@ impl Node {
         }
     }
 
-    /// The line of the value at a path like `a.b[2]`.
+    /// The line of the value at a path like `a.b[2]`, or of the innermost table on the way to it.
     pub(crate) fn line_at(&self, path: &str) -> Option<usize> {
         let mut node = self;
+        let mut line = None;
         for part in path.split('.') {
             let (key, index) = match part.split_once('[') {
                 Some((key, rest)) => (key, rest.trim_end_matches(']').parse::<usize>().ok()),
                 None => (part, None),
             };
-            node = node.get(key)?;
+            let Some(next) = node.get(key) else {
+                return line;
+            };
+            node = next;
             if let (Some(index), Value::List(list)) = (index, &node.value) {
                 node = list.get(index)?;
             }
+            line = node.line;
             if !matches!(node.value, Value::Table(_)) {
                 break;
             }
         }
-        node.line
+        line
+    }
+
+    /// The path of a quantity by the key of the unit in which it is given.
+    pub(crate) fn path_in_unit(&self, path: &str) -> Option<String> {
+        let (table, key) = path.rsplit_once('.')?;
+        let mut node = self;
+        for part in table.split('.') {
+            node = node.get(part)?;
+        }
+        let (stem, unit) = key.rsplit_once('_')?;
+        let others = super::table::units_like(unit).iter();
+        let given = others.map(|(unit, _)| format!("{stem}_{unit}"));
+        let mut given = given.filter(|key| node.get(key).is_some());
+        given.next().map(|key| format!("{table}.{key}"))
     }
 
     /// The value as a message shows it.

@@ -107,15 +107,21 @@ fn row(group: &[&EntryDocument]) -> Vec<Styled> {
         or_dash(cost.map(value).filter(|v| v.is_finite()).map(text))
     };
     let safe = cost.map(|_| entry.safe);
+    // nobody shall take the error of a motion that collides for the best one
+    let error = |value: f64| match entry.safe {
+        true => square_metres(value),
+        false => format!("({})", square_metres(value)),
+    };
+    let error_of = |value: fn(&CostDocument) -> Option<f64>| {
+        let value = cost.and_then(value).filter(|v| v.is_finite());
+        or_dash(value.map(error))
+    };
     let planned = entry.search_stats.is_some();
     vec![
         plain(joined(&methods)),
         verdict(&entry.verdict),
-        figure(|c| c.space_time_error_m2, square_metres),
-        or_dash(
-            cost.and_then(|c| c.space_time_error_arc_length_m2)
-                .map(square_metres),
-        ),
+        error_of(|c| Some(c.space_time_error_m2)),
+        error_of(|c| c.space_time_error_arc_length_m2),
         figure(|c| c.duration_s, tenths),
         or_dash(cost.and_then(|c| c.delay_s).map(signed)),
         figure(|c| c.length_m, |length| format!("{length:.0}")),
@@ -154,6 +160,10 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
              come so near is counted to the end of the desired time"
                 .to_owned(),
         );
+    }
+    if entries.iter().any(|e| e.cost.is_some() && !e.safe) {
+        let why = "the motion is not safe, so its J is no measure of it";
+        lines.push(format!("J in brackets: {why}"));
     }
     let mut methods: Vec<&str> = Vec::new();
     for entry in entries {

@@ -5,7 +5,7 @@ use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
 };
-use crate::text::tenths;
+use crate::text::{counted, tenths};
 
 pub(super) const TIMES: &str = "Planning";
 
@@ -156,8 +156,11 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
         (
             "Sailed",
             format!(
-                "J {:.0} m²{share}; turns {}, changes of speed {}; breaks {breaks}",
-                sailed.cost_m2, sailed.turns, sailed.speed_changes
+                "J {:.0} m²{share}; toward one target, until it is nearest, at most {} and {} of \
+                 speed; breaks {breaks}",
+                sailed.cost_m2,
+                counted(sailed.turns, "turn"),
+                counted(sailed.speed_changes, "change")
             ),
         ),
         (

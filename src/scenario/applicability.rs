@@ -5,6 +5,7 @@ use crate::frame::{Vector, heading_of, wrap};
 use crate::input::Fault;
 use crate::planner::{Minimises, Objective};
 use crate::target::Target;
+use crate::text::rounded;
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
 
@@ -38,9 +39,9 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     if own.tracking_margin > room {
         faults.push(Fault::new(
             "own_ship.tracking_margin_m",
-            own.tracking_margin,
+            format_args!("{} m", own.tracking_margin),
             format_args!(
-                "at most {room}: a part of safety_margin_m, and of land_margin_m with a map"
+                "at most {room} m: a part of safety_margin_m, and of land_margin_m with a map"
             ),
         ));
     }
@@ -98,17 +99,14 @@ fn lag(scenario: &Scenario) -> Option<Fault> {
         return None;
     }
     let found = format!(
-        "{acceleration}: own ship is {lag:.2} m off its plan after a change from {low} to {high} \
-         m/s, and its tracking margin is {} m",
+        "{acceleration}: own ship is {lag:.2} m off its plan after a change from {} to {} m/s, and \
+         its tracking margin is {} m",
+        rounded(low),
+        rounded(high),
         own.tracking_margin
     );
     let allowed = "a greater one, speeds nearer to one another, or a larger tracking_margin_m";
     fault(found, allowed)
-}
-
-/// A length rounded to the micrometre.
-fn micrometres(length: f64) -> f64 {
-    (length * 1e6).round() / 1e6
 }
 
 fn for_paths(scenario: &Scenario) -> Vec<Fault> {
@@ -119,7 +117,7 @@ fn for_paths(scenario: &Scenario) -> Vec<Fault> {
     if !(away <= tolerance::JOINT_M) {
         faults.push(Fault::new(
             "own_ship.position",
-            format_args!("a start {} m from the first waypoint", micrometres(away)),
+            format_args!("a start {} m from the first waypoint", rounded(away)),
             "the first waypoint: the path-time planner keeps to the path",
         ));
     }

@@ -11,7 +11,7 @@ use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::input::{Faults, Field, Node, Table, every, from_toml};
+use crate::input::{Fault, Faults, Field, Node, Table, every, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::text::LINE;
@@ -33,10 +33,24 @@ pub(super) fn parse(text: &str, folder: &Path, faults: &Faults) -> Option<Scenar
     let table = Field::root(&root, faults).table("a table")?;
     let scenario = scenario(table, folder)?;
     for fault in scenario.unfit() {
-        let line = root.line_at(&fault.path);
-        faults.note(fault.at_line(line));
+        faults.note(at(&root, fault));
     }
     Some(scenario)
+}
+
+/// Faults of a scenario with their places in its text.
+pub(super) fn located(text: &str, faults: Vec<Fault>) -> Vec<Fault> {
+    match from_toml(text, &Faults::default()) {
+        Some(root) => faults.into_iter().map(|fault| at(&root, fault)).collect(),
+        None => faults,
+    }
+}
+
+/// A fault with its line, under the key that the file has.
+fn at(root: &Node, fault: Fault) -> Fault {
+    let path = root.path_in_unit(&fault.path).unwrap_or(fault.path);
+    let line = root.line_at(&path);
+    Fault { path, ..fault }.at_line(line)
 }
 
 /// The scenario of a file's outermost table. `None` only if a fault was noted.

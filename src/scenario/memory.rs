@@ -14,8 +14,8 @@ pub struct Memory {
     pub sailed: Vec<Segment>,
     /// The remainder of the plan that own ship follows, from t = 0 on; empty without one.
     pub remainder: Vec<Segment>,
-    /// Metres from the remainder to where own ship is, within its tracking margin. The plan goes on
-    /// from the remainder, not from there.
+    /// Metres from the remainder to where own ship was measured. Within its tracking margin the plan
+    /// goes on from the remainder, not from there.
     pub off_plan: f64,
     /// The manoeuvres of the remainder.
     pub manoeuvres: Vec<PlannedManoeuvre>,

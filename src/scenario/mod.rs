@@ -34,6 +34,10 @@ use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
+/// The JSON schema of a scenario file. It says what the reader accepts, key by key; what one key
+/// says of another is left to the reader.
+pub const SCHEMA: &str = include_str!("../../docs/schema/scenario.schema.json");
+
 /// Degree to which a plan follows the collision regulations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compliance {
@@ -130,6 +134,12 @@ impl Scenario {
     /// Every reason why the scenario's planner cannot plan it; faults without lines.
     pub fn unfit(&self) -> Vec<Fault> {
         applicability::unfit(self)
+    }
+
+    /// Such faults, and those of [`crate::simulation::Simulation::new`], with their lines in the text
+    /// of the scenario.
+    pub fn located(text: &str, faults: Vec<Fault>) -> Vec<Fault> {
+        check::located(text, faults)
     }
 
     /// True for an allowed `max_risk`.

@@ -110,10 +110,10 @@ fn an_assessment_can_be_drawn() {
     assert!(drawn("a.png").starts_with(b"\x89PNG\r\n\x1a\n"));
     folder.refuses(&format!(
         "
-        assess {scenario} --figure DIR/new/a.pdf | allowed: one of the two
-        assess {scenario} --figure DIR/new/a | neither in .svg nor in .png
+        assess {scenario} --figure DIR/new/a.eps | allowed: one of the three
+        assess {scenario} --figure DIR/new/a | in none of .svg, .png and .pdf
         assess {scenario} --figure DIR/new/a.svg/b.svg | the folder cannot be made
-        assess {scenario} --figure DIR/new/. | neither
+        assess {scenario} --figure DIR/new/. | in none of
         "
     ));
 }

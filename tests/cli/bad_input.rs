@@ -107,7 +107,7 @@ fn files_that_are_none_are_named() {
         check DIR/bytes.toml | found bytes that are not text at byte 1
         plan | Usage
         suite --json --figure x.svg | --figure x.svg: a file, but there are
-        suite --figure x.pdf | --figure: x.pdf | .svg
+        suite --figure x.eps | --figure: x.eps | .svg
         ",
     );
     let empty = Folder::new();
@@ -176,4 +176,31 @@ fn what_was_found_is_said_in_few_words() {
         folder.write("words.toml", figure.replace("intervals = 50", &change));
         folder.refuses(&format!("check DIR/words.toml | {said}"));
     }
+}
+
+/// Faults that a command finds later than the reader have the line of the file and its unit.
+#[test]
+fn later_faults_have_their_line() {
+    let folder = Folder::new();
+    let text = HEAD_ON.replace(
+        "safety_margin_m = 20.0",
+        "safety_margin_cbl = 0.1\ntracking_margin_cbl = 2.1",
+    );
+    let file = folder.write("units.toml", text);
+    let said = stderr(&run(&format!("check {file}")).code(2));
+    let fault = "line 14: own_ship.tracking_margin_cbl: found 388.92 m; allowed: at most 18.52 m: ";
+    assert!(said.contains(fault), "{said}");
+    let file = folder.write(
+        "sail.toml",
+        format!("{HEAD_ON}\n[simulation]\nstep_s = 9.0\nreplan_s = 5.0\n"),
+    );
+    let said = stderr(&run(&format!("simulate {file}")).code(2));
+    let line = HEAD_ON.lines().count() + 3;
+    let fault = format!("line {line}: simulation.step_s: found 9; allowed: at most 5");
+    assert!(said.contains(&fault), "{said}");
+    let said = stderr(&run(
+        "plan scenarios/harbour/munkholmen.toml --planner optimal-control",
+    ));
+    assert!(said.contains(": map: found land for"), "{said}");
+    assert!(said.contains("line "), "{said}");
 }

@@ -64,7 +64,7 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     Folder::new().refuses(
         "
         compare scenarios/colregs/head-on.toml --max-risk 0,1 | allowed: a number from 0 to 0.999999
-        compare scenarios/colregs/head-on.toml --figure x.pdf | ends neither in .svg nor in .png
+        compare scenarios/colregs/head-on.toml --figure x.eps | ends in none of .svg, .png and .pdf
         ",
     );
     let unwritten = run(&format!("compare {head_on} --csv /no/such/folder/x.csv")).code(2);

@@ -11,6 +11,7 @@ mod plan;
 mod program;
 #[cfg(feature = "recording")]
 mod recordings;
+mod schemas;
 mod simulate;
 mod suite;
 mod terminal;

@@ -143,3 +143,72 @@ fn a_quiet_command_has_an_exit_status_alone() {
     let refused = run(&format!("plan {bad} --quiet")).code(2).stdout("");
     assert!(stderr(&refused).contains("bad.toml: "));
 }
+
+/// Lines go on below their value; a pipe gets them whole.
+#[test]
+fn long_lines_fit_the_terminal() {
+    let imported = "scenarios/dnv/traffic_situation_55.json";
+    for words in [
+        "plan scenarios/harbour/munkholmen.toml".to_owned(),
+        format!("plan {imported}"),
+        format!("check {imported} scenarios/imazu/imazu.json"),
+        "compare scenarios/forces/give-way.toml".to_owned(),
+        "simulate scenarios/closed-loop/harbour-ferries.toml --duration-s 60".to_owned(),
+        "suite --lint scenarios/imazu/imazu.json".to_owned(),
+        "verify scenarios/colregs/head-on.toml".to_owned(),
+    ] {
+        let words: Vec<&str> = words.split(' ').collect();
+        for width in [80, 120] {
+            let shown = command(&words).env("COLUMNS", width.to_string()).assert();
+            let text = stdout(&shown) + &stderr(&shown);
+            let wide = text.lines().find(|line| line.chars().count() > width);
+            assert_eq!(wide, None, "{words:?}");
+        }
+    }
+    let shown = command(&["plan", "scenarios/harbour/munkholmen.toml"])
+        .env("COLUMNS", "80")
+        .assert();
+    let text = stdout(&shown);
+    let broken = "\n               manoeuvre: first alteration 220 s before the closest approach, 1\n                 turn of";
+    assert!(text.contains(broken), "{text}");
+    assert!(stdout(&run("plan scenarios/harbour/munkholmen.toml")).contains("approach, 1 turn of"));
+}
+
+/// What is noted of several ships, or of several situations of a file, is one note.
+#[test]
+fn notes_name_all_that_they_are_about() {
+    let files = "scenarios/imazu/imazu.json scenarios/dnv/traffic_situation_55.json";
+    let notes = stderr(&run(&format!("check {files}")).success());
+    assert_eq!(notes.lines().count(), 4, "{notes}");
+    for note in [
+        "imazu.json: imazu-01, imazu-02, imazu-03, imazu-04: own ship, target 1: no size",
+        "_55.json: target_ship_1, target_ship_2, target_ship_3: its track ends at 1796 s",
+    ] {
+        assert!(notes.contains(note), "{notes}");
+    }
+}
+
+/// A plan is verified through a pipe, and goes on from one.
+#[test]
+fn a_plan_is_read_from_standard_input() {
+    let head_on = "scenarios/colregs/head-on.toml";
+    let plan = stdout(&run(&format!("plan {head_on} --json")).success());
+    let give = |words: &str, text: &str| {
+        let words: Vec<&str> = words.split(' ').collect();
+        command(&words).write_stdin(text).assert()
+    };
+    let verified = stdout(&give("verify -", &plan).success());
+    assert!(
+        verified.starts_with("Head-on: verified, safe\n"),
+        "{verified}"
+    );
+    let checked = document(&give("verify - --json", &plan).success());
+    assert_values(&checked, "/plans/0/file \"standard input\"\n/verified 1");
+    let said = stderr(&give("verify -", "").code(2));
+    assert!(
+        said.contains("standard input: 1 fault\n  found nothing"),
+        "{said}"
+    );
+    let later = give(&format!("plan {head_on} --previous - --json"), &plan);
+    assert!(document(&later.success())["memory"].is_object());
+}

@@ -189,7 +189,7 @@ fn every_view_tells_the_clearance_of_the_right_target() {
     };
 
     let said = stdout(&run(&format!("plan {file}")).success());
-    says(&said, "clearance    290.0 m;");
+    says(&said, "clearance    worst case 290.0 m;");
     let plan = run(&format!("plan {file} --json")).success();
     let plan_file = folder.write("plan.json", stdout(&plan));
     let plan = document(&plan);

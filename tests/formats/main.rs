@@ -4,6 +4,7 @@ mod common_ocean;
 #[path = "../campaigns/encounter_generator.rs"]
 mod encounter_generator;
 mod routes;
+mod schema;
 
 use std::path::Path;
 

@@ -8,7 +8,7 @@ use searoom::frame::Vector;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::{NoPlan, Outcome, Plan};
-use searoom::report::figure::plan_figure;
+use searoom::report::figure::{FigureOptions, plan_figure};
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::{ForceNode, Steered, Trajectory};
@@ -298,7 +298,10 @@ vessel = "cybership2-full"
     // the forces are some tenths of the limits of 686 kN and 514 kN
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
-    let axes = |run: &Run| plan_figure(run, &PlanDocument::of(run)).svg();
+    let axes = |run: &Run| {
+        let figure = plan_figure(run, &PlanDocument::of(run), &FigureOptions::default());
+        figure.expect("drawn").svg()
+    };
     for (svg, third) in [
         (axes(&full), "Rate of turn [°/s]"),
         (axes(&free), "Speed through water [m/s]"),

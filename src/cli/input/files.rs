@@ -7,13 +7,45 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use searoom::document::{INTERNAL_FAULT, UNREADABLE};
-use searoom::input::{Fault, InputError};
+use searoom::input::{Fault, InputError, read_from, read_text};
 
 use super::super::output::Output;
 use super::super::output::status::ExitStatus;
 
 /// Path that means standard input.
-pub const STDIN: &str = "-";
+const STDIN: &str = "-";
+
+/// Name of standard input in messages.
+const STDIN_NAME: &str = "standard input";
+
+/// Name of a file in messages.
+pub fn name(file: &Path) -> PathBuf {
+    match is_stdin(file) {
+        // in the working directory, where the files that it names are
+        true => PathBuf::from(STDIN_NAME),
+        false => file.to_owned(),
+    }
+}
+
+fn is_stdin(file: &Path) -> bool {
+    file == Path::new(STDIN)
+}
+
+/// The text of a file, or of standard input to its end.
+pub fn text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputError> {
+    if !is_stdin(file) {
+        return read_text(file, mebibytes, kind);
+    }
+    let name = name(file);
+    let text = read_from(std::io::stdin(), &name, mebibytes, kind)?;
+    match text.trim() {
+        "" => Err(InputError::faults(
+            &name,
+            vec![Fault::new("", "nothing", kind)],
+        )),
+        _ => Ok(text),
+    }
+}
 
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";

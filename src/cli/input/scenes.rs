@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use searoom::input::{Fault, InputError, read_from, read_text};
+use searoom::input::{Fault, InputError};
 use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation};
 use searoom::scenario::{FILE_MEBIBYTES, Scenario};
 
 use super::super::args::AssumedArgs;
 use super::super::output::Output;
-use super::files::{self, Found, Refused, SEPARATOR, STDIN};
+use super::files::{self, Found, Refused, SEPARATOR};
 
 const KIND: &str = "a scenario file";
 
@@ -44,6 +44,14 @@ impl Scene {
         made.map_err(|faults| Refused::input(file, InputError::faults(file, faults)))
     }
 
+    /// Faults with their lines in the file, where it is a scenario file.
+    pub fn located(&self, faults: Vec<Fault>) -> Vec<Fault> {
+        match &self.source {
+            Source::Text(text) => Scenario::located(text, faults),
+            Source::Situation(..) => faults,
+        }
+    }
+
     /// True for a situation of another format.
     pub fn is_imported(&self) -> bool {
         matches!(self.source, Source::Situation(..))
@@ -57,14 +65,20 @@ impl Scene {
         }
     }
 
-    /// Name of the file, with the situation if the file may contain several.
+    /// Name of the situation if the file may contain several.
+    pub fn name(&self) -> Option<&str> {
+        match &self.source {
+            Source::Situation(situation, _) if situation.id.is_some() => Some(&situation.name),
+            _ => None,
+        }
+    }
+
+    /// Name of the file, with that of the situation.
     pub fn label(&self) -> String {
         let file = self.found.file.display();
-        match &self.source {
-            Source::Situation(situation, _) if situation.id.is_some() => {
-                format!("{file}: {}", situation.name)
-            }
-            _ => file.to_string(),
+        match self.name() {
+            Some(name) => format!("{file}: {name}"),
+            None => file.to_string(),
         }
     }
 }
@@ -97,21 +111,13 @@ fn of_file(
     output: &Output,
     scenes: &mut Vec<Result<Scene, Refused>>,
 ) {
-    let is_stdin = found.file == Path::new(STDIN);
-    let found = &match is_stdin {
-        // in the working directory, where the files that it names are
-        true => Found {
-            file: PathBuf::from("standard input"),
-            ..found.clone()
-        },
-        false => found.clone(),
+    let text = files::text(&found.file, FILE_MEBIBYTES, KIND);
+    let found = &Found {
+        file: files::name(&found.file),
+        ..found.clone()
     };
     let file = &found.file;
-    let read = match is_stdin {
-        true => read_stdin(file),
-        false => read_text(file, FILE_MEBIBYTES, KIND),
-    };
-    let text = match read {
+    let text = match text {
         Ok(text) => text,
         Err(error) => return scenes.push(Err(Refused::input(file, error))),
     };
@@ -139,18 +145,6 @@ fn of_file(
             scenes.push(Err(Refused::unreadable(file, error)));
         }
         Err(faults) => scenes.push(wrong(faults)),
-    }
-}
-
-/// Reads standard input to its end.
-fn read_stdin(name: &Path) -> Result<String, InputError> {
-    let text = read_from(std::io::stdin(), name, FILE_MEBIBYTES, KIND)?;
-    match text.trim() {
-        "" => Err(InputError::faults(
-            name,
-            vec![Fault::new("", "nothing", KIND)],
-        )),
-        _ => Ok(text),
     }
 }
 

@@ -14,6 +14,8 @@ use comfy_table::Table;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::{Display, printable_lines};
 use serde::Serialize;
+use textwrap::core::display_width;
+use textwrap::{WordSeparator, WordSplitter};
 
 use super::input::files::Refused;
 use products::Failure;
@@ -28,41 +30,60 @@ const COLOURS: [&str; 5] = [
     "\u{1b}[0m",
 ];
 
+/// A line whose first words are followed by two spaces goes on below the words after them, where
+/// these begin before this column.
+const VALUE_COLUMN: usize = 20;
+
+/// Name of a scenario in its file, or nothing, and the notes on it.
+pub type Noted = (String, Vec<String>);
+
 #[derive(Debug)]
 pub struct Output {
     pub display: Display,
+    /// Width of standard error in characters, where it is a terminal.
+    messages: Option<usize>,
     /// Only documents and errors.
     pub quiet: bool,
 }
 
 impl Output {
-    /// Enables colour on a terminal, unless `NO_COLOR` forbids it. Tables are as wide as `COLUMNS`
-    /// or the terminal.
+    /// Enables colour on a terminal, unless `NO_COLOR` or `TERM=dumb` forbids it. Texts are as wide
+    /// as `COLUMNS` or the terminal.
     pub fn new(quiet: bool) -> Self {
         let terminal = std::io::stdout().is_terminal();
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         let columns = std::env::var("COLUMNS").ok();
         let columns = columns.and_then(|n| n.parse().ok().filter(|n| *n > 0));
-        let measured = || terminal.then(|| Table::new().width()).flatten();
+        let measured = |table: &Table| table.width().map(usize::from);
+        let mut on_stderr = Table::new();
+        on_stderr.use_stderr();
+        let messages = || {
+            std::io::stderr()
+                .is_terminal()
+                .then(|| measured(&on_stderr))
+        };
+        let results = || terminal.then(|| measured(&Table::new()));
         Self {
             quiet,
+            messages: columns.or_else(|| messages().flatten()),
             display: Display {
-                colour: wanted && terminal,
-                width: columns.or_else(|| measured().map(usize::from)),
+                colour: wanted && terminal && !is_dumb(),
+                width: columns.or_else(|| results().flatten()),
             },
         }
     }
 
-    /// Prints a result as text.
+    /// Prints a result as text, in lines that fit the terminal.
     pub fn result(&self, text: &str) -> ExitStatus {
         match self.quiet {
             true => ExitStatus::Good,
-            false => self.print(text),
+            false => self.print(&wrapped(text, self.display.width)),
         }
     }
 
-    /// Prints to standard output. Reports a bad status if printing fails; a closed pipe is not an error.
-    fn print(&self, text: &str) -> ExitStatus {
+    /// Prints what was asked for and nothing else, as it is, also where the command is quiet.
+    /// Reports a bad status if printing fails; a closed pipe is not an error.
+    pub fn print(&self, text: &str) -> ExitStatus {
         let mut stdout = std::io::stdout().lock();
         let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
@@ -119,8 +140,7 @@ impl Output {
 
     pub fn error(&self, error: &impl fmt::Display) {
         // an error of standard error cannot be reported
-        let error = error.to_string();
-        let _ = writeln!(std::io::stderr(), "error: {}", printable_lines(&error));
+        let _ = writeln!(std::io::stderr(), "{}", self.message("error", error));
     }
 
     /// Prints an error of the input or of its use.
@@ -154,8 +174,32 @@ impl Output {
         if self.quiet {
             return;
         }
-        let note = note.to_string();
-        let _ = writeln!(std::io::stderr(), "note: {}", printable_lines(&note));
+        let _ = writeln!(std::io::stderr(), "{}", self.message("note", note));
+    }
+
+    /// Prints the notes on a scenario, or on several of the same `file`, which have names. What is
+    /// noted of several subjects is one note.
+    pub fn notes(&self, file: Option<&str>, noted: &[Noted]) {
+        let of_each = noted.iter().flat_map(|(name, notes)| {
+            let split = notes
+                .iter()
+                .map(|note| note.split_once(": ").unwrap_or(("", note)));
+            let groups = grouped(split.map(|(who, what)| (who, what.to_owned())));
+            groups
+                .into_iter()
+                .map(move |(who, what)| (name.as_str(), in_front(&who, what)))
+        });
+        for (names, note) in grouped(of_each) {
+            let note = in_front(&names, note);
+            self.note(&in_front(file.as_slice(), note));
+        }
+    }
+
+    /// A message in lines that fit standard error.
+    fn message(&self, kind: &str, message: &impl fmt::Display) -> String {
+        let message = message.to_string();
+        let text = format!("{kind}: {}", printable_lines(&message));
+        wrapped(&text, self.messages).into_owned()
     }
 
     pub fn wrote(&self, file: &Path) {
@@ -164,7 +208,7 @@ impl Output {
 
     /// Creates a progress bar on standard error; hidden unless that is a terminal.
     pub fn progress(&self, steps: usize) -> ProgressBar {
-        if self.quiet {
+        if self.quiet || is_dumb() {
             return ProgressBar::hidden();
         }
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
@@ -172,6 +216,63 @@ impl Output {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
         }
+    }
+}
+
+/// True for a terminal without escape codes.
+fn is_dumb() -> bool {
+    std::env::var_os("TERM").is_some_and(|term| term == "dumb")
+}
+
+/// Breaks lines that are too wide, between words. They go on below their value, or indented.
+fn wrapped(text: &str, width: Option<usize>) -> Cow<'_, str> {
+    let Some(width) = width.filter(|width| text.lines().any(|line| display_width(line) > *width))
+    else {
+        return Cow::Borrowed(text);
+    };
+    let lines = text.split('\n').map(|line| {
+        let words = line.trim_start();
+        let begin = line.len() - words.len();
+        let value = words.find("  ").map(|end| {
+            let gap = words[end..].len() - words[end..].trim_start().len();
+            display_width(&line[..begin + end + gap])
+        });
+        let column = value
+            .filter(|column| *column < VALUE_COLUMN)
+            .unwrap_or(begin + 2);
+        let indent = " ".repeat(column);
+        let options = textwrap::Options::new(width)
+            .subsequent_indent(&indent)
+            .break_words(false)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation);
+        textwrap::wrap(line, options).join("\n")
+    });
+    Cow::Owned(lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// Those with the same message, in the order of the first of each.
+fn grouped<'w>(all: impl Iterator<Item = (&'w str, String)>) -> Vec<(Vec<&'w str>, String)> {
+    let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
+    for (who, what) in all {
+        match groups.iter_mut().find(|(_, other)| *other == what) {
+            Some((names, _)) => names.push(who),
+            None => groups.push((vec![who], what)),
+        }
+    }
+    groups
+}
+
+/// A text behind the names that it is about, if there are any.
+fn in_front(names: &[&str], text: String) -> String {
+    let names: Vec<&str> = names
+        .iter()
+        .copied()
+        .filter(|name| !name.is_empty())
+        .collect();
+    match names.is_empty() {
+        true => text,
+        false => format!("{}: {text}", names.join(", ")),
     }
 }
 

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use searoom::document::{PlanDocument, ScenarioComparisonDocument, SimulationDocument};
 use searoom::pipeline::Run;
-use searoom::report::figure::{FigureError, FigureFormat, plan_figure, simulation_figure};
+use searoom::report::figure::{
+    FigureError, FigureFormat, FigureOptions, plan_figure, simulation_figure,
+};
 use searoom::report::page::{HtmlReport, Subject, link_from};
 use searoom::report::write_atomically;
 #[cfg(feature = "recording")]
@@ -25,14 +27,16 @@ use super::{Output, json};
 pub struct Products {
     recordings: Option<Place>,
     figures: Option<Place>,
+    drawn: FigureOptions,
     plans: Option<PathBuf>,
     report: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
     pub figures: Option<&'a Path>,
+    pub drawn: FigureOptions,
     pub plans: Option<&'a Path>,
     pub report: Option<&'a Path>,
 }
@@ -51,6 +55,7 @@ impl Products {
         let Wanted {
             recordings,
             figures,
+            drawn,
             plans,
             report,
         } = wanted;
@@ -75,7 +80,7 @@ impl Products {
             .map(|path| place("--rrd", path, is_recording(path), ".rrd"))
             .transpose()?;
         let figures = figures
-            .map(|path| place("--figure", path, is_figure(path), ".svg or .png"))
+            .map(|path| place("--figure", path, is_figure(path), ".svg, .png or .pdf"))
             .transpose()?;
         for (option, folder) in [("--plans", plans), ("--report", report)] {
             if let Some(folder) = folder {
@@ -85,6 +90,7 @@ impl Products {
         Ok(Self {
             recordings,
             figures,
+            drawn,
             plans: plans.map(Path::to_owned),
             report: report.map(Path::to_owned),
         })
@@ -97,7 +103,7 @@ impl Products {
                 searoom::recording::write(run, plan, &place.file(stem, "rrd"))?;
             }
             if let Some(place) = &self.figures {
-                plan_figure(run, plan).write(&place.file(stem, "svg"))?;
+                plan_figure(run, plan, &self.drawn)?.write(&place.file(stem, "svg"))?;
             }
             if let Some(folder) = &self.plans {
                 let file = folder.join(format!("{stem}.json"));
@@ -223,7 +229,8 @@ impl Products {
                 searoom::recording::write_simulation(&simulated, &place.file(stem, "rrd"))?;
             }
             if let Some(place) = &self.figures {
-                simulation_figure(scenario, document).write(&place.file(stem, "svg"))?;
+                simulation_figure(scenario, document, &self.drawn)?
+                    .write(&place.file(stem, "svg"))?;
             }
             Ok(())
         })

@@ -1,12 +1,13 @@
 //! Record of the optimal-control solution.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Run;
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlDocument {
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
@@ -21,7 +22,7 @@ pub struct ControlDocument {
 }
 
 /// Force limits, symmetric about zero.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForceLimitsDocument {
     pub surge_n: f64,
     pub sway_n: f64,
@@ -29,7 +30,7 @@ pub struct ForceLimitsDocument {
 }
 
 /// Result of one initial guess.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartAttemptDocument {
     pub start: String,
     pub status: String,
@@ -39,7 +40,7 @@ pub struct StartAttemptDocument {
 }
 
 /// Plans that pass every set on the same side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HomotopyClassDocument {
     pub sides: Vec<Option<String>>,
     pub objective: f64,

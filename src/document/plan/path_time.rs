@@ -1,5 +1,6 @@
 //! Diagram of a path-time plan, see docs/documents.md.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::clockwise_deg;
@@ -8,7 +9,7 @@ use crate::pipeline::Run;
 use crate::planner::path_time::PathTimeDiagram;
 
 /// Path-time diagram; points are `[s_m, t_s]`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathTimeDocument {
     pub path: String,
     pub legs: Vec<PathLegDocument>,
@@ -18,7 +19,7 @@ pub struct PathTimeDocument {
 }
 
 /// Leg of the planned path.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathLegDocument {
     pub start_m: f64,
     pub end_m: f64,
@@ -26,7 +27,7 @@ pub struct PathLegDocument {
 }
 
 /// Obstacle on a leg, clipped to the leg and the horizon.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathObstacleDocument {
     pub target: String,
     pub leg: usize,
@@ -34,7 +35,7 @@ pub struct PathObstacleDocument {
 }
 
 /// Corner of the path, exempt from the turning radius. The hull covers both headings there.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathCornerDocument {
     pub s_m: f64,
     pub turn_deg: f64,

@@ -1,5 +1,6 @@
 //! Phases of a plan by the rules: free, hold, out, parallel, back (docs/replanning.md).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::PlanDocument;
@@ -11,7 +12,7 @@ use crate::frame::{heading_from_course_deg, wrap};
 use crate::tolerance;
 
 /// What own ship does in a part of a plan by the rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Phase {
     /// Follows the mission.
@@ -35,7 +36,7 @@ words!(Phase {
 });
 
 /// A phase and its time interval, seconds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseDocument {
     pub phase: Phase,
     pub from_s: f64,

@@ -1,6 +1,7 @@
 //! Convex sets of positions and of velocities: the one conversion to their documents and back.
 
 use nalgebra::Matrix2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Vector;
@@ -8,7 +9,7 @@ use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::scenario::Fault;
 
 /// All keys of a set. An untagged enum is read from these so that an error names the wrong key.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 struct SetKeys {
     vertices_m: Option<Vec<[f64; 2]>>,
     center_m: Option<[f64; 2]>,
@@ -39,7 +40,7 @@ const NEITHER: &str = "found neither vertices alone nor centre and shape alone, 
 macro_rules! set_document {
     ($(#[$doc:meta])* $name:ident { $vertices:ident, $center:ident, $shape:ident }) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(untagged, try_from = "SetKeys")]
         pub enum $name {
             Polygon {

@@ -2,9 +2,9 @@
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::mark;
-use super::panel::{AREA, window_around};
+use super::panel::window_around;
 use super::sections::{seconds, sections_beside};
-use super::{Figure, Panel, Stroke};
+use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::OwnSituation;
@@ -19,7 +19,19 @@ const COLUMNS: usize = 2;
 
 /// Draws the sections at `times` in seconds, dCPA over the velocities, and the risk at each time.
 /// Without times: the start, a third, two thirds and the end of the horizon.
-pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
+pub fn assessment_figure(
+    situation: &OwnSituation,
+    times: &[f64],
+    options: &FigureOptions,
+    title: &str,
+) -> Result<Figure, FigureError> {
+    options.draw(situation.horizon, |style| {
+        let figure = Figure::new(COLUMNS, assessment_panels(situation, times, style));
+        figure.titled(title)
+    })
+}
+
+fn assessment_panels(situation: &OwnSituation, times: &[f64], style: &Style) -> Vec<Panel> {
     let thirds: Vec<f64> = (0..4)
         .map(|i| situation.horizon * f64::from(i) / 3.0)
         .collect();
@@ -28,7 +40,7 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
     let (start, velocity) = (situation.pose.position, situation.velocity());
     let last = times.iter().copied().fold(0.0, f64::max);
     let track = [start, start + velocity * last];
-    let mut sections = sections_beside("Sections", targets, times, &track);
+    let mut sections = sections_beside("Sections", targets, times, &track).sized(style.area);
     sections.curve(&track, false, OWN);
     sections.line_key("own course held", OWN);
     name(&mut sections, situation);
@@ -57,7 +69,7 @@ pub fn assessment_figure(situation: &OwnSituation, times: &[f64]) -> Figure {
         panel.point_key("own ship, course held", field::OWN);
         panel
     }));
-    Figure::new(COLUMNS, panels)
+    panels
 }
 
 const OWN_ON_FIELD: Stroke = Stroke {
@@ -67,7 +79,7 @@ const OWN_ON_FIELD: Stroke = Stroke {
 
 /// Writes the targets' names above their first sections.
 fn name(panel: &mut Panel, situation: &OwnSituation) {
-    let gap = GAP * panel.window().size().x / AREA[0];
+    let gap = GAP * panel.pixel();
     for target in situation.obstacles {
         let reach = |x: f64, y: f64| target.section(0.0).support(Vector::new(x, y));
         let east = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));

@@ -5,9 +5,8 @@ use super::outline::{marks, sampled_boundary};
 use super::panel::window_around;
 use super::path_time::run_panel;
 use super::plan::{DESIRED, INSTANTS, LAND, land_areas, round_times};
-use super::sections::PLAN;
-use super::sections::seconds_list;
-use super::{Figure, Panel, Stroke};
+use super::sections::{PLAN, minutes_list};
+use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::Window;
@@ -24,18 +23,32 @@ const SHOWN: f64 = 4.0;
 
 /// Draws one row of panels per scenario: the chart, the distance to the nearest target over time,
 /// and in a sweep the cost over the accepted risk.
-pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
+pub fn comparison_figure(
+    compared: &[(&Scenario, &[Entry])],
+    options: &FigureOptions,
+) -> Result<Figure, FigureError> {
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
-    let rows = compared
-        .iter()
-        .flat_map(|(scenario, entries)| comparison_panels(scenario, entries, sweep));
-    Figure::new(if sweep { 3 } else { 2 }, rows.collect())
+    let ends = compared.iter().map(|(scenario, _)| scenario.horizon);
+    options.draw(ends.fold(f64::INFINITY, f64::min), |style| {
+        let rows = compared
+            .iter()
+            .flat_map(|(scenario, entries)| comparison_panels(scenario, entries, sweep, style));
+        Figure::new(if sweep { 3 } else { 2 }, rows.collect())
+    })
 }
 
 /// Builds the chart, the distance to the nearest target over time, and in a sweep the cost over
 /// risk.
-pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) -> Vec<Panel> {
-    let mut panels = vec![chart(scenario, entries), distances(scenario, entries)];
+pub(in crate::report) fn comparison_panels(
+    scenario: &Scenario,
+    entries: &[Entry],
+    sweep: bool,
+    style: &Style,
+) -> Vec<Panel> {
+    let mut panels = vec![
+        chart(scenario, entries, style),
+        distances(scenario, entries),
+    ];
     if sweep {
         panels.push(pareto(scenario, entries));
     }
@@ -93,7 +106,7 @@ fn named(method: Method, entries: &[Entry]) -> String {
 
 /// Draws all motions, the desired trajectory, and the sets of the first candidate with a motion at
 /// some instants.
-fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
+fn chart(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
     let ways: Vec<(Stroke, Vec<Vector>)> = entries
         .iter()
         .map(|entry| {
@@ -110,7 +123,10 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
     let mut sets: Vec<Vec<Vector>> = Vec::new();
-    let times = round_times(end, INSTANTS);
+    let times = match &style.times[..] {
+        [] => round_times(end, INSTANTS),
+        asked => asked.to_vec(),
+    };
     let first = entries.iter().find_map(|e| e.motion.as_ref());
     for obstacle in first.iter().flat_map(|motion| &motion.obstacles) {
         for time in &times {
@@ -122,7 +138,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         }
     }
     let title = format!("{}: trajectories", scenario.title);
-    let mut panel = Panel::plan(title, PLAN, window_around(shown, 0.06));
+    let mut panel = Panel::plan(title, PLAN, window_around(shown, 0.06)).sized(style.area);
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for boundary in &sets {
@@ -137,8 +153,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel.line_key("desired", DESIRED);
     let wide = |colour| Stroke::solid(colour, 3.0);
     if !sets.is_empty() {
-        let times = seconds_list(&times);
-        panel.line_key(&format!("sets at {times} s"), wide(SETS));
+        panel.line_key(&format!("sets at {}", minutes_list(&times)), wide(SETS));
     }
     if land.is_some() {
         panel.line_key("land", wide(LAND));
@@ -279,7 +294,8 @@ mod tests {
             ..entries[2].candidate
         };
         assert_eq!(cost_within_risk(&along.run(&forces)), None);
-        let svg = comparison_figure(&[(&scenario, &entries)]).svg();
+        let svg = comparison_figure(&[(&scenario, &entries)], &FigureOptions::default());
+        let svg = svg.expect("drawn").svg();
         assert!(svg.contains("path-time: none within the risk"));
         // sorted from the least risk, independent of the requested order
         assert!(svg.contains(&format!("space-time, A*: {clear:.0} to {risked:.0} m²")));

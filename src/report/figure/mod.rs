@@ -1,4 +1,4 @@
-//! Figures: panels in a grid, drawn as SVG or PNG. Equal panels give equal bytes.
+//! Figures: panels in a grid, drawn as SVG, PNG or PDF. Equal panels give equal bytes.
 //!
 //! Charts have equal axes, and every axis has its unit. Fields use the viridis palette. Its
 //! lightness increases with the value, so fields remain readable in greyscale print.
@@ -7,6 +7,7 @@ mod assessment;
 mod comparison;
 mod field;
 mod forces;
+mod options;
 mod outline;
 mod panel;
 mod path_time;
@@ -19,6 +20,8 @@ pub use assessment::assessment_figure;
 pub use comparison::comparison_figure;
 pub(super) use comparison::{comparison_panels, diagram_panels};
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
+pub use options::FigureOptions;
+pub(super) use options::Style;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};
 pub(super) use plan::plan_panels;

@@ -38,6 +38,13 @@ const LETTERS: usize = 58;
 /// Letters of a line of the legend that fit below a panel.
 const LEGEND_LETTERS: usize = 56;
 
+/// Width in pixels of a letter of the legend, and of all that is beside the letters.
+const LETTER: f64 = 5.5;
+const LEGEND_SIDES: f64 = 58.0;
+
+/// Where the legend of a narrow panel begins, in pixels.
+const NARROW: f64 = 8.0;
+
 /// Font size of a note in pixels.
 const NOTE_SIZE: u32 = 11;
 
@@ -65,6 +72,10 @@ pub struct Panel {
     title: String,
     axes: [String; 2],
     window: Window,
+    /// What the window contains at least.
+    content: Window,
+    /// Size in pixels of the area between the axes.
+    area: [f64; 2],
     equal: bool,
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
@@ -79,9 +90,22 @@ impl Panel {
     /// units.
     pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
-            window: with_ratio(window, AREA[0] / AREA[1]),
             equal: true,
             ..Self::free(title, axes, window)
+        }
+        .sized(AREA)
+    }
+
+    /// Sets the size in pixels of the area between the axes.
+    pub(super) fn sized(self, area: [f64; 2]) -> Self {
+        let window = match self.equal {
+            true => with_ratio(self.content, area[0] / area[1]),
+            false => self.content,
+        };
+        Self {
+            window,
+            area,
+            ..self
         }
     }
 
@@ -90,6 +114,8 @@ impl Panel {
             title,
             axes: axes.map(str::to_owned),
             window,
+            content: window,
+            area: AREA,
             equal: false,
             plots: Vec::new(),
             legend: Vec::new(),
@@ -111,7 +137,7 @@ impl Panel {
 
     pub(super) fn line_key(&mut self, label: &str, stroke: Stroke) {
         self.legend.push(LegendEntry {
-            label: shortened(label, LEGEND_LETTERS),
+            label: label.to_owned(),
             color: stroke.colour.to_owned(),
             shape: LegendShape::Line,
             dasharray: stroke.dashed.then(|| "8 4".to_owned()),
@@ -149,8 +175,8 @@ impl Panel {
     }
 
     /// Metres of a pixel.
-    fn pixel(&self) -> f64 {
-        self.window.size().x / AREA[0]
+    pub(super) fn pixel(&self) -> f64 {
+        self.window.size().x / self.area[0]
     }
 
     /// Draws a ship: its hull, or a symbol of the same course where the hull would be too small.
@@ -208,6 +234,23 @@ impl Panel {
         }
     }
 
+    /// Letters of a title that fit above this panel.
+    fn title_letters(&self) -> usize {
+        let [left, right, _] = MARGIN;
+        let width = |area: f64| left + area + right;
+        (LETTERS as f64 * width(self.area[0]) / width(AREA[0])) as usize
+    }
+
+    fn legend_entries(&self) -> Vec<LegendEntry> {
+        let width = MARGIN[0] + self.area[0] + ALONE - LEGEND_SIDES;
+        let letters = LEGEND_LETTERS.min((width / LETTER) as usize);
+        let short = |entry: &LegendEntry| LegendEntry {
+            label: shortened(&entry.label, letters),
+            ..entry.clone()
+        };
+        self.legend.iter().map(short).collect()
+    }
+
     pub(super) fn legend_lines(&self) -> usize {
         self.legend.len()
     }
@@ -226,7 +269,7 @@ impl Panel {
         let Window { low, high } = self.window;
         let [left, _, top] = MARGIN;
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
-            .with_title(shortened(&self.title, LETTERS))
+            .with_title(shortened(&self.title, self.title_letters()))
             .with_x_label(self.axes[0].as_str())
             .with_y_label(self.axes[1].as_str())
             .with_x_axis_min(low.x)
@@ -249,9 +292,11 @@ impl Panel {
             layout = layout.with_equal_aspect();
         }
         if !self.legend.is_empty() {
+            // a narrow panel has its legend below the whole of it
+            let begin = if self.area[0] < AREA[0] { NARROW } else { left };
             layout = layout
-                .with_legend_entries(self.legend.clone())
-                .with_legend_position(LegendPosition::Custom(left, top + AREA[1] + AXIS));
+                .with_legend_entries(self.legend_entries())
+                .with_legend_position(LegendPosition::Custom(begin, top + self.area[1] + AXIS));
         }
         for note in &self.notes {
             layout = layout.with_annotation(note.clone());
@@ -324,7 +369,10 @@ mod tests {
     fn a_long_name_ends_within_the_legend() {
         let mut panel = panel();
         panel.line_key(&"ship_".repeat(40), Stroke::solid("#000000", 1.0));
-        assert_eq!(panel.legend[0].label.chars().count(), LEGEND_LETTERS);
+        assert_eq!(
+            panel.legend_entries()[0].label.chars().count(),
+            LEGEND_LETTERS
+        );
     }
 
     #[test]

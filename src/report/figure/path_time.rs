@@ -11,8 +11,9 @@ use crate::planner::path_time::PathTimeDiagram;
 const JOINT: Stroke = Stroke::dashed("#bbbbbb", 0.8);
 
 /// Colours of successive targets; they also differ in lightness.
-const COLOURS: [&str; 7] = [
-    "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31",
+const COLOURS: [&str; 12] = [
+    "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#6a3d9a",
+    "#9aa800", "#e7298a", "#1b4f3f", "#4d5f8a",
 ];
 
 /// Time shown after the last arrival, as a fraction of the time until then.

@@ -5,10 +5,11 @@ use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
 use super::outline::{area, curve, sampled_boundary};
-use super::panel::window_around;
+use super::panel::{AREA, window_around};
 use super::path_time::{run_panel, target_colour};
-use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, Stroke};
+use super::render::shortened;
+use super::sections::{PLAN, minutes, sections_beside};
+use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::colregs::Role;
 use crate::document::{self, PlanDocument};
 use crate::frame::{Pose, Vector};
@@ -31,6 +32,15 @@ const FOUND: Stroke = Stroke::solid("#009e73", 0.8);
 pub(super) const LAND: &str = "#d9cba3";
 const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
+const OTHER_SETS: Stroke = Stroke::dashed("#777777", 0.8);
+
+/// Most letters of a name beside a ship.
+const NAME_LETTERS: usize = 14;
+
+/// Least interval between a round time and the closest approach, as a fraction of the interval
+/// between round times.
+const TIMES_APART: f64 = 0.25;
+
 /// Most instants after the start at which the sets are drawn.
 pub(super) const INSTANTS: f64 = 4.0;
 
@@ -51,21 +61,71 @@ pub(super) fn round_times(end: f64, most: f64) -> Vec<f64> {
         .collect()
 }
 
+/// The times that a chart marks: those asked for, or round ones, and the closest approach; and the
+/// index of the closest approach, of 0 without one.
+pub(super) fn marked_times(
+    style: &Style,
+    end: f64,
+    most: f64,
+    closest: Option<f64>,
+) -> (Vec<f64>, usize) {
+    let asked = !style.times.is_empty();
+    let mut times = match asked {
+        true => style.times.clone(),
+        // a small chart has room for fewer
+        false => round_times(end, most * (style.area[0] / AREA[0]).clamp(0.5, 1.0)),
+    };
+    let Some(closest) = closest.filter(|time| time.is_finite()) else {
+        return (times, 0);
+    };
+    let apart = match (asked, &times[..]) {
+        (false, [first, second, ..]) => TIMES_APART * (second - first),
+        _ => 0.0,
+    };
+    // hulls on one another hide which is which; the start stays
+    times.retain(|time| *time != closest && (*time == 0.0 || (time - closest).abs() > apart));
+    let place = times.partition_point(|time| *time < closest);
+    times.insert(place, closest);
+    (times, place)
+}
+
 /// Time step of a curve in seconds, and the maximum number of points besides its joints.
 const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
 /// Draws the chart of a run, with its path-time diagram or its velocities and forces if present.
 /// The title is that of the scenario; the verdict is above the chart.
-pub fn plan_figure(run: &Run, document: &PlanDocument) -> Figure {
-    Figure::new(2, plan_panels(run, document)).titled(&run.scenario.title)
+pub fn plan_figure(
+    run: &Run,
+    document: &PlanDocument,
+    options: &FigureOptions,
+) -> Result<Figure, FigureError> {
+    options.draw(end(run), |style| {
+        Figure::new(2, plan_panels(run, document, style)).titled(&run.scenario.title)
+    })
+}
+
+/// Time in seconds at which a chart ends: that of the plan, or of the desired trajectory.
+fn end(run: &Run) -> f64 {
+    let plan = run.planned.outcome.plan();
+    let end = plan.map_or(run.scenario.desired.duration(), |p| p.trajectory.end_time());
+    end.min(run.scenario.horizon)
 }
 
 /// Panels of [`plan_figure`].
-pub fn plan_panels(run: &Run, document: &PlanDocument) -> Vec<Panel> {
+pub(in crate::report) fn plan_panels(
+    run: &Run,
+    document: &PlanDocument,
+    style: &Style,
+) -> Vec<Panel> {
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
-    let mut panels = vec![chart_panel(&document::verdict_line(document), run)];
+    let mut panels = vec![chart(
+        &document::verdict_line(document),
+        run,
+        style,
+        Vec::new(),
+    )];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(motion));
     }
@@ -91,16 +151,20 @@ pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Ve
 /// Draws the desired and the planned trajectory. Sets are drawn at several times, with own ship's
 /// position at the same time.
 pub fn chart_panel(title: &str, run: &Run) -> Panel {
-    chart(title, run, Vec::new())
+    chart(title, run, &Style::default(), Vec::new())
 }
 
 /// Draws the chart with `others` above the sets and below the plan.
-fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
+fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
     let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
-    let end = trajectory.map_or(scenario.desired.duration(), Trajectory::end_time);
-    let end = end.min(scenario.horizon);
-    let times = round_times(end, INSTANTS);
+    let end = end(run);
+    let passages = run.evaluation.iter().flat_map(|judged| &judged.passages);
+    let nearest = passages
+        .zip(&scenario.targets)
+        .min_by(|(a, _), (b, _)| a.dcpa.total_cmp(&b.dcpa));
+    let tcpa = nearest.map(|(passage, _)| passage.tcpa);
+    let (times, filled) = marked_times(style, end, INSTANTS, tcpa);
     let sampled = match trajectory {
         Some(trajectory) => trajectory.sample_times(STEP, MOST_POINTS),
         None => vec![0.0, end],
@@ -108,9 +172,10 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let obstacles: Vec<&Obstacle> = run.obstacles().collect();
     let targets = scenario.targets.iter().zip(&obstacles).zip(&run.targets);
     let targets = targets.map(|((target, obstacle), outcome)| Charted {
+        name: target.name.clone(),
         key: match outcome.sets.encounter.role {
-            Role::None => format!("{}: set and nominal track", target.name),
-            role => format!("{}, {}: set and nominal track", target.name, role.word()),
+            Role::None => format!("{}: nominal track", target.name),
+            role => format!("{}, {}: nominal track", target.name, role.word()),
         },
         hull: target.ship().map(|ship| ship.hull),
         track: sampled
@@ -126,10 +191,6 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     });
     let targets: Vec<Charted> = targets.collect();
     let pose = |time: &f64| trajectory.map(|t| t.pose_at(*time));
-    let passages = run.evaluation.iter().flat_map(|judged| &judged.passages);
-    let nearest = passages
-        .zip(&scenario.targets)
-        .min_by(|(a, _), (b, _)| a.dcpa.total_cmp(&b.dcpa));
     let closest = nearest.and_then(|(passage, target)| {
         let ends = [
             pose(&passage.tcpa)?.position,
@@ -137,8 +198,9 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
         ];
         let (apart, time) = (tenths(passage.dcpa), passage.tcpa);
         let label = format!(
-            "closest approach: {apart} m to {} at {time:.0} s",
-            target.name
+            "closest approach: {apart} m to {} at {}",
+            target.name,
+            minutes(time)
         );
         Some((ends, label))
     });
@@ -148,15 +210,18 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
             .map(|pose| pose.position)
             .collect(),
         times,
+        filled,
         targets,
         planned: "planned",
         closest,
         others,
     };
-    traffic_chart(title, scenario, traffic)
+    traffic_chart(title, scenario, style, traffic)
 }
 
 pub(super) struct Charted {
+    /// Its name.
+    pub name: String,
     /// The words of the legend.
     pub key: String,
     /// Its hull, if it has one.
@@ -175,6 +240,8 @@ pub(super) struct Traffic {
     pub track: Vec<Vector>,
     /// Times in seconds.
     pub times: Vec<f64>,
+    /// The one of these times whose sets are filled; those of other times are outlined.
+    pub filled: usize,
     /// Own ship at these times; empty without a track.
     pub own: Vec<Pose>,
     pub targets: Vec<Charted>,
@@ -187,7 +254,12 @@ pub(super) struct Traffic {
 }
 
 /// Draws the mission, land, the targets and own ship, with the times beside the ships.
-pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) -> Panel {
+pub(super) fn traffic_chart(
+    title: &str,
+    scenario: &Scenario,
+    style: &Style,
+    traffic: Traffic,
+) -> Panel {
     let waypoints = scenario.desired.waypoints();
     let paths = scenario.alternatives.iter().flatten();
     let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
@@ -202,20 +274,23 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
         let places = target.poses.iter().flatten().map(|pose| pose.position);
         shown.extend(places.filter(within));
     }
-    let mut panel = Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.09));
+    let mut panel =
+        Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.09)).sized(style.area);
     let window = panel.window();
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, window));
     for (index, target) in traffic.targets.iter().enumerate() {
         let colour = target_colour(index);
         for (k, area) in target.areas.iter().enumerate() {
-            let opacity = 0.10 + 0.30 * (1.0 - k as f64 / traffic.times.len() as f64);
-            panel.fill_hull(area, colour, opacity);
-            let outline = Stroke {
-                dashed: k > 0,
-                ..Stroke::solid(colour, 0.8)
-            };
-            panel.curve(area, true, outline);
+            // sets of other times are no place that own ship has to avoid at this one
+            if k == traffic.filled {
+                panel.fill_hull(area, colour, 0.25);
+                panel.curve(area, true, Stroke::solid(colour, 1.0));
+            } else {
+                panel
+                    .plots
+                    .push(curve(area, true, Stroke::dashed(colour, 0.5)));
+            }
         }
     }
     for path in &scenario.alternatives {
@@ -234,20 +309,21 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
         panel.curve(ends, false, CLOSEST);
     }
     panel.curve(&traffic.track, false, PLANNED);
-    let times = traffic
-        .times
-        .iter()
-        .map(|time| format!("{} s", seconds(*time)));
-    let times: Vec<String> = times.collect();
+    let times: Vec<String> = traffic.times.iter().map(|time| minutes(*time)).collect();
     // with several targets their numbers stand before the times
     let number = |index: usize| match traffic.targets.len() {
         1 => String::new(),
         _ => format!("{}: ", index + 1),
     };
+    // the first place of a ship has its name, too
+    let named = |k: usize, name: &str, number: &str, time: &str| match k {
+        0 => format!("{number}{}, {time}", shortened(name, NAME_LETTERS)),
+        _ => format!("{number}{time}"),
+    };
     let mut labels: Vec<(String, Vector)> = Vec::new();
-    for (pose, time) in traffic.own.iter().zip(&times) {
+    for (k, (pose, time)) in traffic.own.iter().zip(&times).enumerate() {
         panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
-        labels.push((time.clone(), pose.position));
+        labels.push((named(k, "own ship", "", time), pose.position));
     }
     for (index, target) in traffic.targets.iter().enumerate() {
         for (k, (place, time)) in target.poses.iter().zip(&times).enumerate() {
@@ -260,17 +336,17 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
                 _ => continue,
             };
             if window.contains(place) {
-                labels.push((format!("{}{time}", number(index)), place));
+                labels.push((named(k, &target.name, &number(index), time), place));
             }
         }
     }
     // a ship that hardly moves is named once, own ship first
     let apart = LABELS_APART * window.size().x;
-    let mut named: Vec<Vector> = Vec::new();
+    let mut labelled: Vec<Vector> = Vec::new();
     for (label, place) in labels {
-        if named.iter().all(|p| (p - place).norm() > apart) {
+        if labelled.iter().all(|p| (p - place).norm() > apart) {
             panel.label(&label, place);
-            named.push(place);
+            labelled.push(place);
         }
     }
     if !traffic.track.is_empty() {
@@ -293,6 +369,16 @@ pub(super) fn traffic_chart(title: &str, scenario: &Scenario, traffic: Traffic) 
     if let Some((_, label)) = &traffic.closest {
         panel.line_key(label, CLOSEST);
     }
+    let sets = |target: &Charted| {
+        target
+            .areas
+            .get(traffic.filled)
+            .is_some_and(|a| !a.is_empty())
+    };
+    if traffic.targets.iter().any(sets) {
+        let now = &times[traffic.filled];
+        panel.line_key(&format!("sets: filled at {now}, else dashed"), OTHER_SETS);
+    }
     panel
 }
 
@@ -310,7 +396,7 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
         let way: Vec<Vector> = times.map(|t| trajectory.pose_at(t).position).collect();
         Some(curve(&way, false, FOUND))
     });
-    let mut panel = chart(title, run, ways.collect());
+    let mut panel = chart(title, run, &Style::default(), ways.collect());
     panel.line_key("found clear of all sets", FOUND);
     panel
 }

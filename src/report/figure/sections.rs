@@ -136,6 +136,18 @@ pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
 }
 
+/// A time as minutes and seconds, such as `12:05`.
+pub(super) fn minutes(time: f64) -> String {
+    let whole = time.round() as i64;
+    format!("{}:{:02}", whole / 60, whole % 60)
+}
+
+/// Times as minutes and seconds.
+pub(super) fn minutes_list(times: &[f64]) -> String {
+    let list: Vec<String> = times.iter().map(|time| minutes(*time)).collect();
+    list.join(", ")
+}
+
 pub(super) fn seconds_list(times: &[f64]) -> String {
     let list: Vec<String> = times.iter().map(|time| seconds(*time)).collect();
     list.join(", ")

@@ -1,7 +1,8 @@
 //! Figure of a simulation: what was sailed, and the closest approach.
 
-use super::plan::{Charted, Traffic, round_times, traffic_chart};
-use super::{Figure, Panel};
+use super::plan::{Charted, Traffic, marked_times, traffic_chart};
+use super::sections::minutes;
+use super::{Figure, FigureError, FigureOptions, Panel, Style};
 use crate::document::SimulationDocument;
 use crate::report::simulation::headline;
 use crate::scenario::Scenario;
@@ -15,25 +16,42 @@ const STEP: f64 = 1.0;
 const MOST_POINTS: f64 = 5_000.0;
 
 /// Draws the tracks of all ships, their hulls at round times and the closest approach.
-pub fn simulation_figure(scenario: &Scenario, simulation: &SimulationDocument) -> Figure {
+pub fn simulation_figure(
+    scenario: &Scenario,
+    simulation: &SimulationDocument,
+    options: &FigureOptions,
+) -> Result<Figure, FigureError> {
     let title = match simulation.safe {
         true => simulation.scenario.clone(),
         false => headline(simulation),
     };
-    let panel = simulation_panel(scenario, simulation);
-    Figure::new(1, vec![panel]).titled(&title)
+    options.draw(simulation.duration_s, |style| {
+        let panel = simulation_panel(scenario, simulation, style);
+        Figure::new(1, vec![panel]).titled(&title)
+    })
 }
 
 /// Panel of [`simulation_figure`].
-pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) -> Panel {
+pub(in crate::report) fn simulation_panel(
+    scenario: &Scenario,
+    simulation: &SimulationDocument,
+    style: &Style,
+) -> Panel {
     let end = simulation.duration_s;
     let step = STEP.max(end / MOST_POINTS);
     let steps = (end / step).ceil() as usize;
     let sampled = (0..=steps).map(|k| (k as f64 * step).min(end));
     let sampled: Vec<f64> = sampled.collect();
-    let times = round_times(end, INSTANTS);
+    let nearest = simulation.targets.iter().min_by(|a, b| {
+        // a distance that is no number is a contact
+        let [a, b] = [a, b].map(|t| t.least_clearance_m.unwrap_or(f64::NEG_INFINITY));
+        a.total_cmp(&b)
+    });
+    let closest = nearest.map(|target| target.least_clearance_t_s);
+    let (times, filled) = marked_times(style, end, INSTANTS, closest);
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
     let targets = simulation.targets.iter().map(|target| Charted {
+        name: target.name.clone(),
         key: format!("{}: hull and track", target.name),
         hull: Some(target.hull()),
         track: (sampled.iter())
@@ -44,11 +62,6 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
             .collect(),
         areas: Vec::new(),
     });
-    let nearest = simulation.targets.iter().min_by(|a, b| {
-        // a distance that is no number is a contact
-        let [a, b] = [a, b].map(|t| t.least_clearance_m.unwrap_or(f64::NEG_INFINITY));
-        a.total_cmp(&b)
-    });
     let closest = nearest.and_then(|target| {
         let (name, time) = (&target.name, target.least_clearance_t_s);
         let ends = [own(&time)?.position, target.at(time)?.pose.position];
@@ -58,7 +71,7 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
         let apart = apart.map_or("CONTACT with".to_owned(), |m| format!("{} m to", tenths(m)));
         Some((
             ends,
-            format!("closest approach: {apart} {name} at {time:.0} s"),
+            format!("closest approach: {apart} {name} at {}", minutes(time)),
         ))
     });
     let traffic = Traffic {
@@ -71,6 +84,7 @@ pub fn simulation_panel(scenario: &Scenario, simulation: &SimulationDocument) ->
         closest,
         others: Vec::new(),
         times,
+        filled,
     };
-    traffic_chart("Sailed", scenario, traffic)
+    traffic_chart("Sailed", scenario, style, traffic)
 }

@@ -11,7 +11,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
-    Figure, Panel, comparison_panels, diagram_panels, plan_panels, simulation_panel,
+    Figure, Panel, Style, comparison_panels, diagram_panels, plan_panels, simulation_panel,
 };
 use super::plan::{TIME_COLUMN, legs_grid, suite_grid};
 use super::simulation::{
@@ -64,7 +64,7 @@ impl HtmlReport {
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
         self.row(SuiteRunDocument::of(file, plan, Vec::new()));
-        let figures = self.draw(subject, plan_panels(run, plan));
+        let figures = self.draw(subject, plan_panels(run, plan, &Style::default()));
         let legs = legs_grid(plan);
         self.section(html! {
             h2 { (headline(plan)) }
@@ -94,7 +94,12 @@ impl HtmlReport {
         scenario: &Scenario,
         entries: &[Entry],
     ) {
-        let mut panels = comparison_panels(scenario, entries, is_sweep(&compared.entries));
+        let mut panels = comparison_panels(
+            scenario,
+            entries,
+            is_sweep(&compared.entries),
+            &Style::default(),
+        );
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
         let remarks = remarks(compared);
@@ -117,7 +122,10 @@ impl HtmlReport {
         scenario: &Scenario,
         simulation: &SimulationDocument,
     ) {
-        let figures = self.draw(subject, vec![simulation_panel(scenario, simulation)]);
+        let figures = self.draw(
+            subject,
+            vec![simulation_panel(scenario, simulation, &Style::default())],
+        );
         let targets = &simulation.targets;
         self.section(html! {
             h2 { (simulation_headline(simulation)) }

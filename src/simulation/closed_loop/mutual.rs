@@ -5,6 +5,7 @@ use crate::colregs::SteadyShip;
 use crate::frame::heading_of;
 use crate::scenario::{Behaviour, Fault, Memory, Scenario, SimulationSettings};
 use crate::target::{Motion, ShipTrack, Target};
+use crate::text::rounded;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -29,7 +30,7 @@ pub(super) fn mutual_targets(scenario: &Scenario) -> Result<Vec<Option<MutualTar
                     let exchanged = exchanged(scenario, target, ship).ok_or_else(|| {
                         Fault::new(
                             format!("targets[{index}].behaviour"),
-                            format_args!("a ship of {} m/s that plans", ship.speed),
+                            format_args!("a ship of {} m/s that plans", rounded(ship.speed)),
                             format_args!("a speed of at least {NO_WAY} m/s"),
                         )
                     })?;

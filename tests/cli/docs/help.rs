@@ -21,7 +21,7 @@ fn options_stand_under_their_own_heading() {
 #[test]
 fn shells_know_every_command() {
     let commands = [
-        "init", "check", "assess", "plan", "suite", "compare", "inspect", "verify",
+        "init", "check", "assess", "plan", "suite", "compare", "inspect", "verify", "schema",
     ];
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let text = stdout(
@@ -31,6 +31,17 @@ fn shells_know_every_command() {
         );
         let all = commands.iter().all(|c| text.contains(c)) && text.contains("max-risk");
         assert!(all, "{shell}");
+        // the words of options, where the generator of the shell knows them
+        let knows_words = !["powershell", "elvish"].contains(&shell);
+        for words in [
+            ["space-time", "path-time"],
+            ["a-star", "thorough"],
+            ["dnv-trafficgen", "sfi-autoship"],
+            ["scenario", "lint"],
+        ] {
+            let all = words.iter().all(|word| text.contains(word));
+            assert!(all || !knows_words, "{shell}: {words:?}");
+        }
     }
     searoom(&["completions", "csh"]).code(2);
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::program::{run, searoom, stdout};
+use crate::program::{Folder, run, searoom, stdout};
 use searoom::report::COMPARISON_COLUMNS;
 use searoom::scenario::{Fault, Scenario};
 
@@ -68,6 +68,24 @@ fn the_guide_shows_an_assessment() {
     assert_eq!(
         shown, printed,
         "docs/assess.md is out of date; the text of today:\n{printed}"
+    );
+}
+
+#[test]
+fn the_guide_goes_on_from_a_plan() {
+    let guide = read("docs/replanning.md");
+    let (_, rest) = guide
+        .split_once("<!-- previous: checked")
+        .expect("the begin");
+    let shown = blocks(rest, "text")[0];
+    let folder = Folder::new();
+    let first = stdout(&run("plan scenarios/colregs/head-on.toml --json").success());
+    let previous = folder.write("plan.json", first);
+    let later = folder.write("later.toml", blocks(&guide, "toml")[0]);
+    let printed = stdout(&run(&format!("plan {later} --previous {previous}")).success());
+    assert!(
+        printed.starts_with(shown),
+        "docs/replanning.md is out of date:\n{printed}"
     );
 }
 

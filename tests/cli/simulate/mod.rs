@@ -73,12 +73,14 @@ fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
     let least = &sailed["targets"][0];
     let apart = number(&least["least_clearance_m"]);
     let time = number(&least["least_clearance_t_s"]);
-    let closest = format!("closest approach: {apart:.1} m to target at {time:.0} s");
+    let whole = time.round() as u32;
+    let at = format!("{}:{:02}", whole / 60, whole % 60);
+    let closest = format!("closest approach: {apart:.1} m to target at {at}");
     for label in [
         &closest,
         "own ship, sailed",
         "target: hull and track",
-        ">180 s<",
+        ">3:00<",
     ] {
         assert!(drawn.contains(label), "{label}: {drawn}");
     }
