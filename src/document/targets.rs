@@ -57,7 +57,7 @@ pub struct ShipDocument {
 }
 
 /// Leg of a known route.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KnownLegDocument {
     pub to: PositionDocument,
     pub speed_mps: f64,

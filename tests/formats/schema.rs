@@ -84,9 +84,19 @@ fn files() -> Vec<Value> {
     (behaviours.into_iter().enumerate())
         .map(|(index, behaviour)| {
             let mut file = base.clone();
+            if index < 2 {
+                let degrees = json!({ "lat_deg": 59.0, "lon_deg": 10.1 });
+                file["targets"][2]["waypoints"] = json!([position, degrees]);
+                file["targets"][2]["leg_speeds_mps"] = json!([1.0, 1.0]);
+            }
             if index == 0 {
-                for (table, stem) in [("own_ship", "speeds"), ("mission", "leg_speeds")] {
-                    let table = file[table].as_object_mut().expect("a table");
+                for (table, stem) in [
+                    ("/own_ship", "speeds"),
+                    ("/mission", "leg_speeds"),
+                    ("/targets/2", "leg_speeds"),
+                ] {
+                    let table = file.pointer_mut(table).and_then(Value::as_object_mut);
+                    let table = table.expect("a table");
                     let speeds = table.remove(&format!("{stem}_mps")).expect("speeds");
                     table.insert(format!("{stem}_kn"), speeds);
                 }
