@@ -213,7 +213,7 @@ fn base(target: &ShipTrack, hull: &ConvexPolygon) -> ConvexPolygon {
         target.hull.length / 2.0,
         target.hull.beam / 2.0,
     );
-    let mut points: Vec<Vector> = match target.domain {
+    let points: Vec<Vector> = match target.domain {
         DomainKind::Hull => Vec::new(),
         DomainKind::Colregs => BevelledBox::symmetric().corners(length).to_vec(),
         DomainKind::Paper => BevelledBox::one_size().corners(length).to_vec(),
@@ -235,12 +235,13 @@ fn base(target: &ShipTrack, hull: &ConvexPolygon) -> ConvexPolygon {
             .to_vec()
         }
     };
-    let pose: &Pose = &target.pose;
-    for p in &mut points {
-        *p = pose.world_coordinates(*p);
-    }
-    points.extend_from_slice(hull.vertices());
-    hull_or_origin(&points)
+    // on the heading of every leg of a known route
+    let headings = target.runs().map(|(_, pose, _)| pose.heading);
+    let poses = headings.map(|heading| Pose::new(target.pose.position, heading));
+    let around = poses.flat_map(|pose| points.iter().map(move |p| pose.world_coordinates(*p)));
+    let mut all: Vec<Vector> = around.collect();
+    all.extend_from_slice(hull.vertices());
+    hull_or_origin(&all)
 }
 
 fn hull_or_origin(points: &[Vector]) -> ConvexPolygon {
@@ -269,7 +270,10 @@ const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 /// side ([`RoleDuties::closed_side`](super::RoleDuties)). When overtaking, that is the target's
 /// starboard side, or its port side if own ship is more than 5° to starboard of its wake.
 pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
-    let ahead = direction(target.pose.heading);
+    let ahead = direction(match target.route.is_empty() {
+        true => target.pose.heading,
+        false => risk.target.pose.heading,
+    });
     let port = to_port(ahead);
     // the closed side, and the direction that decides if the normal is perpendicular to it
     let (bad, otherwise) = match risk.role.duties().closed_side {

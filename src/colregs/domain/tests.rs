@@ -3,6 +3,7 @@
 use super::*;
 use crate::colregs::{Role, Sectors, SteadyShip, role_within, sweep_distance};
 use crate::frame::{direction, to_port, to_starboard};
+use crate::target::KnownLeg;
 use crate::vessel::Hull;
 use crate::vessel::fixtures::own_ship;
 use rand::{Rng, SeedableRng};
@@ -230,4 +231,26 @@ fn domains_have_the_reach_they_are_named_for() {
     target.domain = DomainKind::Paper;
     let set = ship_domain(&own, &target, None, HORIZON).with_domain;
     assert!(set.support(Vector::new(1.0, 0.0)) > set.support(Vector::new(-1.0, 0.0)));
+}
+
+/// The paper's domain reaches six lengths ahead: on every leg of the route.
+#[test]
+fn the_domain_has_every_heading_of_a_known_route() {
+    let own = own_at(Vector::new(-5000.0, 0.0), 20.0);
+    let ship = ShipTrack {
+        domain: DomainKind::Paper,
+        ..ShipTrack::exact(Pose::new(Vector::zeros(), 0.0), 5.0, Hull::new(50.0, 10.0))
+    };
+    let leg = |x, y| KnownLeg {
+        to: Vector::new(x, y),
+        speed: 5.0,
+    };
+    let straight = ship_domain(&own, &ship, None, 600.0).with_domain;
+    let routed = ship.with_route(vec![leg(400.0, 0.0), leg(400.0, 900.0), leg(-100.0, 900.0)]);
+    let routed = ship_domain(&own, &routed, None, 600.0).with_domain;
+    for (n, reaches) in [(0.0, true), (FRAC_PI_2, false), (PI, false)] {
+        let n = direction(n);
+        assert!(routed.support(n) >= straight.support(direction(0.0)) - 1e-6);
+        assert_eq!(straight.support(n) >= 300.0, reaches);
+    }
 }
