@@ -270,7 +270,10 @@ fn targets_without_role(plan: &PlanDocument) -> BTreeSet<String> {
     let targets = legs.into_iter().filter_map(|leg| leg.because_of);
     let without = |target: &String| {
         let mut encounters = plan.encounters.iter();
-        encounters.any(|e| e.target == *target && e.role == "none" && e.conduct.is_some())
+        encounters.any(|e| {
+            let unjudged = e.conduct.as_ref().is_some_and(|c| c.roles.is_empty());
+            e.target == *target && e.role == "none" && unjudged
+        })
     };
     targets.filter(without).collect()
 }

@@ -6,6 +6,9 @@ use crate::frame::{Side, deg_from_radians, wrap};
 /// Angle in degrees below which an alteration is not visible and does not count as a turn.
 const LEAST_TURN_DEG: f64 = 0.5;
 
+/// Degrees: an alteration from which on own ship departs from its course.
+const DEPARTURE_DEG: f64 = 5.0;
+
 /// Alteration of course to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Alteration {
@@ -16,9 +19,12 @@ pub(crate) struct Alteration {
     pub start: f64,
 }
 
-/// First alteration of course. Corners of a path do not count.
+/// First alteration of course by 5° or more, else the first visible one. Corners of a path do not
+/// count.
 pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Alteration> {
-    turns(trajectory, None).into_iter().next()
+    let all = turns(trajectory, None);
+    let departs = all.iter().find(|turn| turn.degrees >= DEPARTURE_DEG);
+    departs.or(all.first()).copied()
 }
 
 /// Largest alteration of course to one side. Corners of the path count, and so does the initial
@@ -109,6 +115,8 @@ mod tests {
             (vec![0.0, 30.0, -60.0], Some((Starboard, 30.0))),
             (vec![-30.0, -15.0, 0.0, -5.0], Some((Port, 45.0))),
             (vec![0.1, -20.0], Some((Port, 20.0))),
+            (vec![-1.3, 0.0, 51.0], Some((Starboard, 51.0))),
+            (vec![-1.3, 0.0, 4.0], Some((Port, 1.3))),
             (vec![0.0, 40.0], Some((Starboard, 40.0))),
         ] {
             let found = first_alteration(&arcs(&turns));

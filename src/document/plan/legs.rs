@@ -24,11 +24,11 @@ const CORNER_RAD: f64 = 1e-6;
 const SHORTEST_S: f64 = 1e-3;
 
 /// Seconds and radians. A shorter and smaller turn is part of the leg after it, as no chart shows it.
-const SLIVER_S: f64 = 0.5;
-const SLIVER_RAD: f64 = 0.01;
+const SLIVER_S: f64 = 2.0;
+const SLIVER_RAD: f64 = 0.035;
 
-/// Radians. Straight runs whose courses differ by less are one leg: a decimetre in a kilometre.
-const SAME_COURSE_RAD: f64 = 1e-4;
+/// Radians. Straight runs whose courses differ by less are one leg.
+const SAME_COURSE_RAD: f64 = 1e-3;
 
 /// m/s. A slower ship lies still.
 const STILL_MPS: f64 = 1e-3;
@@ -65,9 +65,9 @@ impl PlannedLeg {
 }
 
 impl PlanDocument {
-    /// The legs in order of time, with what happens on each. Turns of less than half a second and
-    /// 0.01 rad are part of the leg that follows, which begins where the turn does: its places are
-    /// off by some centimetres. Empty without a plan, and for a plan under forces.
+    /// The legs in order of time, with what happens on each. Turns of less than 2 s and
+    /// 0.035 rad are part of the leg that follows, which begins where the turn does, and runs on one
+    /// course to 0.001 rad are one: the places are off by some decimetres. Empty without a plan, and for a plan under forces.
     pub fn legs(&self) -> Vec<PlannedLeg> {
         let mut legs: Vec<PlannedLeg> = Vec::new();
         let mut sliver: Option<Segment> = None;
