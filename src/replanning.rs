@@ -339,7 +339,7 @@ fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) 
     if !(off <= known + ASSUMED * (1.0 + elapsed)) {
         // a ship that has turned since is where none of the assumed velocities would have taken it
         let way = (ship.pose.position - then.pose.position).norm();
-        let farthest = FASTEST * (then.speed + then.speed_half_width()) * elapsed
+        let farthest = FASTEST * (then.greatest_speed() + then.speed_half_width()) * elapsed
             + SIGMAS * (then.position_std + ship.position_std);
         return Some(match way <= farthest {
             true => Assumed::OutsideVelocities,

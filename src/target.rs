@@ -95,6 +95,8 @@ pub struct ShipTrack {
     /// that keeps course and speed. Heading and speed at t = 0 are those of the first leg. It goes
     /// on beyond the last place.
     pub route: Vec<KnownLeg>,
+    /// How much earlier or later the ship may turn on its route than its speed says, seconds.
+    pub time_spread: f64,
     /// The requested ship domain.
     pub domain: DomainKind,
 }
@@ -116,6 +118,7 @@ impl ShipTrack {
             kept_positions: None,
             kept_velocities: None,
             route: Vec::new(),
+            time_spread: 0.0,
             domain: DomainKind::Hull,
         }
     }
@@ -182,7 +185,10 @@ impl ShipTrack {
     /// left out.
     pub(crate) fn nominal_velocities(&self) -> Vec<TimedVelocitySet> {
         let ends = self.runs().skip(1).map(|run| run.0).chain([f64::INFINITY]);
-        let runs = self.runs().zip(ends);
+        let runs = self
+            .runs()
+            .zip(ends)
+            .filter(|((since, ..), until)| since < until);
         let timed = runs.map(|((_, pose, speed), until)| {
             TimedVelocitySet::new(until, ConvexPolygon::point(pose.ahead() * speed))
         });
@@ -240,7 +246,11 @@ impl ShipTrack {
         let (mut heading, mut low, mut high) = (self.pose.heading, 0.0_f64, 0.0_f64);
         let mut off = 0.0;
         for (_, pose, _) in self.runs() {
-            off += wrap(pose.heading - heading);
+            let turn = wrap(pose.heading - heading);
+            if route::is_to_either_side(turn) {
+                return (self.pose.heading, std::f64::consts::PI);
+            }
+            off += turn;
             heading = pose.heading;
             (low, high) = (low.min(off), high.max(off));
         }
@@ -364,6 +374,8 @@ impl ShipTrack {
             let spread = Spread {
                 speed: self.speed_half_width(),
                 course: self.course_half_width(),
+                time: self.time_spread,
+                place: SIGMAS * self.position_std,
             };
             let sets = track
                 .outer_velocity_sets(&spread, horizon, ROUTE_SETS)

@@ -54,6 +54,9 @@ pub struct ShipDocument {
     /// The known route from the position on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub route: Vec<KnownLegDocument>,
+    /// How much earlier or later the ship may turn than its speed says.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub time_spread_s: f64,
 }
 
 /// Leg of a known route.
@@ -109,6 +112,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
                 speed_mps: leg.speed,
             })
             .collect(),
+        time_spread_s: track.time_spread,
     }
 }
 
@@ -144,6 +148,7 @@ impl ShipDocument {
             kept_positions: kept("kept_positions", positions)?,
             kept_velocities: kept("kept_velocities", velocities)?,
             route: self.route.iter().map(KnownLegDocument::leg).collect(),
+            time_spread: self.time_spread_s,
             domain: DomainKind::Hull,
         })
     }

@@ -10,7 +10,7 @@ use crate::target::{TimedVelocitySet, Uncertainty};
 /// Allowed values of the keys of a tracked ship beside explicit sets.
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
-const SHIP_KEYS: [&str; 16] = [
+const SHIP_KEYS: [&str; 20] = [
     "position",
     "course_deg",
     "length_m",
@@ -27,6 +27,10 @@ const SHIP_KEYS: [&str; 16] = [
     "speed_kn",
     "speed_spread_mps",
     "speed_spread_kn",
+    "waypoints",
+    "leg_speeds_mps",
+    "leg_speeds_kn",
+    "time_spread_s",
 ];
 
 struct SetKeys {

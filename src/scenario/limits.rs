@@ -16,6 +16,8 @@ pub(super) const SHIPS: usize = 1000;
 pub(super) const WAYPOINTS: usize = 100;
 /// Waypoints of a target's known route: each adds up to four velocity sets.
 pub(super) const TARGET_WAYPOINTS: usize = 12;
+/// Seconds by which a target turns earlier or later.
+pub(super) const TIME_SPREAD: Range = Range::between(0.0, 86_400.0);
 /// Metres between two waypoints of a mission: on a plane a longer leg is most likely a slip.
 pub(super) const LEG_M: f64 = 5e6;
 /// Alternatives of a mission: the points that paths share are found pair by pair.

@@ -185,6 +185,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let has_route = table.has("waypoints");
     let start = pose.map(|pose| pose.position);
     let route = route(table, plane, start, speed);
+    let time_spread = table.number("time_spread_s", limits::TIME_SPREAD);
     let speed_std = table.speed("speed_std", limits::SPEED);
     let course_std = table.number("course_std_deg", limits::COURSE_SPREAD);
     let speed_spread = table.speed("speed_spread", limits::SPEED);
@@ -199,6 +200,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         course_spread: radians_from_deg(course_spread.unwrap_or(0.0)),
         starboard_turn: radians_from_deg(starboard_turn.unwrap_or(0.0)),
         turn_rate: radians_from_deg(turn_rate.unwrap_or(0.0)),
+        time_spread: time_spread.unwrap_or(0.0),
         domain,
         ..ShipTrack::exact(pose?, speed?, hull?)
     };
@@ -228,8 +230,9 @@ fn route<'a>(
 ) -> Option<(Field<'a>, Vec<KnownLeg>)> {
     let Some(field) = table.take("waypoints") else {
         let nothing = "nothing: the target has no waypoints";
-        table.forbid("leg_speeds_mps", nothing);
-        table.forbid("leg_speeds_kn", nothing);
+        for key in ["leg_speeds_mps", "leg_speeds_kn", "time_spread_s"] {
+            table.forbid(key, nothing);
+        }
         return None;
     };
     for key in ["velocity_set", "starboard_turn_deg", "turn_rate_deg_per_s"] {

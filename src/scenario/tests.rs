@@ -212,6 +212,9 @@ waypoints = [{ east_m = 500, north_m = 0 }]\nstarboard_turn_deg = 1 | targets[0]
 waypoints = [{ east_m = 500, north_m = 0 }]\nvelocity_set = { vertices_mps = [[-5, 0]] } | targets[0].velocity_set
 waypoints = [{ east_m = 500, north_m = 0 }]\nrepresentation = "ellipsoid" | targets[0].representation
 leg_speeds_mps = [5] | targets[0].leg_speeds_mps
+time_spread_s = 5 | targets[0].time_spread_s
+waypoints = [{ east_m = 500, north_m = 0 }]\ntime_spread_s = 5 |
+waypoints = [{ east_m = 500, north_m = 0 }]\ntime_spread_s = -1 | targets[0].time_spread_s
 "#;
 
 #[test]

@@ -95,7 +95,7 @@ pub fn lint(
 /// Upper bound of the target's speed, m/s.
 fn top_speed(target: &Target) -> f64 {
     match &target.motion {
-        Motion::Ship(ship) => ship.speed + ship.speed_half_width(),
+        Motion::Ship(ship) => ship.greatest_speed() + ship.speed_half_width(),
         Motion::Sets(sets) => sets.top_speed(),
     }
 }

@@ -90,6 +90,27 @@ pub(crate) struct Spread {
     pub(crate) speed: f64,
     /// Half-width, radians.
     pub(crate) course: f64,
+    /// How much earlier or later the ship may reach each stretch, seconds.
+    pub(crate) time: f64,
+    /// How far ahead or astern of the track's start the ship may be at first, metres.
+    pub(crate) place: f64,
+}
+
+/// Radians: a ship that turns this much may turn to either side, 170°.
+const EITHER_SIDE: f64 = 17.0 * std::f64::consts::PI / 18.0;
+
+/// True for a turn that is about as long to either side.
+pub(super) fn is_to_either_side(turn: f64) -> bool {
+    turn.abs() >= EITHER_SIDE
+}
+
+/// Courses of a turn that begins at `course`: the middle, and half their width.
+fn courses_of(course: f64, turn: f64) -> (f64, f64) {
+    if is_to_either_side(turn) {
+        (course, std::f64::consts::PI)
+    } else {
+        (wrap(course + 0.5 * turn), 0.5 * turn.abs())
+    }
 }
 
 /// The turn at a point does not fit into the legs beside it.
@@ -106,7 +127,8 @@ pub(crate) struct TightTurn {
 /// A ship follows the track within a spread if, on each stretch, its course differs from the
 /// track's by at most `spread.course` and its speed from the declared one by at most
 /// `spread.speed`. It reaches the next stretch when it has made good the length of this one. At a
-/// point without a radius it turns on the spot, or on an arc of any radius up to the assumed one.
+/// point without a radius it turns on the spot, or on an arc of any radius up to the assumed one that
+/// begins and ends within half of the shorter leg beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Track {
     /// First position, metres.
@@ -156,8 +178,8 @@ impl Track {
             stretches.push(Stretch {
                 shortest: 0.0,
                 longest: usual_radius * turn.abs(),
-                course: wrap(heading + 0.5 * turn),
-                half: 0.5 * turn.abs(),
+                course: courses_of(heading, turn).0,
+                half: courses_of(heading, turn).1,
                 slow: leg.slow,
                 fast: leg.fast,
             });
@@ -204,8 +226,8 @@ impl Track {
                 stretches.push(Stretch {
                     shortest: arc.min(2.0 * ends),
                     longest: 2.0 * ends,
-                    course: wrap(course + 0.5 * turn),
-                    half,
+                    course: courses_of(course, turn).0,
+                    half: courses_of(course, turn).1,
                     slow: leg.slow.min(next_leg.slow),
                     fast: leg.fast.max(next_leg.fast),
                 });
@@ -315,16 +337,21 @@ impl Track {
     fn times(&self, spread: &Spread) -> Vec<(f64, f64)> {
         let (mut enters, mut leaves) = (self.appears, self.appears);
         let last = self.stretches.len().saturating_sub(1);
+        // a ship that begins ahead has less way to go
+        let mut ahead = spread.place;
         let time = |(index, stretch): (usize, &Stretch)| {
-            let entered = enters;
-            enters += stretch.shortest / (stretch.fast + spread.speed);
+            let entered = (enters - spread.time).max(self.appears);
+            let made = stretch.shortest.min(ahead);
+            ahead -= made;
+            enters += (stretch.shortest - made) / (stretch.fast + spread.speed);
             let good = (stretch.slow - spread.speed) * spread.course.min(FRAC_PI_2).cos();
+            let astern = if index == 0 { spread.place } else { 0.0 };
             leaves = if index == last || !(good > 0.0) {
                 f64::INFINITY
             } else {
-                leaves + stretch.longest / good
+                leaves + (stretch.longest + astern) / good
             };
-            (entered, leaves)
+            (entered, leaves + spread.time)
         };
         self.stretches.iter().enumerate().map(time).collect()
     }

@@ -62,6 +62,8 @@ fn routed_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
     let ship = ShipTrack {
         speed_spread: rng.random_range(0.0..1.0),
         course_spread: rng.random_range(0.0..0.3),
+        position_std: rng.random_range(0.0..20.0),
+        time_spread: rng.random_range(0.0..20.0),
         ..ShipTrack::exact(
             Pose::new(Vector::new(200.0, -50.0), 0.0),
             5.0,
@@ -112,10 +114,15 @@ fn a_ship_on_its_route_stays_within_its_sets() {
         let ship = routed_ship(&mut rng);
         let sets = ship.outer_velocity_sets(0.0, 600.0);
         assert!(sets.windows(2).all(|w| w[0].until < w[1].until));
-        let sets = Uncertainty::new(ConvexPolygon::point(ship.pose.position), sets);
+        let places = ship.outer_positions().translated(ship.pose.position);
+        let sets = Uncertainty::new(places, sets);
         let hull = ship.outer_hull(600.0).translated(-ship.pose.position);
         let radius = rng.random_range(0.0..TURN_LENGTHS) * ship.hull.length;
-        let (mut place, mut leg, mut made_good) = (ship.pose.position, 0, 0.0);
+        // it begins ahead or astern of the estimate, and turns early or late
+        let off = rng.random_range(-1.0..=1.0) * SIGMAS * ship.position_std;
+        let early = rng.random_range(-1.0..=1.0) * ship.time_spread;
+        let (mut place, mut leg) = (ship.pose.position + ship.pose.ahead() * off, 0);
+        let mut made_good = off + ship.speed * early;
         let (mut speed, mut error, mut since) = (0.0, 0.0, f64::INFINITY);
         let starts: Vec<Vector> = std::iter::once(ship.pose.position)
             .chain(ship.route.iter().map(|l| l.to))

@@ -24,6 +24,9 @@ pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 /// Metres; the least leg of a scenario file.
 const SHORTEST_LEG_M: f64 = 1e-3;
 
+/// Most legs of a target's known route.
+const MOST_LEGS: usize = 12;
+
 const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
 const OBJECTIVES: [&str; 5] = [
     "space-time-error",
@@ -301,6 +304,7 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
                 ("course_std_deg", ship.course_std_deg),
                 ("speed_spread_mps", ship.speed_spread_mps),
                 ("turn_rate_deg_per_s", ship.turn_rate_deg_per_s),
+                ("time_spread_s", ship.time_spread_s),
             ] {
                 not_negative(&at(key), value)?;
             }
@@ -329,6 +333,15 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
 
 /// A known route goes from place to place, and begins with the course and the speed of the ship.
 fn known_route(path: &str, ship: &ShipTrack) -> Result<(), ClaimError> {
+    let (found, most) = (ship.route.len(), MOST_LEGS);
+    if found > most {
+        let allowed = format!("at most {most}");
+        return Err(fault(path, format!("{found} legs"), &allowed));
+    }
+    if !ship.route.is_empty() && (ship.turn_rate != 0.0 || ship.starboard_turn != 0.0) {
+        let found = "a route of a ship that turns elsewhere too";
+        return Err(fault(path, found, "no turn beside the route"));
+    }
     let mut place = ship.pose.position;
     for (index, leg) in ship.route.iter().enumerate() {
         positive(&format!("{path}[{index}].speed_mps"), leg.speed)?;

@@ -147,7 +147,7 @@ fn taken(
 fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     let mut targets = claim.targets.iter().filter(|t| t.name == name);
     targets.any(|target| match &target.motion {
-        Motion::Ship(ship) => ship.turn_rate > 0.0,
+        Motion::Ship(ship) => ship.turn_rate > 0.0 || !ship.route.is_empty(),
         Motion::Sets(sets) => sets.velocities.len() > 1,
     })
 }

@@ -63,6 +63,7 @@ const ROUTE: &str = r#"
 a later turn | /targets/0/ship/route/0/to/east_m + -60 | too small for the velocities of the target
 a turn beyond | /targets/0/ship/route/1/to/east_m + -300 | too small for the velocities of the target
 a faster leg | /targets/0/ship/route/1/speed_mps + 0.5 | too small for the velocities of the target
+turns at another time | /targets/0/ship/time_spread_s = 10 | too small for the velocities of the target
 no route | /targets/0/ship/route = [] | too small for the velocities of the target
 "#;
 const RISK: &str = r#"

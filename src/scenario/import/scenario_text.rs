@@ -162,6 +162,8 @@ impl Writing<'_> {
         let spread = Spread {
             speed: self.assumed.speed_spread,
             course: self.assumed.course_spread,
+            time: 0.0,
+            place: 0.0,
         };
         self.text += &format!("\n[[targets]]\nname = {}\n", quoted(name));
         if let Some(steady) = track.steady(&spread) {

@@ -52,7 +52,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
 /// True unless a target is given as ellipses or by several velocity sets.
 pub(super) fn has_choice(target: &Target) -> bool {
     match &target.motion {
-        Motion::Ship(ship) => ship.turn_rate == 0.0,
+        Motion::Ship(ship) => ship.turn_rate == 0.0 && ship.route.is_empty(),
         Motion::Sets(sets) => sets.initial.as_polygon().is_some() && sets.velocities.len() == 1,
     }
 }
