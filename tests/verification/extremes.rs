@@ -36,6 +36,7 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
         "hold-with-a-rounding",
         "arrived-inside",
         "horizon-at-a-turn",
+        "known-route-entered",
         "leg-ends-at-the-horizon",
         "far-set",
         "far-path",
