@@ -1,5 +1,6 @@
 //! Altered settings, sets and figures: every one is detected.
 
+use searoom::verification::verify;
 use serde_json::{Value, json};
 
 use crate::alter::{alter, assert_rejected, assert_word, give_up, list, rows};
@@ -63,7 +64,6 @@ const ROUTE: &str = r#"
 a later turn | /targets/0/ship/route/0/to/east_m + -60 | too small for the velocities of the target
 a turn beyond | /targets/0/ship/route/1/to/east_m + -300 | too small for the velocities of the target
 a faster leg | /targets/0/ship/route/1/speed_mps + 0.5 | too small for the velocities of the target
-turns at another time | /targets/0/ship/time_spread_s = 10 | too small for the velocities of the target
 no route | /targets/0/ship/route = [] | too small for the velocities of the target
 "#;
 const RISK: &str = r#"
@@ -112,6 +112,20 @@ fn what_only_some_plans_have_is_held_too() {
     assert_rejected(&turning, TURNING);
     let route = document(scenario("uncertainty/known-route.toml"));
     assert_rejected(&route, ROUTE);
+    let mut late = route.clone();
+    late["targets"][0]["ship"]["time_spread_s"] = json!(10.0);
+    assert_word(
+        &late,
+        "turns at another time",
+        "too small for the velocities of the target",
+    );
+    let mut turns = route;
+    turns["targets"][0]["ship"]["turn_rate_deg_per_s"] = json!(2.0);
+    let refused = verify(&turns.to_string()).expect_err("a turn beside a route");
+    assert!(
+        refused.to_string().contains("targets[0].ship.route"),
+        "{refused}"
+    );
     assert_rejected(
         &document(scenario("uncertainty/changing-velocities.toml")),
         TIMED_SETS,
