@@ -500,10 +500,13 @@ impl Target {
         }
     }
 
-    /// The times at which its velocity set changes, seconds; the last one is infinite.
+    /// The times at which its nominal velocity changes, seconds; the last one is infinite.
     pub fn changes(&self) -> Vec<f64> {
-        let sets = self.sets().map_or(&[][..], |sets| &sets.velocities);
-        sets.iter().map(|set| set.until).collect()
+        let until = |sets: &[TimedVelocitySet]| sets.iter().map(|set| set.until).collect();
+        match &self.motion {
+            Motion::Ship(ship) => until(&ship.nominal_velocities()),
+            Motion::Sets(sets) => until(&sets.velocities),
+        }
     }
 
     /// The tracked ship, if it is one.

@@ -14,7 +14,7 @@ use crate::frame::{
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::input::{Field, Table};
 use crate::target::{DomainKind, KnownLeg, Motion, Representation, ShipTrack, Target};
-use crate::text::LINE;
+use crate::text::{LINE, counted};
 use crate::tolerance;
 use crate::vessel::OwnShip;
 
@@ -220,14 +220,14 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     Some(ship.with_velocities(velocities))
 }
 
-/// The known route of a ship from its position on, with the field that has it; `None` for a fault,
-/// and without one.
+/// The known route of a ship from its position on, with the fields of its places and its speeds;
+/// `None` for a fault, and without one.
 fn route<'a>(
     table: &mut Table<'a>,
     plane: &Plane,
     start: Option<Vector>,
     speed: Option<f64>,
-) -> Option<(Field<'a>, Vec<KnownLeg>)> {
+) -> Option<([Field<'a>; 2], Vec<KnownLeg>)> {
     let Some(field) = table.take("waypoints") else {
         let nothing = "nothing: the target has no waypoints";
         for key in ["leg_speeds_mps", "leg_speeds_kn", "time_spread_s"] {
@@ -244,14 +244,16 @@ fn route<'a>(
     let places = field.list(1..=limits::TARGET_WAYPOINTS, "positions");
     let speeds = table.speeds("leg_speeds", limits::WAY);
     let places = places?;
+    let mut speeds_field = field.clone();
     let route = waypoints_from(start, &places, plane);
     let speeds = match speeds {
-        Some((field, speeds)) => {
+        Some((given, speeds)) => {
             let (found, legs) = (speeds?, places.len());
             if found.len() != legs {
                 let allowed = format_args!("{legs}, one for each waypoint");
-                return field.reject(format_args!("{} speeds", found.len()), allowed);
+                return given.reject(counted(found.len(), "speed"), allowed);
             }
+            speeds_field = given;
             found
         }
         None if limits::WAY.contains(speed?) => vec![speed?; places.len()],
@@ -262,11 +264,14 @@ fn route<'a>(
     };
     let legs = route?.into_iter().zip(speeds);
     let legs = legs.map(|(to, speed)| KnownLeg { to, speed });
-    Some((field, legs.collect()))
+    Some(([field, speeds_field], legs.collect()))
 }
 
 /// The ship on its route, if its course and speed are those of the first leg within what it may do.
-fn on_route(ship: ShipTrack, (field, route): (Field, Vec<KnownLeg>)) -> Option<ShipTrack> {
+fn on_route(
+    ship: ShipTrack,
+    ([field, speeds_field], route): ([Field; 2], Vec<KnownLeg>),
+) -> Option<ShipTrack> {
     let (course, speed) = (ship.pose.heading, ship.speed);
     let (widest, fastest) = (ship.course_half_width(), ship.speed_half_width());
     let ship = ship.with_route(route);
@@ -283,11 +288,8 @@ fn on_route(ship: ShipTrack, (field, route): (Field, Vec<KnownLeg>)) -> Option<S
         );
     }
     if !((speed - ship.speed).abs() <= fastest + tolerance::ALTERATION_MPS) {
-        let found = format_args!("{} m/s on the first leg, and {speed} m/s now", ship.speed);
-        return field.reject(
-            found,
-            "a first leg_speeds_mps within speed_spread_mps of speed_mps",
-        );
+        let found = format_args!("{:.3} m/s first, and {speed:.3} m/s now", ship.speed);
+        return speeds_field.reject(found, "a first speed within the spread of the present one");
     }
     Some(ship)
 }

@@ -197,7 +197,7 @@ fn a_ship_may_have_its_velocities_as_a_set() {
 /// The keys of a target on a route west from (1000, 0) at 5 m/s, and the key of the fault, if any.
 const ROUTES: &str = r#"
 waypoints = [{ east_m = 500, north_m = 0 }, { east_m = 500, north_m = 400 }] |
-waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_kn = [10] | targets[0].waypoints
+waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_kn = [10] | targets[0].leg_speeds_kn
 waypoints = [{ east_m = 500, north_m = 0 }]\nleg_speeds_kn = [10]\nspeed_spread_mps = 0.2 |
 waypoints = [{ east_m = 500, north_m = 12 }]\ncourse_spread_deg = 1 |
 waypoints = [{ east_m = 500, north_m = 12 }] | targets[0].waypoints

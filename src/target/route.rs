@@ -18,6 +18,9 @@ const LEAST_INTERVAL: f64 = 0.01;
 /// Most changes of a track that are compared; of more only every second or third is used.
 const MOST_CHANGES: usize = 1000;
 
+/// m/s: the rounding of a speed from places and times.
+const SAME_SPEED: f64 = 1e-9;
+
 /// Metres: least length of a straight, so that two turns never share a point.
 const NO_LENGTH: f64 = 1e-3;
 
@@ -135,7 +138,7 @@ pub(crate) struct Track {
     pub(crate) start: Vector,
     appears: f64,
     stretches: Vec<Stretch>,
-    /// The legs, if each has one speed, and no turn has a radius of its own.
+    /// The legs, if each has one speed, and no turn a radius of its own above 0.
     legs: Vec<KnownLeg>,
 }
 
@@ -240,6 +243,14 @@ impl Track {
             stretches: joined_stretches(stretches),
             legs: known_legs(points, legs, heading).unwrap_or_default(),
         })
+    }
+
+    /// Moves the track; metres.
+    pub(crate) fn translate(&mut self, shift: Vector) {
+        self.start += shift;
+        for leg in &mut self.legs {
+            leg.to += shift;
+        }
     }
 
     /// This track, on which the ship appears at `time` seconds.
@@ -364,7 +375,10 @@ fn known_legs(
     heading: Option<f64>,
 ) -> Option<Vec<KnownLeg>> {
     let same = |leg: &RouteLeg| leg.slow == leg.fast && leg.slow > 0.0;
-    let given = points.iter().any(|point| point.turn_radius.is_some());
+    // a turn on the spot is among those of a known route
+    let given = points
+        .iter()
+        .any(|point| point.turn_radius.is_some_and(|radius| radius > 0.0));
     if heading.is_some() || given || !legs.iter().all(same) {
         return None;
     }
@@ -377,7 +391,10 @@ fn known_legs(
             speed: leg.fast,
         };
         match known.last_mut() {
-            Some(last) if is_one_line([from, last.to, to]) && last.speed == next.speed => {
+            Some(last)
+                if is_one_line([from, last.to, to])
+                    && (last.speed - next.speed).abs() <= SAME_SPEED =>
+            {
                 *last = next;
             }
             _ => {

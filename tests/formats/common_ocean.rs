@@ -1,9 +1,12 @@
 //! Tests of CommonOcean scenarios: samples, mutated files, and memory exhaustion attacks.
 
+use searoom::colregs::Role;
 use searoom::frame::Vector;
 use searoom::geometry::ConvexSet;
+use searoom::pipeline;
 use searoom::scenario::import::{Assumed, Assumption, Contents, Imported, Situation};
 use searoom::scenario::{Fault, Scenario};
+use searoom::target::Motion;
 
 const HEAD_ON: &str = include_str!("../../scenarios/commonocean/sample-head-on.xml");
 const FAIRWAY: &str = include_str!("../../scenarios/commonocean/sample-fairway.xml");
@@ -56,6 +59,38 @@ fn a_recorded_ship_on_one_course_is_a_tracked_ship() {
     for part in ["100 × 20 m", "taken to go on", "of the goal its middle"] {
         assert!(notes.iter().any(|n| n.contains(part)), "{part}: {notes:?}");
     }
+}
+
+/// The ship turns to starboard after three minutes, onto own ship's course line: no risk on its
+/// first course, head-on on its route.
+#[test]
+fn a_recorded_ship_that_turns_has_a_route_and_a_role() {
+    let states = HEAD_ON.split("<state>").count() - 1;
+    assert_eq!(states, 2);
+    let turned = HEAD_ON
+        .replace("<x>0.0</x><y>2000.0</y>", "<x>-900.0</x><y>500.0</y>")
+        .replace("<x>0.0</x><y>1950.0</y>", "<x>0.0</x><y>500.0</y>")
+        .replace("<x>0.0</x><y>1900.0</y>", "<x>0.0</x><y>-400.0</y>")
+        .replace("<exact>1</exact>", "<exact>18</exact>")
+        .replace("<exact>2</exact>", "<exact>36</exact>");
+    let scenario = one(&turned, &Assumed::default()).scenario;
+    let ship = scenario.targets[0].ship().expect("a ship");
+    assert_eq!(ship.route.len(), 2, "{ship:?}");
+    let corner = ship.pose_at(180.0).position;
+    assert!(
+        (corner - Vector::new(0.0, 2500.0)).norm() < 1e-6,
+        "{ship:?}"
+    );
+    let run = pipeline::run(scenario.clone());
+    assert_eq!(run.targets[0].sets.encounter.role, Role::HeadOn);
+    assert!(run.safe());
+    let mut straight = scenario;
+    let Motion::Ship(ship) = &mut straight.targets[0].motion else {
+        panic!("a ship");
+    };
+    ship.route.clear();
+    let run = pipeline::run(straight);
+    assert_ne!(run.targets[0].sets.encounter.role, Role::HeadOn);
 }
 
 #[test]

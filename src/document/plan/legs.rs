@@ -65,9 +65,12 @@ impl PlannedLeg {
 }
 
 impl PlanDocument {
-    /// The legs in order of time, with what happens on each. Turns of less than 2 s and
-    /// 0.035 rad are part of the leg that follows, which begins where the turn does, and runs on one
-    /// course to 0.001 rad are one: the places are off by some decimetres. Empty without a plan, and for a plan under forces.
+    /// The legs in order of time, with what happens on each. Empty without a plan, and for a plan
+    /// under forces.
+    ///
+    /// A turn of less than 2 s and 0.035 rad is part of the leg after it, which begins where the
+    /// turn does. Runs on one course, to 0.001 rad, are one leg. So places are off by some
+    /// decimetres.
     pub fn legs(&self) -> Vec<PlannedLeg> {
         let mut legs: Vec<PlannedLeg> = Vec::new();
         let mut sliver: Option<Segment> = None;

@@ -20,6 +20,7 @@ use crate::geometry::Window;
 use crate::obstacle::Obstacle;
 use crate::pipeline::TargetSets;
 use crate::scenario::{Compliance, Scenario};
+use crate::target::Target;
 
 /// Least time between two rows of what moves, seconds.
 const CURSOR_STEP_S: f64 = 2.0;
@@ -101,6 +102,16 @@ impl<'a> Canvas<'a> {
 
     pub fn cursor_column(&self) -> TimeColumn {
         TimeColumn::new_duration_secs(TIMELINE, self.cursor_times.iter().copied())
+    }
+
+    /// Start and end of a target's expected track, and the times between at which it bends, seconds.
+    pub fn joints(&self, target: &Target) -> Vec<f64> {
+        let changes = target.changes().into_iter();
+        let between = changes.take_while(|time| *time < self.end);
+        std::iter::once(0.0)
+            .chain(between)
+            .chain([self.end])
+            .collect()
     }
 
     /// The point of the space-time volume, metres.

@@ -221,12 +221,8 @@ fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
 /// Logs where a target is expected, with the same time marks.
 fn log_track(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let color = style::toward_background(canvas.target_color(index), 0.6);
-    let turns = target.ship().into_iter().flat_map(|ship| ship.runs());
-    let turns = turns.map(|run| run.0).take_while(|time| *time < canvas.end);
-    let way = std::iter::once(0.0)
-        .chain(turns.skip(1))
-        .chain([canvas.end]);
-    let way: Vec<_> = way.map(|t| flat(target.position_at(t))).collect();
+    let joints = canvas.joints(target).into_iter();
+    let way: Vec<_> = joints.map(|t| flat(target.position_at(t))).collect();
     let times = multiples(0.0, canvas.end, mark_step(canvas)).skip(1);
     let marks = times.map(|t| flat(target.position_at(t)));
     let line = LineStrips2D::new([way])

@@ -199,11 +199,8 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     }
     let mut lines = Lines::default();
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
-        let mut times = vec![0.0];
-        times.extend(target.changes().into_iter().filter(|&t| t < canvas.end));
-        times.push(canvas.end);
-        let places = times.iter();
-        let strip = places.map(|&t| canvas.lifted(target.position_at(t), t));
+        let times = canvas.joints(target).into_iter();
+        let strip = times.map(|t| canvas.lifted(target.position_at(t), t));
         lines.add(strip.collect::<Vec<_>>(), canvas.target_color(index), 1.0);
     }
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())

@@ -78,7 +78,7 @@ impl Other {
     pub(super) fn translated(&self, shift: Vector) -> Self {
         let mut moved = self.clone();
         match &mut moved {
-            Self::Ship { track, .. } => track.start += shift,
+            Self::Ship { track, .. } => track.translate(shift),
             Self::Fixed { shape, .. } => *shape = shape.translated(shift),
         }
         moved
