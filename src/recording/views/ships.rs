@@ -13,7 +13,7 @@ use crate::recording::canvas::{
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
-use crate::target::Target;
+use crate::target::{ShipTrack, Target};
 use crate::vessel::Hull;
 
 pub const HARD_RADIUS: f32 = 1.6;
@@ -105,25 +105,52 @@ pub fn outline(polygon: &ConvexPolygon) -> Strip {
     strip
 }
 
-/// Logs a target. Its hull and speed vector do not turn: they are drawn turned and only move.
+/// Logs a target. The hull and the speed vector of one that keeps its course are drawn once and only
+/// move; on a known route they also turn.
 fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target) -> Logged {
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
+    let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
+    let name = label(canvas, color, &target.name);
+    let turning = target.ship().filter(|ship| !ship.route.is_empty());
+    if let Some(ship) = turning {
+        let times = canvas.cursor_times.iter();
+        let drawn: Vec<Vec<Strip>> = times.map(|&t| drawn_at(canvas, ship, t)).collect();
+        let lengths: Vec<usize> = drawn.iter().map(Vec::len).collect();
+        let columns = LineStrips2D::update_fields()
+            .with_strips(drawn.into_iter().flatten())
+            .columns(lengths)?;
+        let style = LineStrips2D::update_fields()
+            .with_colors([color])
+            .with_radii(DRAWN_RADII.map(style::points));
+        rec.log_moving(entity.clone(), canvas.cursor_column(), &style, columns)?;
+        return log_places(rec, canvas, entity, &name, places);
+    }
     let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
-        let here = Pose::new(Vector::zeros(), ship.pose.heading);
-        lines.add(outline(&ship.hull.polygon(&here)), color, 1.0);
-        let tip = ship.velocity() * vector_seconds(canvas);
-        lines.add([[0.0, 0.0], flat(tip)], color, 1.0);
-        if let Some(symbol) = symbol(canvas, &ship.hull, &here) {
-            lines.add(symbol, color, 1.2);
+        for (strip, radius) in drawn_at(canvas, ship, 0.0).into_iter().zip(DRAWN_RADII) {
+            lines.add(strip, color, radius);
         }
     }
     let lines = lines.archetype();
-    let name = label(canvas, color, &target.name);
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
-    let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
     log_places(rec, canvas, entity, &parts, places)
+}
+
+/// Radii of the lines of [`drawn_at`], points.
+const DRAWN_RADII: [f32; 3] = [1.0, 1.0, 1.2];
+
+/// Hull, speed vector, and the symbol of a small ship, about its place at a time.
+fn drawn_at(canvas: &Canvas, ship: &ShipTrack, time: f64) -> Vec<Strip> {
+    let (pose, speed) = ship.nominal_at(time);
+    let here = Pose::new(Vector::zeros(), pose.heading);
+    let tip = here.ahead() * speed * vector_seconds(canvas);
+    let lines = [
+        outline(&ship.hull.polygon(&here)),
+        vec![[0.0, 0.0], flat(tip)],
+    ];
+    let symbol = symbol(canvas, &ship.hull, &here);
+    lines.into_iter().chain(symbol).collect()
 }
 
 /// Logs own ship's place and name, and below them its hull and speed vector. The name is always
