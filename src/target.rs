@@ -8,7 +8,7 @@ pub use uncertainty::{TimedVelocitySet, Uncertainty};
 
 use crate::frame::{Pose, Vector, direction, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_disc};
-use crate::tolerance::SIGMAS;
+use crate::tolerance::{self, SIGMAS};
 use crate::vessel::Hull;
 use route::{RouteLeg, RoutePoint, Spread, Track};
 
@@ -415,14 +415,22 @@ impl ShipTrack {
             points.push(ahead * slow);
             points.push(ahead * fast);
         }
-        if spread > 0.0 {
-            let pieces = (spread / TANGENT_SPACING).ceil().max(1.0);
-            let half = spread / pieces;
-            for piece in 0..pieces as usize {
-                let touching = middle - spread + half * (2 * piece + 1) as f64;
-                points.push(direction(touching) * (fast / half.cos()));
-            }
+        // Tangents count from the ends: sets that turn by their spacing share their normals, and
+        // sections stay small.
+        let mut end = spread;
+        let mut corners = Vec::new();
+        while end > 2.0 * TANGENT_SPACING * (1.0 + tolerance::LIMIT) {
+            corners
+                .extend([-1.0, 1.0].map(|side| (side * (end - TANGENT_SPACING), TANGENT_SPACING)));
+            end -= 2.0 * TANGENT_SPACING;
         }
+        if end > TANGENT_SPACING {
+            corners.extend([-1.0, 1.0].map(|side| (side * end / 2.0, end / 2.0)));
+        } else if end > 0.0 {
+            corners.push((0.0, end));
+        }
+        let corner = |(course, half): (f64, f64)| direction(middle + course) * (fast / half.cos());
+        points.extend(corners.into_iter().map(corner));
         // finite by construction; should a number overflow, every velocity is possible
         let all = ConvexPolygon::hull(&points).unwrap_or_else(|_| everything());
         match &self.kept_velocities {

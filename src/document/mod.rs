@@ -18,8 +18,12 @@ mod suite;
 mod targets;
 mod verification;
 
+use std::io::{self, Write};
+
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
+use serde_json::Serializer;
+use serde_json::ser::{Formatter, PrettyFormatter};
 
 pub use assessment::*;
 pub use check::{CheckDocument, CheckedDocument, FaultDocument};
@@ -67,9 +71,96 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// The JSON text of a document, indented, with a line end.
+/// The JSON text of a document, indented, with a line end. An array within an array, such as a
+/// corner of a polygon, is on one line.
 pub fn json(document: &impl serde::Serialize) -> serde_json::Result<String> {
-    let mut text = serde_json::to_string_pretty(document)?;
-    text.push('\n');
-    Ok(text)
+    let mut text = Vec::new();
+    document.serialize(&mut Serializer::with_formatter(&mut text, Rows::default()))?;
+    text.push(b'\n');
+    String::from_utf8(text).map_err(serde::ser::Error::custom)
+}
+
+/// Writes indented JSON with the inner of two arrays on one line.
+#[derive(Default)]
+struct Rows {
+    pretty: PrettyFormatter<'static>,
+    /// What is open, the innermost last: true for arrays.
+    arrays: Vec<bool>,
+}
+
+impl Rows {
+    fn in_row(&self) -> bool {
+        self.arrays.ends_with(&[true, true])
+    }
+}
+
+impl Formatter for Rows {
+    fn begin_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.arrays.push(true);
+        match self.in_row() {
+            true => to.write_all(b"["),
+            false => self.pretty.begin_array(to),
+        }
+    }
+
+    fn end_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        let in_row = self.in_row();
+        self.arrays.pop();
+        match in_row {
+            true => to.write_all(b"]"),
+            false => self.pretty.end_array(to),
+        }
+    }
+
+    fn begin_array_value<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
+        match (self.in_row(), first) {
+            (true, true) => Ok(()),
+            (true, false) => to.write_all(b", "),
+            (false, _) => self.pretty.begin_array_value(to, first),
+        }
+    }
+
+    fn end_array_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        match self.in_row() {
+            true => Ok(()),
+            false => self.pretty.end_array_value(to),
+        }
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.arrays.push(false);
+        self.pretty.begin_object(to)
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.arrays.pop();
+        self.pretty.end_object(to)
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
+        self.pretty.begin_object_key(to, first)
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.pretty.begin_object_value(to)
+    }
+
+    fn end_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.pretty.end_object_value(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::json;
+
+    #[test]
+    fn inner_arrays_are_on_one_line() {
+        let value =
+            serde_json::json!({ "a": [[1, 2.5], [], [{ "b": [null] }]], "c": [], "d": [3] });
+        let text = json(&value).expect("JSON");
+        assert!(text.contains("\n    [1, 2.5],\n    [],\n"), "{text}");
+        let read: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(read, value);
+    }
 }

@@ -57,6 +57,26 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
     }
 }
 
+/// The sets of a ship that turns share their normals, so their sums have few corners: two for
+/// each 5° of turn to either side, and those of the sets that hold every course.
+#[test]
+fn sums_of_the_sets_of_a_turning_ship_stay_small() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+    for _ in 0..50 {
+        let ship = ShipTrack {
+            course_spread: rng.random_range(0.0..0.6),
+            starboard_turn: 0.0,
+            ..turning_ship(&mut rng)
+        };
+        let mut sum = ConvexPolygon::point(Vector::zeros());
+        for set in ship.outer_velocity_sets(0.005, 700.0) {
+            let set = set.velocities.outer_polygon(DISC_SIDES);
+            sum = sum.minkowski_sum(&set.scaled(10.0));
+        }
+        assert!(sum.vertices().len() <= 160, "{}", sum.vertices().len());
+    }
+}
+
 /// Places and speeds of a route of up to four legs, its first along the ship's course.
 fn routed_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
     let ship = ShipTrack {
