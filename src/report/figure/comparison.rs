@@ -285,7 +285,11 @@ fn pareto(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
     let top = if top > 0.0 { top * 1.08 } else { 1.0 };
     let window = Window::new(Vector::zeros(), Vector::new(right, top));
     let title = format!("{}: cost of safety", scenario.title);
-    let axes = ["Accepted risk [-]", "Space-time error J [m²]"];
+    let error = match style.is_small() {
+        true => "J [m²]",
+        false => "Space-time error J [m²]",
+    };
+    let axes = ["Accepted risk [-]", error];
     let mut panel = Panel::free(title, axes, window);
     for (_, stroke, line) in lines.iter().rev() {
         panel.curve(line, false, *stroke);

@@ -7,7 +7,7 @@ use super::{Figure, FigureError};
 const PIXELS_PER_MM: f64 = 96.0 / 25.4;
 
 /// Smallest area between the axes in pixels that a size may leave.
-const LEAST_AREA: [f64; 2] = [100.0, 76.0];
+const LEAST_AREA: [f64; 2] = [100.0, 70.0];
 
 /// Least width in millimetres of a figure with titles; captions of papers say what they would.
 const TITLED_MM: f64 = 150.0;

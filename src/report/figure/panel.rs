@@ -257,10 +257,9 @@ impl Panel {
                     Window::new(center - half * pixel, center + half * pixel),
                 )
             };
-            let all = LABEL_PX
+            LABEL_PX
                 .iter()
-                .flat_map(move |far| SIDES.map(|side| beside(*far, side)));
-            all
+                .flat_map(move |far| SIDES.map(|side| beside(*far, side)))
         });
         let leader = |far: f64, index: usize, place: &Window| {
             let at = texts[index].1;

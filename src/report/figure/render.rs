@@ -33,6 +33,9 @@ const CLIP: &str = "kuva-clip-";
 const PADDING: f64 = 6.0;
 const TITLE: f64 = 28.2;
 
+/// Height in pixels of the letter of a panel.
+const LETTER: f64 = 20.0;
+
 /// Pixels of a legend: the height of a row, the width of a mark, and the gap after a text.
 const ROW: f64 = 16.0;
 const SWATCH: f64 = 24.0;
@@ -204,7 +207,11 @@ impl Figure {
     /// True where a panel has numbers at its left, and at its foot.
     fn numbered(&self, index: usize) -> [bool; 2] {
         let is_last = index + self.columns >= self.panels.len();
-        [index % self.columns == 0, is_last].map(|edge| edge || !self.shared)
+        [index.is_multiple_of(self.columns), is_last].map(|edge| edge || !self.shared)
+    }
+
+    fn is_lettered(&self) -> bool {
+        self.panels.len() > 1 && !self.shared
     }
 
     /// Pixels beside the areas: to the left in each column, to the right, above, and below in each
@@ -217,7 +224,8 @@ impl Figure {
             Panel::below(panels.any(|i| self.numbered(i)[1]))
         });
         let right = self.panels.iter().map(Panel::right).fold(0.0, f64::max);
-        let top = self.panels.iter().map(Panel::top).fold(0.0, f64::max);
+        let least = if self.is_lettered() { LETTER } else { 0.0 };
+        let top = self.panels.iter().map(Panel::top).fold(least, f64::max);
         (left.collect(), right, top, below.collect())
     }
 
@@ -283,7 +291,7 @@ impl Figure {
             .with_layouts(layouts)
             .with_spacing(PADDING)
             .with_padding(PADDING);
-        if count > 1 && !self.shared {
+        if self.is_lettered() {
             canvas = canvas.with_labels_lowercase();
         }
         canvas = canvas.with_plots(self.panels.into_iter().map(|p| p.plots).collect());
