@@ -243,7 +243,7 @@ fn equal_motions_of_a_comparison_share_a_curve() {
     for (text, count) in [
         (">space-time, A* and Dijkstra<", 1),
         (">space-time, Dijkstra<", 0),
-        (">sets at 2:33<", 1),
+        (">sets at the closest approach<", 1),
     ] {
         assert_eq!(svg.matches(text).count(), count, "{text}");
     }

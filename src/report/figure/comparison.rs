@@ -6,7 +6,7 @@ use super::panel::window_around;
 use super::path_time::{run_panel, target_colour};
 use super::plan::{DESIRED, FILLED, LAND, NAME_LETTERS, OTHER_SETS, land_areas};
 use super::render::shortened;
-use super::sections::{PLAN, minutes, minutes_list};
+use super::sections::{PLAN, minutes_list};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
@@ -211,9 +211,8 @@ fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
         panel.line_key(&name, curve.stroke);
     }
     panel.line_key("desired", DESIRED);
-    if let Some(time) = nearest.filter(|_| !filled.is_empty()) {
-        let label = format!("sets at {}", minutes(time));
-        panel.area_key(&label, target_colour(0), FILLED);
+    if !filled.is_empty() {
+        panel.area_key("sets at the closest approach", target_colour(0), FILLED);
     }
     if !style.times.is_empty() {
         let label = format!("sets at {}", minutes_list(&style.times));
