@@ -64,6 +64,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/import/"]),
     ("kuva", &["report/figure/"]),
+    ("png", &["report/figure/render.rs"]),
     ("clap", &["cli/", "main.rs"]),
     ("textwrap", &["cli/output/mod.rs"]),
     ("to_degrees", &["frame.rs"]),

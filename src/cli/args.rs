@@ -326,6 +326,9 @@ pub struct Asked {
     pub thresholds: Option<Arc<Thresholds>>,
 }
 
+/// Most charts of a figure of several times.
+const MOST_PANELS: usize = 6;
+
 /// A figure.
 #[derive(Debug, Args)]
 pub struct Drawn {
@@ -345,11 +348,12 @@ pub struct Drawn {
 
 impl Drawn {
     /// Options of the figure, with marked times.
-    pub fn options(&self, times: &[f64]) -> FigureOptions {
+    pub fn options(&self, times: &[f64], panels: bool) -> FigureOptions {
         FigureOptions {
             size_mm: self.size,
             dpi: self.dpi,
             times: times.to_vec(),
+            panels,
         }
     }
 
@@ -379,6 +383,10 @@ pub struct Written {
     #[arg(long, value_name = "T,T,..", value_parser = time, value_delimiter = ',')]
     #[arg(requires = "figure", allow_hyphen_values = true)]
     pub times: Vec<f64>,
+    /// Draw one chart for each of up to six times: those of --times, or four around the closest
+    /// approach
+    #[arg(long, requires = "figure")]
+    pub panels: bool,
     /// Write a report for a browser, index.html and its figures, into this folder
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub report: Option<PathBuf>,
@@ -477,10 +485,16 @@ impl Written {
     /// The files to be written.
     pub fn wanted(&self) -> anyhow::Result<Wanted<'_>> {
         self.drawn.refuse_dpi()?;
+        if self.panels && self.times.len() > MOST_PANELS {
+            anyhow::bail!(
+                "--panels: found {} times; allowed: at most {MOST_PANELS}",
+                self.times.len()
+            );
+        }
         Ok(Wanted {
             recordings: self.rrd.as_deref(),
             figures: self.drawn.figure.as_deref(),
-            drawn: self.drawn.options(&self.times),
+            drawn: self.drawn.options(&self.times, self.panels),
             plans: None,
             report: self.report.as_deref(),
         })

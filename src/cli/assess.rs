@@ -93,7 +93,7 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = args.drawn.figure.as_ref().map(|path| {
         let title = format!("{}, {sets} sets", scenario.title);
-        let options = args.drawn.options(&[]);
+        let options = args.drawn.options(&[], false);
         let figure = assessment_figure(&situation, &query.sections, &options, &title);
         match figure.and_then(|figure| figure.write(path)) {
             Ok(()) => output.wrote(path),

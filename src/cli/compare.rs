@@ -32,6 +32,9 @@ struct Compared {
 /// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation
+    if args.written.panels {
+        anyhow::bail!("--panels: found with compare; allowed: with plan, suite and simulate");
+    }
     let figure = args.written.drawn.figure.as_deref();
     figure.map_or(Ok(()), prepare_figure)?;
     let all = scenes::open(&args.paths, &args.assumed, output);
@@ -194,7 +197,7 @@ fn write(
         let drawn: Vec<(&Scenario, &[Entry])> =
             drawn.map(|c| (&c.scenario, c.entries.as_slice())).collect();
         if !drawn.is_empty() {
-            let options = args.written.drawn.options(&args.written.times);
+            let options = args.written.drawn.options(&args.written.times, false);
             comparison_figure(&drawn, &options)?.write(file)?;
         }
     }

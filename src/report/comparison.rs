@@ -58,7 +58,7 @@ fn groups(entries: &[EntryDocument]) -> Vec<Vec<&EntryDocument>> {
 }
 
 /// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part.
-fn joined(methods: &[&str]) -> String {
+pub(super) fn joined(methods: &[&str]) -> String {
     let split: Vec<Vec<&str>> = methods.iter().map(|m| m.split(", ").collect()).collect();
     let first = &split[0];
     let differ = |part: &usize| split.iter().any(|m| m.get(*part) != first.get(*part));

@@ -106,6 +106,7 @@ fn every_situation_can_be_drawn() {
     assert!(Figure::new(2, Vec::new()).svg().starts_with("<svg"));
 }
 
+const GIVE_WAY_FILE: &str = "scenarios/colregs/give-way.toml";
 const GIVE_WAY: &str = "plan scenarios/colregs/give-way.toml --quiet --figure";
 
 /// A size in millimetres is the size of the page, and with the resolution the number of pixels.
@@ -125,6 +126,19 @@ fn a_figure_has_the_size_and_the_resolution_asked_for() {
         let png = drawn("a.png", options);
         let sides = [16, 20].map(|at| png[at..at + 4].try_into().expect("four bytes"));
         assert_eq!(sides.map(u32::from_be_bytes), [width, height], "{options}");
+        let dpi = options
+            .split_once("--dpi ")
+            .map_or(192.0, |(_, dpi)| dpi.parse::<f64>().expect("dpi"));
+        let reader = png::Decoder::new(std::io::Cursor::new(&png))
+            .read_info()
+            .expect("a PNG");
+        let dims = reader.info().pixel_dims.expect("a resolution");
+        assert_eq!(dims.unit, png::Unit::Meter);
+        assert!(
+            [dims.xppu, dims.yppu]
+                .iter()
+                .all(|n| (f64::from(*n) * 0.0254 - dpi).abs() < 0.02)
+        );
     }
     let svg = String::from_utf8(drawn("a.svg", "--size 101.6x127")).expect("text");
     assert!(svg.starts_with("<svg") && svg.contains("width=\"384\" height=\"480\""));
@@ -144,18 +158,105 @@ fn all_ships_are_marked_at_the_times_asked_for() {
     let file = folder.at("a.svg");
     run(&format!("{GIVE_WAY} {file} --times 200,0,100,100")).success();
     let svg = fs::read_to_string(&file).expect("written");
-    for (time, count) in [(">1:40<", 2), (">3:20<", 2), (">2:33<", 2), (">2:00<", 0)] {
+    for (time, count) in [(">1:40<", 1), (">3:20<", 2), (", 2:33<", 1), (">2:00<", 0)] {
         assert_eq!(svg.matches(time).count(), count, "{time}");
     }
-    for first in [">own ship, 0:00<", ">target, 0:00<"] {
+    for first in [">own ship, 0:00<", ">target, give-way, 1:40<"] {
         assert!(svg.contains(first), "{first}");
     }
+}
+
+/// Figures of one and of two columns have names and the closest approach, and a title where it is
+/// wide; a size that is refused names one that is not.
+#[test]
+fn figures_fit_the_columns_of_papers() {
+    let folder = Folder::new();
+    let file = folder.at("a.svg");
+    let drawn = |words: &str| {
+        run(&format!("{words} {file}")).success();
+        fs::read_to_string(&file).expect("written")
+    };
+    for (size, titles) in [("85x60", 0), ("85x85", 0), ("120x90", 0), ("180x120", 1)] {
+        let svg = drawn(&format!(
+            "plan {GIVE_WAY_FILE} --quiet --size {size} --figure"
+        ));
+        for text in ["own ship", "target", "225.2 m, 2:33", ">closest approach<"] {
+            assert!(svg.contains(text), "{size} {text}");
+        }
+        assert_eq!(svg.matches(">Give-way<").count(), titles, "{size}");
+    }
+    let refused = run(&format!("{GIVE_WAY} {file} --size 25x25")).failure();
+    let error = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    let least = error.split("at least ").nth(1).expect("a size");
+    let least = least.split(' ').next().expect("a size");
+    drawn(&format!(
+        "plan {GIVE_WAY_FILE} --quiet --size {least} --figure"
+    ));
+}
+
+/// One chart per time with its sets, numbered at the left and at the foot.
+#[test]
+fn panels_show_one_time_each() {
+    let folder = Folder::new();
+    let file = folder.at("a.svg");
+    for (options, titles, [east, north]) in [
+        ("", &["0:00", "1:20", "2:33", "3:50"][..], [2, 2]),
+        (
+            "--times 0,30,60 --size 120x90",
+            &["0:00", "0:30", "1:00"],
+            [2, 2],
+        ),
+        ("--times 153 --size 85x60", &["2:33"], [1, 1]),
+    ] {
+        run(&format!("{GIVE_WAY} {file} --panels {options}")).success();
+        let svg = fs::read_to_string(&file).expect("written");
+        for title in titles {
+            assert_eq!(
+                svg.matches(&format!(">{title}<")).count(),
+                1,
+                "{options} {title}"
+            );
+        }
+        assert_eq!(svg.matches(">East [m]<").count(), east, "{options}");
+        assert_eq!(svg.matches(">North [m]<").count(), north, "{options}");
+        assert_eq!(
+            svg.contains(">225.2 m<"),
+            titles.contains(&"2:33"),
+            "{options}"
+        );
+        // the target's set is filled in every panel, and in the legend
+        let filled = svg.matches("opacity=\"0.25\"").count();
+        assert_eq!(filled, titles.len() + 1, "{options}");
+    }
+}
+
+/// Methods with the same motions have one curve and one name.
+#[test]
+fn equal_motions_of_a_comparison_share_a_curve() {
+    let folder = Folder::new();
+    let file = folder.at("a.svg");
+    run(&format!(
+        "compare {GIVE_WAY_FILE} --quiet --size 120x90 --figure {file}"
+    ))
+    .success();
+    let svg = fs::read_to_string(&file).expect("written");
+    for (text, count) in [
+        (">space-time, A* and Dijkstra<", 1),
+        (">space-time, Dijkstra<", 0),
+        (">sets at the closest approach<", 1),
+    ] {
+        assert_eq!(svg.matches(text).count(), count, "{text}");
+    }
+    let colours = |colour: &str| svg.matches(&format!("stroke=\"{colour}\"")).count();
+    // the chart, the distances and the legend; nothing for Dijkstra
+    assert_eq!([colours("#0072b2"), colours("#56b4e9")], [3, 0]);
 }
 
 #[test]
 fn options_of_figures_are_refused_by_name() {
     let folder = Folder::new();
     let head_on = "scenarios/colregs/head-on.toml";
+    fs::create_dir(folder.at("sub.pdf")).expect("a folder");
     folder.refuses(&format!(
         "
         plan {head_on} --quiet --figure DIR/a.svg --size 0 | --size | WIDTHxHEIGHT in millimetres
@@ -171,9 +272,24 @@ fn options_of_figures_are_refused_by_name() {
         compare {head_on} --quiet --figure DIR/a.svg --times 9999 | --times: found 9999 s | from 0 to
         plan {head_on} --quiet --figure DIR/a.svg --times -1 | --times | -1
         plan {head_on} --size 100x100 | --figure
+        plan {head_on} --panels | --figure
+        plan {head_on} --quiet --figure DIR/a.svg --panels --times 1,2,3,4,5,6,7 | --panels: found 7
+        compare {head_on} --quiet --figure DIR/a.svg --panels | --panels | suite
+        plan {head_on} --quiet --figure DIR/.pdf | .pdf: an ending alone
+        suite {head_on} --quiet --figure DIR/.SVG | .SVG: an ending alone
+        compare {head_on} --quiet --figure DIR/.png | .png: an ending alone
+        assess {head_on} --quiet --figure DIR/.png | .png: an ending alone
+        plan {head_on} --quiet --figure DIR/sub.pdf | sub.pdf: a folder | '/'
+        compare {head_on} --quiet --figure DIR/sub.pdf | sub.pdf: a folder
         "
     ));
-    for name in ["a.svg", "a.png", "a.pdf"] {
+    assert_eq!(
+        fs::read_dir(folder.at("sub.pdf"))
+            .expect("a folder")
+            .count(),
+        0
+    );
+    for name in ["a.svg", "a.png", "a.pdf", ".pdf", ".SVG", ".png"] {
         assert!(!std::path::Path::new(&folder.at(name)).exists(), "{name}");
     }
 }

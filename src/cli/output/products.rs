@@ -48,9 +48,8 @@ enum Place {
 }
 
 impl Products {
-    /// Creates the folders before planning. A path is a file if its name has the matching extension
-    /// and no folder of that name exists. A new folder with another extension requires a trailing
-    /// slash.
+    /// Creates the folders before planning. A path is a file if its name has the matching
+    /// extension and no trailing slash. A new folder with another extension requires one.
     pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
         let Wanted {
             recordings,
@@ -80,7 +79,7 @@ impl Products {
             .map(|path| place("--rrd", path, is_recording(path), ".rrd"))
             .transpose()?;
         let figures = figures
-            .map(|path| place("--figure", path, is_figure(path), ".svg, .png or .pdf"))
+            .map(|path| place("--figure", path, is_figure(path), FIGURES))
             .transpose()?;
         for (option, folder) in [("--plans", plans), ("--report", report)] {
             if let Some(folder) = folder {
@@ -249,16 +248,41 @@ fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
     }
 }
 
+/// Endings of figures.
+const FIGURES: &str = ".svg, .png or .pdf";
+
+/// Rejects a name that is an ending and nothing else.
+fn refuse_ending(option: &str, path: &Path, endings: &str) -> anyhow::Result<()> {
+    let name = path.file_name().map(|name| name.to_string_lossy());
+    let is_ending = |name: &str| {
+        endings
+            .split([',', ' '])
+            .any(|e| e.eq_ignore_ascii_case(name))
+    };
+    if name.is_some_and(|name| !name.is_empty() && is_ending(&name)) {
+        let shown = path.display();
+        bail!("{option}: {shown}: an ending alone; put a name before it");
+    }
+    Ok(())
+}
+
 /// Rejects a figure name with another extension, and creates its folder.
 pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
+    refuse_ending("--figure", path, FIGURES)?;
     if FigureFormat::of(path).is_none() {
         let file = path.to_owned();
         bail!("--figure: {}", FigureError::Format { file });
     }
-    if path.is_dir() {
-        bail!("--figure: {}: a folder; name a file", path.display());
-    }
+    refuse_folder("--figure", path, "name a file")?;
     make_parent(path)
+}
+
+/// Rejects the name of a file that is a folder, or asks for one.
+fn refuse_folder(option: &str, path: &Path, advice: &str) -> anyhow::Result<()> {
+    if path.is_dir() || asks_for_folder(path) {
+        bail!("{option}: {}: a folder; {advice}", path.display());
+    }
+    Ok(())
 }
 
 impl Place {
@@ -279,10 +303,12 @@ impl Place {
             };
             bail!("{option}: {shown}: {file}a new folder ends in '/'");
         }
-        if !is_file || path.is_dir() {
+        refuse_ending(option, path, endings)?;
+        if !is_file || asks_for_folder(path) {
             make_folder(path)?;
             return Ok(Self::Folder(path.to_owned()));
         }
+        refuse_folder(option, path, "a folder of results ends in '/'")?;
         if scenarios > 1 {
             bail!("{option} {shown}: a file, but there are {scenarios} scenarios; name a folder");
         }
@@ -305,8 +331,11 @@ impl Place {
 
 /// True for a name with an extension that is neither a folder nor ends with a slash.
 fn is_another_file(path: &Path) -> bool {
-    let asks = path.to_string_lossy().ends_with(std::path::is_separator);
-    path.extension().is_some() && !path.is_dir() && !asks
+    path.extension().is_some() && !path.is_dir() && !asks_for_folder(path)
+}
+
+fn asks_for_folder(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(std::path::is_separator)
 }
 
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {

@@ -66,7 +66,7 @@ fn assessment_panels(situation: &OwnSituation, times: &[f64], style: &Style) -> 
         let now = start + velocity * *time;
         panel.curve(&[start, now], false, OWN_ON_FIELD);
         panel.plots.push(mark(now, field::OWN));
-        panel.point_key("own ship, course held", field::OWN);
+        panel.area_key("own ship, course held", field::OWN, 1.0);
         panel
     }));
     panels

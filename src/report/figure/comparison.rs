@@ -1,19 +1,22 @@
 //! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
-//! risk.
+//! risk. Methods with equal motions share a curve.
 
 use super::outline::{marks, sampled_boundary};
 use super::panel::window_around;
-use super::path_time::run_panel;
-use super::plan::{DESIRED, INSTANTS, LAND, land_areas, round_times};
+use super::path_time::{run_panel, target_colour};
+use super::plan::{DESIRED, FILLED, LAND, NAME_LETTERS, OTHER_SETS, land_areas};
+use super::render::shortened;
 use super::sections::{PLAN, minutes_list};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::Window;
+use crate::report::comparison::joined;
 use crate::scenario::Scenario;
 use crate::study::compare::{Candidate, Entry, Method};
 
-const SETS: &str = "#888888";
+/// Width of a curve in a small panel, as a fraction of that in a large one.
+const SMALL_SHARE: f64 = 0.6;
 
 /// Time step of a curve in seconds.
 const STEP: f64 = 2.0;
@@ -33,7 +36,14 @@ pub fn comparison_figure(
         let rows = compared
             .iter()
             .flat_map(|(scenario, entries)| comparison_panels(scenario, entries, sweep, style));
-        Figure::new(if sweep { 3 } else { 2 }, rows.collect())
+        let columns = if sweep && !style.is_small() { 3 } else { 2 };
+        let figure = Figure::new(columns, rows.collect());
+        // titles tell the scenarios apart
+        if compared.len() > 1 {
+            figure.with_titles()
+        } else {
+            figure
+        }
     })
 }
 
@@ -45,14 +55,54 @@ pub(in crate::report) fn comparison_panels(
     sweep: bool,
     style: &Style,
 ) -> Vec<Panel> {
+    let curves = curves(entries, style);
     let mut panels = vec![
-        chart(scenario, entries, style),
-        distances(scenario, entries),
+        chart(scenario, &curves, style),
+        distances(scenario, &curves),
     ];
     if sweep {
-        panels.push(pareto(scenario, entries));
+        panels.push(pareto(scenario, &curves, style));
     }
     panels
+}
+
+/// The motions of a method and of those with the same ones.
+struct Curve<'a> {
+    name: String,
+    stroke: Stroke,
+    entries: Vec<&'a Entry>,
+}
+
+fn curves<'a>(entries: &'a [Entry], style: &Style) -> Vec<Curve<'a>> {
+    let share = if style.is_small() { SMALL_SHARE } else { 1.0 };
+    let mut groups: Vec<(Vec<String>, Vec<&Entry>)> = Vec::new();
+    for of_one in entries.chunk_by(|a, b| a.candidate.method == b.candidate.method) {
+        let all: Vec<&Entry> = of_one.iter().collect();
+        let same = |(_, other): &&mut (Vec<String>, Vec<&Entry>)| {
+            let equal = |(a, b): (&&Entry, &&Entry)| {
+                a.trajectory().is_some()
+                    && a.trajectory() == b.trajectory()
+                    && a.candidate.max_risk == b.candidate.max_risk
+                    && (a.safety(), a.largest_risk()) == (b.safety(), b.largest_risk())
+            };
+            other.len() == all.len() && other.iter().zip(&all).all(equal)
+        };
+        let name = of_one[0].candidate.method.to_string();
+        match groups.iter_mut().find(same) {
+            Some((names, _)) => names.push(name),
+            None => groups.push((vec![name], all)),
+        }
+    }
+    let curves = groups.into_iter().map(|(names, entries)| Curve {
+        name: joined(&names.iter().map(String::as_str).collect::<Vec<_>>()),
+        stroke: {
+            let stroke = Stroke::of(entries[0].candidate.method);
+            let width = share * stroke.width;
+            Stroke { width, ..stroke }
+        },
+        entries,
+    });
+    curves.collect()
 }
 
 /// Builds the path-time diagrams of the candidates that have one.
@@ -63,7 +113,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
             risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
             _ => format!("Path and time: {method}"),
         };
-        let label = named(method, std::slice::from_ref(entry));
+        let label = named(&method.to_string(), [entry]);
         run_panel(&title, entry.run.as_deref()?, &label, Stroke::of(method))
     };
     entries.iter().filter_map(diagram).collect()
@@ -80,94 +130,107 @@ fn times(entry: &Entry) -> Vec<f64> {
     (0..=steps).map(|k| (k as f64 * STEP).min(end)).collect()
 }
 
-fn keys(panel: &mut Panel, entries: &[Entry]) {
-    let mut last = None;
-    for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
-        let method = entry.candidate.method;
-        if last != Some(method) {
-            panel.line_key(&named(method, entries), Stroke::of(method));
-            last = Some(method);
-        }
-    }
-}
-
-/// Name of a method, with its worst result if one of its motions is not safe.
-fn named(method: Method, entries: &[Entry]) -> String {
-    let own = entries.iter().filter(|e| e.candidate.method == method);
-    let unsafe_ones = own.filter(|e| e.safety() > Some(Safety::Safe));
+/// A name, with the worst result if a motion is not safe.
+fn named<'a>(name: &str, entries: impl IntoIterator<Item = &'a Entry>) -> String {
+    let unsafe_ones = entries
+        .into_iter()
+        .filter(|e| e.safety() > Some(Safety::Safe));
     match unsafe_ones.max_by_key(|e| e.safety()) {
         Some(entry) => {
             let word = outcome_word("relaxed", entry.safety(), entry.largest_risk());
-            format!("{method}: {word}")
+            format!("{name}: {word}")
         }
-        None => method.to_string(),
+        None => name.to_owned(),
     }
 }
 
-/// Draws all motions, the desired trajectory, and the sets of the first candidate with a motion at
-/// some instants.
-fn chart(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
-    let ways: Vec<(Stroke, Vec<Vector>)> = entries
-        .iter()
-        .map(|entry| {
+/// Draws all motions, the desired trajectory, and the targets with their sets at the closest
+/// approach of the first candidate with a motion. At times that are asked for, sets are outlined.
+fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
+    let ways: Vec<(Stroke, Vec<Vector>)> = (curves.iter())
+        .flat_map(|curve| curve.entries.iter().map(|entry| (curve.stroke, *entry)))
+        .map(|(stroke, entry)| {
             let at = |time| entry.position_at(time);
-            let way = times(entry).into_iter().filter_map(at).collect();
-            (Stroke::of(entry.candidate.method), way)
+            (stroke, times(entry).into_iter().filter_map(at).collect())
         })
         .collect();
     let waypoints = scenario.desired.waypoints();
-    let end = scenario.desired.duration();
     // a motion that continues to the horizon would shrink all others
     let reach = window_around(waypoints.iter().copied(), 0.35);
     let within = |p: &Vector| reach.contains(*p);
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
-    let mut sets: Vec<Vec<Vector>> = Vec::new();
-    let times = match &style.times[..] {
-        [] => round_times(end, INSTANTS),
-        asked => asked.to_vec(),
+    let first = (curves.iter().flat_map(|curve| &curve.entries)).find_map(|e| e.motion.as_ref());
+    let passages = first.iter().flat_map(|motion| &motion.evaluation.passages);
+    let nearest = passages.min_by(|a, b| a.dcpa.total_cmp(&b.dcpa));
+    let nearest = nearest.map(|passage| passage.tcpa);
+    let obstacles = first.map_or(&[][..], |motion| &motion.obstacles);
+    let sections = |time: f64| {
+        let time = time.min(scenario.horizon);
+        let sections = obstacles
+            .iter()
+            .map(move |o| sampled_boundary(&o.section(time)));
+        sections.collect::<Vec<_>>()
     };
-    let first = entries.iter().find_map(|e| e.motion.as_ref());
-    for obstacle in first.iter().flat_map(|motion| &motion.obstacles) {
-        for time in &times {
-            let boundary = sampled_boundary(&obstacle.section(time.min(scenario.horizon)));
-            if boundary.iter().any(within) {
-                shown.extend(boundary.iter().copied().filter(within));
-                sets.push(boundary);
-            }
-        }
-    }
+    let filled = nearest.map(sections).unwrap_or_default();
+    shown.extend(filled.iter().flatten().copied().filter(within));
     let title = format!("{}: trajectories", scenario.title);
     let mut panel = Panel::plan(title, PLAN, window_around(shown, 0.06)).sized(style.area);
     let land = scenario.land.as_ref();
-    panel.plots.extend(land_areas(land, panel.window()));
-    for boundary in &sets {
-        panel.fill_hull(boundary, SETS, 0.18);
+    panel.plots.extend(land_areas(land, panel.inside()));
+    for (index, boundary) in filled.iter().enumerate() {
+        panel.fill_set(boundary, target_colour(index), FILLED);
+    }
+    for boundary in style.times.iter().flat_map(|time| sections(*time)) {
+        panel.curve(&boundary, true, OTHER_SETS);
     }
     panel.curve(&waypoints, false, DESIRED);
     // the first row on top
     for (stroke, way) in ways.iter().rev() {
         panel.curve(way, false, *stroke);
     }
-    keys(&mut panel, entries);
+    let ships = scenario
+        .targets
+        .iter()
+        .enumerate()
+        .zip(nearest.iter().cycle());
+    for ((index, target), time) in ships {
+        let place = target.position_at(*time);
+        if let Some(ship) = target.ship() {
+            panel.ship(&ship.hull, &ship.pose_at(*time), target_colour(index));
+        }
+        if panel.window().contains(place) {
+            panel.label(&[(shortened(&target.name, NAME_LETTERS), place)], true);
+        }
+    }
+    for curve in curves
+        .iter()
+        .filter(|c| c.entries.iter().any(|e| e.motion.is_some()))
+    {
+        let name = named(&curve.name, curve.entries.iter().copied());
+        panel.line_key(&name, curve.stroke);
+    }
     panel.line_key("desired", DESIRED);
-    let wide = |colour| Stroke::solid(colour, 3.0);
-    if !sets.is_empty() {
-        panel.line_key(&format!("sets at {}", minutes_list(&times)), wide(SETS));
+    if !filled.is_empty() {
+        panel.area_key("sets at the closest approach", target_colour(0), FILLED);
+    }
+    if !style.times.is_empty() {
+        let label = format!("sets at {}", minutes_list(&style.times));
+        panel.line_key(&label, OTHER_SETS);
     }
     if land.is_some() {
-        panel.line_key("land", wide(LAND));
+        panel.area_key("land", LAND, 1.0);
     }
     panel
 }
 
 /// Draws the distance to the nearest target on its nominal motion: between the hulls, or from own
 /// position to the set.
-fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
+fn distances(scenario: &Scenario, curves: &[Curve]) -> Panel {
     let own = &scenario.own_ship.hull;
-    let lines: Vec<(Stroke, Vec<Vector>)> = entries
-        .iter()
-        .map(|entry| {
+    let lines: Vec<(Stroke, Vec<Vector>)> = (curves.iter())
+        .flat_map(|curve| curve.entries.iter().map(|entry| (curve.stroke, *entry)))
+        .map(|(stroke, entry)| {
             let line = times(entry).into_iter().filter_map(|time| {
                 let pose = entry.trajectory()?.pose_at(time);
                 let targets = scenario.targets.iter();
@@ -175,7 +238,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
                 let nearest = apart.fold(f64::INFINITY, f64::min);
                 nearest.is_finite().then(|| Vector::new(time, nearest))
             });
-            (Stroke::of(entry.candidate.method), line.collect())
+            (stroke, line.collect())
         })
         .collect();
     let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -196,25 +259,22 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
 
 /// Draws the cost over accepted risk, one line per planner. Baselines are omitted because their
 /// costs would flatten the lines. A plan that exceeds the accepted risk has no point.
-fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
-    let mut lines: Vec<(Method, Vec<Vector>)> = Vec::new();
-    let is_planned = |e: &&Entry| matches!(e.candidate.method, Method::Planner { .. });
-    for entry in entries.iter().filter(is_planned) {
-        let method = entry.candidate.method;
-        let known = lines.iter().position(|(m, _)| *m == method);
-        let index = known.unwrap_or_else(|| {
-            lines.push((method, Vec::new()));
-            lines.len() - 1
-        });
-        let cost = cost_within_risk(entry);
-        lines[index]
-            .1
-            .extend(cost.map(|cost| Vector::new(entry.candidate.max_risk, cost)));
-    }
-    for (_, line) in &mut lines {
+fn pareto(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
+    let is_planned = |c: &&Curve| matches!(c.entries[0].candidate.method, Method::Planner { .. });
+    let line = |curve: &'_ Curve| {
+        let point = |entry: &&Entry| {
+            Some(Vector::new(
+                entry.candidate.max_risk,
+                cost_within_risk(entry)?,
+            ))
+        };
+        let mut line: Vec<Vector> = curve.entries.iter().filter_map(point).collect();
         line.sort_by(|a, b| a.x.total_cmp(&b.x));
-    }
-    let points = lines.iter().flat_map(|(_, line)| line).copied();
+        (curve.name.clone(), curve.stroke, line)
+    };
+    let lines: Vec<(String, Stroke, Vec<Vector>)> =
+        curves.iter().filter(is_planned).map(line).collect();
+    let points = lines.iter().flat_map(|(.., line)| line).copied();
     let (mut right, mut top) = (0.0_f64, 0.0_f64);
     for p in points {
         right = right.max(p.x);
@@ -224,20 +284,23 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let top = if top > 0.0 { top * 1.08 } else { 1.0 };
     let window = Window::new(Vector::zeros(), Vector::new(right, top));
     let title = format!("{}: cost of safety", scenario.title);
-    let axes = ["Accepted risk [-]", "Space-time error J [m²]"];
+    let error = match style.is_small() {
+        true => "J [m²]",
+        false => "Space-time error J [m²]",
+    };
+    let axes = ["Accepted risk [-]", error];
     let mut panel = Panel::free(title, axes, window);
-    for (method, line) in lines.iter().rev() {
-        let stroke = Stroke::of(*method);
-        panel.curve(line, false, stroke);
+    for (_, stroke, line) in lines.iter().rev() {
+        panel.curve(line, false, *stroke);
         panel.plots.push(marks(line, stroke.colour));
     }
-    for (method, line) in &lines {
+    for (name, stroke, line) in lines.iter().filter(|_| !style.is_small()) {
         // show the costs, because lines may coincide
         let label = match (line.first(), line.last()) {
-            (Some(first), Some(last)) => format!("{method}: {:.0} to {:.0} m²", first.y, last.y),
-            _ => format!("{method}: none within the risk"),
+            (Some(first), Some(last)) => format!("{name}: {:.0} to {:.0} m²", first.y, last.y),
+            _ => format!("{name}: none within the risk"),
         };
-        panel.line_key(&label, Stroke::of(*method));
+        panel.line_key(&label, *stroke);
     }
     panel
 }

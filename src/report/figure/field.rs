@@ -6,6 +6,7 @@ use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
 use super::outline::{Approaching, mark, outer_velocities_within, sampled_boundary};
+use super::panel::round_step;
 use super::sections::PLAN;
 use super::{Panel, Stroke};
 use crate::frame::Vector;
@@ -76,7 +77,7 @@ pub fn dcpa_panel(
     }
     if let Some(own) = shown.own {
         panel.plots.push(mark(own, OWN));
-        panel.point_key("own velocity", OWN);
+        panel.area_key("own velocity", OWN, 1.0);
     }
     panel
 }
@@ -127,15 +128,4 @@ fn scale(window: Window, top: f64, name: &str) -> Plot {
         .with_colormap(ColorMap::Viridis)
         .with_legend(name);
     Plot::Contour(corners)
-}
-
-/// Next of 1, 2, 5, 10, 20, … that is at least `least`.
-fn round_step(least: f64) -> f64 {
-    if !(least > 0.0 && least.is_finite()) {
-        return 1.0;
-    }
-    let power = 10.0_f64.powf(least.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
-    let fits = |s: &&f64| **s >= least * (1.0 - 1e-9);
-    steps.iter().find(fits).copied().unwrap_or(10.0 * power)
 }

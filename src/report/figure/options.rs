@@ -1,13 +1,16 @@
 //! Options of a figure: its size, its resolution and the times on its chart.
 
-use super::panel::AREA;
+use super::panel::{AREA, is_small};
 use super::{Figure, FigureError};
 
 /// Pixels of a millimetre, as in CSS.
 const PIXELS_PER_MM: f64 = 96.0 / 25.4;
 
 /// Smallest area between the axes in pixels that a size may leave.
-const LEAST_AREA: [f64; 2] = [150.0, 110.0];
+const LEAST_AREA: [f64; 2] = [100.0, 70.0];
+
+/// Least width in millimetres of a figure with titles; captions of papers say what they would.
+const TITLED_MM: f64 = 150.0;
 
 /// Size, resolution and marked times of a figure.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -18,6 +21,8 @@ pub struct FigureOptions {
     pub dpi: Option<f64>,
     /// Times in seconds at which the charts mark all ships; round times by default.
     pub times: Vec<f64>,
+    /// One chart per time instead of one with all times.
+    pub panels: bool,
 }
 
 /// What a chart depends on besides its content.
@@ -27,6 +32,15 @@ pub(in crate::report) struct Style {
     pub area: [f64; 2],
     /// Times to mark; round times if empty.
     pub times: Vec<f64>,
+    /// One chart per time.
+    pub panels: bool,
+}
+
+impl Style {
+    /// True for an area without room for details.
+    pub fn is_small(&self) -> bool {
+        is_small(self.area)
+    }
 }
 
 impl Default for Style {
@@ -34,13 +48,14 @@ impl Default for Style {
         Self {
             area: AREA,
             times: Vec::new(),
+            panels: false,
         }
     }
 }
 
 impl FigureOptions {
-    /// Draws a figure at its size, with times from 0 to `end` seconds. The heights of the legends
-    /// are known once the panels are made, so panels of another size are made twice.
+    /// Draws a figure at its size, with times from 0 to `end` seconds. Legends and details depend
+    /// on the area that they leave, so panels of another size are made again.
     pub(super) fn draw(
         &self,
         end: f64,
@@ -54,32 +69,39 @@ impl FigureOptions {
         }
         let mut style = Style {
             times: self.times.clone(),
+            panels: self.panels,
             ..Style::default()
         };
         style.times.sort_by(f64::total_cmp);
         style.times.dedup();
-        let figure = make(&style).with_dpi(self.dpi);
+        let narrow = self.size_mm.is_some_and(|[width, _]| width < TITLED_MM);
+        let make = |style: &Style| {
+            let figure = make(style).with_dpi(self.dpi);
+            if narrow { figure.untitled() } else { figure }
+        };
         let Some(size) = self.size_mm else {
-            return Ok(figure);
+            return Ok(make(&style));
         };
         let pixels = size.map(|mm| mm * PIXELS_PER_MM);
-        let [columns, rows] = figure.grid().map(|count| count as f64);
-        let [width, height] = figure.pixels();
-        let frame = [width - columns * AREA[0], height - rows * AREA[1]];
-        style.area = [
-            (pixels[0] - frame[0]) / columns,
-            (pixels[1] - frame[1]) / rows,
-        ];
-        if style.area[0] < LEAST_AREA[0] || style.area[1] < LEAST_AREA[1] {
-            let least = [
-                frame[0] + columns * LEAST_AREA[0],
-                frame[1] + rows * LEAST_AREA[1],
-            ];
+        let mut least = [0.0; 2];
+        let mut fits = true;
+        for _ in 0..2 {
+            let figure = make(&style).sized(style.area);
+            let (grid, frame) = (figure.grid().map(|count| count as f64), figure.frame());
+            let area = |size: [f64; 2], i: usize| {
+                let legend = [0.0, figure.legend_height(size[0])];
+                (size[i] - frame[i] - legend[i]) / grid[i]
+            };
+            least = [0, 1].map(|i| frame[i] + grid[i] * LEAST_AREA[i]);
+            least[1] += figure.legend_height(least[0]);
+            let found = [0, 1].map(|i| area(pixels, i));
+            fits = found[0] >= LEAST_AREA[0] && found[1] >= LEAST_AREA[1];
+            style.area = [0, 1].map(|i| found[i].max(LEAST_AREA[i]));
+        }
+        if !fits {
             let least = least.map(|pixels| (pixels / PIXELS_PER_MM).ceil());
             return Err(FigureError::Size { found: size, least });
         }
-        Ok(make(&style)
-            .with_dpi(self.dpi)
-            .with_size(style.area, pixels))
+        Ok(make(&style).with_size(style.area, pixels))
     }
 }

@@ -1,6 +1,5 @@
 //! Panel: one pair of axes.
 
-use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
@@ -16,40 +15,32 @@ use std::f64::consts::FRAC_PI_4;
 /// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
 
-/// Margins in pixels: left, right, top. The legend is below.
-pub(super) const MARGIN: [f64; 3] = [74.0, 106.0, 44.0];
+/// Width in pixels below which an area is small.
+const SMALL: f64 = 300.0;
 
-/// Right margin in pixels of a single panel without a colour scale.
-const ALONE: f64 = 18.0;
+/// Margins in pixels: right with a colour scale, and left with numbers, of a small area too.
+const SCALE: f64 = 106.0;
+const LEFT: [f64; 2] = [68.0, 56.0];
+
+/// Pixels by which the label of the left axis gives way to its numbers.
+const ASIDE: f64 = 6.0;
+
+/// Margins in pixels: without numbers, right without a colour scale, above with and without title.
+const BARE: f64 = 5.0;
+const RIGHT: f64 = 12.0;
+const TOP: [f64; 2] = [31.0, 8.0];
 
 /// Height in pixels of the numbers and the label of the lower axis.
-const AXIS: f64 = 64.0;
-
-/// Offset in pixels by which the label of the lower axis is raised.
-const LIFT: f64 = 16.0;
-
-/// Height in pixels of a legend line, and its padding.
-const LEGEND_LINE: f64 = 20.0;
-const LEGEND_FRAME: f64 = 26.0;
+const AXIS: f64 = 38.0;
 
 /// Letters of a title that fit above a panel.
 const LETTERS: usize = 58;
 
-/// Letters of a line of the legend that fit below a panel.
-const LEGEND_LETTERS: usize = 56;
+/// Least pixels between two numbers of the lower axis, and of the left one.
+const TICKS: [f64; 2] = [44.0, 28.0];
 
-/// Width in pixels of a letter of the legend, and of all that is beside the letters.
-const LETTER: f64 = 5.5;
-const LEGEND_SIDES: f64 = 58.0;
-
-/// Where the legend of a narrow panel begins, in pixels.
-const NARROW: f64 = 8.0;
-
-/// Font size of a note in pixels.
-const NOTE_SIZE: u32 = 11;
-
-/// Shortest ship in pixels, and the beam of one of that length.
-const SHIP: f64 = 15.0;
+/// Shortest ship in pixels, in a small area too, and the beam of one of that length.
+const SHIP: [f64; 2] = [15.0, 11.0];
 const BROAD: f64 = 0.4;
 
 /// Corners of a ship in lengths ahead and beams to port.
@@ -61,11 +52,43 @@ const SHAPE: [[f64; 2]; 5] = [
     [0.1, -0.5],
 ];
 
-/// Pixels between a position and its text, the nearest first.
-const LABEL_PX: [f64; 3] = [7.0, 14.0, 24.0];
+/// Pixels between a position and its text, the nearest first; farther than the second constant,
+/// a line leads to the text.
+const LABEL_PX: [f64; 6] = [7.0, 14.0, 24.0, 40.0, 60.0, 85.0];
+const LEADER_PX: f64 = 14.0;
+const LEADER: Stroke = Stroke::solid("#555555", 0.6);
+
+/// Pixels that a label goes farther to keep off the frame, a text or ship, a filled area, a line.
+const COSTS: [f64; 4] = [1000.0, 300.0, 150.0, 28.0];
+
+/// Cost in pixels of the next best position of a text.
+const NEXT: f64 = 20.0;
 
 /// Sides of a position in eighths of a circle from east, in order of preference.
 const SIDES: [usize; 8] = [2, 6, 0, 4, 1, 3, 7, 5];
+
+/// True for an area without room for details.
+pub(super) fn is_small(area: [f64; 2]) -> bool {
+    area[0] < SMALL
+}
+
+/// Font size in pixels of notes, numbers and legends.
+pub(super) fn text_size(area: [f64; 2]) -> u32 {
+    if is_small(area) { 10 } else { 11 }
+}
+
+/// Width of a text in pixels, on average.
+pub(super) fn text_width(text: &str, area: [f64; 2]) -> f64 {
+    0.57 * f64::from(text_size(area)) * text.chars().count() as f64
+}
+
+/// One entry of the legend: a line, or an area of an opacity.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Key {
+    pub label: String,
+    pub stroke: Stroke,
+    pub filled: Option<f64>,
+}
 
 /// One pair of axes and its content.
 pub struct Panel {
@@ -78,10 +101,11 @@ pub struct Panel {
     area: [f64; 2],
     equal: bool,
     pub(super) plots: Vec<Plot>,
-    legend: Vec<LegendEntry>,
+    legend: Vec<Key>,
     notes: Vec<TextAnnotation>,
-    /// Texts and ships; labels keep clear of them and of the curves.
+    /// Texts and ships; labels keep clear of them, of the filled areas and of the curves.
     taken: Vec<Window>,
+    filled: Vec<ConvexPolygon>,
     curves: Vec<Vec<Vector>>,
 }
 
@@ -121,6 +145,7 @@ impl Panel {
             legend: Vec::new(),
             notes: Vec::new(),
             taken: Vec::new(),
+            filled: Vec::new(),
             curves: Vec::new(),
         }
     }
@@ -135,22 +160,34 @@ impl Panel {
         self.window
     }
 
-    pub(super) fn line_key(&mut self, label: &str, stroke: Stroke) {
-        self.legend.push(LegendEntry {
-            label: label.to_owned(),
-            color: stroke.colour.to_owned(),
-            shape: LegendShape::Line,
-            dasharray: stroke.dashed.then(|| "8 4".to_owned()),
+    pub(super) fn remove_title(&mut self) {
+        self.title.clear();
+    }
+
+    pub(super) fn legend(&self) -> &[Key] {
+        &self.legend
+    }
+
+    fn key(&mut self, label: &str, stroke: Stroke, filled: Option<f64>) {
+        let label = label.to_owned();
+        self.legend.push(Key {
+            label,
+            stroke,
+            filled,
         });
     }
 
-    pub(super) fn point_key(&mut self, label: &str, colour: &str) {
-        self.legend.push(LegendEntry {
-            label: label.to_owned(),
-            color: colour.to_owned(),
-            shape: LegendShape::Circle,
-            dasharray: None,
-        });
+    pub(super) fn line_key(&mut self, label: &str, stroke: Stroke) {
+        self.key(label, stroke, None);
+    }
+
+    pub(super) fn area_key(&mut self, label: &str, colour: &'static str, opacity: f64) {
+        self.key(label, Stroke::solid(colour, 1.0), Some(opacity));
+    }
+
+    /// Visible part of the plane without the frame around it.
+    pub(super) fn inside(&self) -> Window {
+        self.window.grown(-self.pixel())
     }
 
     /// Draws a filled polygon; without effect if its area is zero.
@@ -169,8 +206,18 @@ impl Panel {
         self.curves.push(points.to_vec());
     }
 
+    /// Fills a set, from which labels keep clear, with its boundary.
+    pub(super) fn fill_set(&mut self, points: &[Vector], colour: &'static str, opacity: f64) {
+        if let Ok(hull) = ConvexPolygon::hull(points) {
+            self.fill(&hull, colour, opacity);
+            self.curve(points, true, Stroke::solid(colour, 1.0));
+            self.filled.push(hull);
+        }
+    }
+
     pub(super) fn note(&mut self, text: &str, at: Vector) {
-        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(NOTE_SIZE);
+        let size = text_size(self.area);
+        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(size);
         self.notes.push(note);
     }
 
@@ -181,7 +228,7 @@ impl Panel {
 
     /// Draws a ship: its hull, or a symbol of the same course where the hull would be too small.
     pub(super) fn ship(&mut self, hull: &Hull, pose: &Pose, colour: &str) {
-        let least = SHIP * self.pixel();
+        let least = SHIP[usize::from(is_small(self.area))] * self.pixel();
         let (length, beam) = if hull.length < least {
             (least, BROAD * least)
         } else {
@@ -193,116 +240,154 @@ impl Panel {
         self.taken.extend(Window::around(&corners));
     }
 
-    /// Adds a text beside a position, where it covers least of what is there: the frame, texts and
-    /// ships first, then lines.
-    pub(super) fn label(&mut self, text: &str, at: Vector) {
-        let size = f64::from(NOTE_SIZE);
-        let half = Vector::new(0.3 * size * text.chars().count() as f64, 0.5 * size);
-        let place = |(far, side): (f64, usize)| {
-            let side = direction(FRAC_PI_4 * side as f64);
-            let off = Vector::new(side.x * (half.x + far), side.y * (half.y + far));
-            let center = at + off * self.pixel();
-            let half = half * self.pixel();
-            Window::new(center - half, center + half)
+    /// Adds one of some texts beside its position, where it covers least of what is there: the
+    /// frame, texts and ships first, then filled areas, then lines. A text that is not `needed`
+    /// gives way to others, and in a small area to filled ones. Returns the position.
+    pub(super) fn label(&mut self, texts: &[(String, Vector)], needed: bool) -> Option<Vector> {
+        let (size, pixel) = (f64::from(text_size(self.area)), self.pixel());
+        let places = texts.iter().enumerate().flat_map(|(index, (text, at))| {
+            let half = Vector::new(0.5 * text_width(text, self.area), 0.5 * size);
+            let beside = move |far: f64, side: usize| {
+                let side = direction(FRAC_PI_4 * side as f64);
+                let off = Vector::new(side.x * (half.x + far), side.y * (half.y + far));
+                let center = at + off * pixel;
+                (
+                    far,
+                    index,
+                    Window::new(center - half * pixel, center + half * pixel),
+                )
+            };
+            LABEL_PX
+                .iter()
+                .flat_map(move |far| SIDES.map(|side| beside(*far, side)))
+        });
+        let leader = |far: f64, index: usize, place: &Window| {
+            let at = texts[index].1;
+            (far > LEADER_PX).then(|| [at, at.sup(&place.low).inf(&place.high)])
         };
-        let places = LABEL_PX
-            .iter()
-            .flat_map(|far| SIDES.map(|side| place((*far, side))));
-        let cost = |place: &Window| {
+        let meets = |place: &Window| self.taken.iter().filter(|other| other.meets(place)).count();
+        let crossed = |place: &Window| self.curves.iter().filter(|l| crosses(l, place)).count();
+        let covers = |(far, index, place): &(f64, usize, Window)| {
             let [low, high] = [place.low, place.high].map(|corner| self.window.contains(corner));
-            let covered = self.taken.iter().filter(|other| other.meets(place)).count();
-            let crossed = (self.curves.iter())
-                .filter(|line| crosses(line, place))
-                .count();
-            let cut = usize::from(!low) + usize::from(!high);
-            (cut, covered, crossed)
+            let filled = |set: &&ConvexPolygon| !place.part_of(set).is_empty();
+            // a leader along a line or through a text is not seen
+            let middle = leader(*far, *index, place).map(|[at, end]| 0.5 * (at + end));
+            let middle = middle.map(|middle| Window::at(middle).grown(2.0 * pixel));
+            [
+                usize::from(!low) + usize::from(!high),
+                meets(place),
+                self.filled.iter().filter(filled).count() + middle.as_ref().map_or(0, meets),
+                crossed(place) + middle.as_ref().map_or(0, crossed),
+            ]
         };
-        if let Some(best) = places.min_by_key(cost) {
-            // a note is above its position
-            let at = best.center() - Vector::new(0.0, size * self.pixel());
-            self.note(text, at);
-            self.taken.push(best);
+        let cost = |place: &(f64, usize, Window)| {
+            let covered = covers(place).into_iter().zip(COSTS);
+            let covered: f64 = covered.map(|(count, cost)| count as f64 * cost).sum();
+            place.0 + NEXT * place.1 as f64 + covered
+        };
+        let best = places.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let (far, index, best) = best.filter(|place| {
+            let free = if is_small(self.area) { 3 } else { 2 };
+            let near = free < 3 || place.0 <= LEADER_PX;
+            needed || (near && covers(place)[..free].iter().all(|count| *count == 0))
+        })?;
+        if let Some(leader) = leader(far, index, &best) {
+            self.plots.push(curve(&leader, false, LEADER));
+        }
+        let corner = |x: f64, y: f64| Vector::new(x, y);
+        let Window { low, high } = best;
+        let around = [low, corner(high.x, low.y), high, corner(low.x, high.y)];
+        self.fill_hull(&around, "#ffffff", 0.6);
+        // a note is above its position
+        let (text, at) = &texts[index];
+        self.note(text, best.center() - Vector::new(0.0, size * pixel));
+        self.taken.push(best);
+        Some(*at)
+    }
+
+    /// Width in pixels to the left of an area.
+    pub(super) fn left(area: [f64; 2], numbered: bool) -> f64 {
+        match numbered {
+            true => LEFT[usize::from(is_small(area))],
+            false => BARE,
         }
     }
 
-    /// Height in pixels below the area for a legend with this many lines.
-    pub(super) fn below(lines: usize) -> f64 {
-        AXIS + if lines == 0 {
-            0.0
-        } else {
-            LEGEND_FRAME + LEGEND_LINE * lines as f64
-        }
+    /// Height in pixels below an area.
+    pub(super) fn below(numbered: bool) -> f64 {
+        if numbered { AXIS } else { BARE }
     }
 
-    /// Letters of a title that fit above this panel.
-    fn title_letters(&self) -> usize {
-        let [left, right, _] = MARGIN;
-        let width = |area: f64| left + area + right;
-        (LETTERS as f64 * width(self.area[0]) / width(AREA[0])) as usize
+    /// Height in pixels above the area.
+    pub(super) fn top(&self) -> f64 {
+        TOP[usize::from(self.title.is_empty())]
     }
 
-    fn legend_entries(&self) -> Vec<LegendEntry> {
-        let width = MARGIN[0] + self.area[0] + ALONE - LEGEND_SIDES;
-        let letters = LEGEND_LETTERS.min((width / LETTER) as usize);
-        let short = |entry: &LegendEntry| LegendEntry {
-            label: shortened(&entry.label, letters),
-            ..entry.clone()
-        };
-        self.legend.iter().map(short).collect()
-    }
-
-    pub(super) fn legend_lines(&self) -> usize {
-        self.legend.len()
-    }
-
-    /// Width in pixels that a single panel needs to the right of its area.
+    /// Width in pixels to the right of the area.
     pub(super) fn right(&self) -> f64 {
-        if self.plots.iter().any(|p| p.colorbar_info(false).is_some()) {
-            MARGIN[1]
-        } else {
-            ALONE
-        }
+        if self.has_scale() { SCALE } else { RIGHT }
     }
 
-    /// Layout in a cell, with the pixels to the right of the area and below it.
-    pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
+    fn has_scale(&self) -> bool {
+        self.plots.iter().any(|p| p.colorbar_info(false).is_some())
+    }
+
+    /// Layout in a cell, with the pixels to the left of the area, to the right, above and below,
+    /// and whether the vertical and the lower axis have numbers.
+    pub(super) fn layout(&self, sides: [f64; 4], numbered: [bool; 2]) -> Layout {
         let Window { low, high } = self.window;
-        let [left, _, top] = MARGIN;
+        let [left, right, top, below] = sides;
+        let size = text_size(self.area);
+        let letters = LETTERS as f64 * (self.area[0] + LEFT[0]) / (AREA[0] + LEFT[0]);
+        let steps = [0, 1].map(|i| round_step((high - low)[i] / self.area[i] * TICKS[i]));
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
-            .with_title(shortened(&self.title, self.title_letters()))
-            .with_x_label(self.axes[0].as_str())
-            .with_y_label(self.axes[1].as_str())
             .with_x_axis_min(low.x)
             .with_x_axis_max(high.x)
             .with_y_axis_min(low.y)
             .with_y_axis_max(high.y)
-            .with_ticks(6)
+            .with_x_tick_step(steps[0])
+            .with_y_tick_step(steps[1])
             .with_box_axes()
             .with_show_grid(false)
-            .with_title_size(13)
-            .with_label_size(13)
-            .with_tick_size(11)
-            .with_body_size(11)
+            .with_title_size(size + 2)
+            .with_label_size(size + 1)
+            .with_tick_size(size)
+            .with_body_size(size)
             .with_force_margins(left, right)
             .with_force_margins_y(top, below);
-        layout.show_colorbar = self.plots.iter().any(|p| p.colorbar_info(false).is_some());
-        // place the axis label next to its axis, above the legend
-        layout = layout.with_x_label_offset(0.0, AXIS - below - LIFT);
+        layout.show_colorbar = self.has_scale();
+        if !self.title.is_empty() {
+            layout = layout.with_title(shortened(&self.title, letters as usize));
+        }
+        layout.suppress_y_ticks = !numbered[0];
+        layout.suppress_x_ticks = !numbered[1];
+        if numbered[0] {
+            layout = layout
+                .with_y_label(self.axes[1].as_str())
+                .with_y_label_offset(-ASIDE, 0.0);
+        }
+        if numbered[1] {
+            layout = layout.with_x_label(self.axes[0].as_str());
+        }
         if self.equal {
             layout = layout.with_equal_aspect();
-        }
-        if !self.legend.is_empty() {
-            // a narrow panel has its legend below the whole of it
-            let begin = if self.area[0] < AREA[0] { NARROW } else { left };
-            layout = layout
-                .with_legend_entries(self.legend_entries())
-                .with_legend_position(LegendPosition::Custom(begin, top + self.area[1] + AXIS));
         }
         for note in &self.notes {
             layout = layout.with_annotation(note.clone());
         }
         layout
     }
+}
+
+/// Next of 1, 2, 5, 10, 20, … times a power of ten that is at least `least`.
+pub(super) fn round_step(least: f64) -> f64 {
+    if !(least > 0.0 && least.is_finite()) {
+        return 1.0;
+    }
+    let power = 10.0_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
+    let fits = |s: &&f64| **s >= least * (1.0 - 1e-9);
+    steps.iter().find(fits).copied().unwrap_or(10.0 * power)
 }
 
 /// True where a line runs through a box.
@@ -333,7 +418,7 @@ pub(super) fn window_around(points: impl IntoIterator<Item = Vector>, share: f64
 }
 
 /// Widens a window about its centre until width over height is `ratio`.
-fn with_ratio(window: Window, ratio: f64) -> Window {
+pub(super) fn with_ratio(window: Window, ratio: f64) -> Window {
     let size = window.size();
     let half = Vector::new(size.x.max(size.y * ratio), size.y.max(size.x / ratio)) * 0.5;
     let middle = window.center();
@@ -354,7 +439,7 @@ mod tests {
         let mut panel = panel();
         for (at, count) in [(Vector::new(500.0, 400.0), 6), (Vector::new(2.0, 2.0), 2)] {
             for k in 0..count {
-                panel.label(&format!("{k}00 s"), at);
+                panel.label(&[(format!("{k}00 s"), at)], true);
             }
         }
         let taken = &panel.taken;
@@ -366,13 +451,18 @@ mod tests {
     }
 
     #[test]
-    fn a_long_name_ends_within_the_legend() {
+    fn a_label_keeps_off_a_filled_set() {
         let mut panel = panel();
-        panel.line_key(&"ship_".repeat(40), Stroke::solid("#000000", 1.0));
-        assert_eq!(
-            panel.legend_entries()[0].label.chars().count(),
-            LEGEND_LETTERS
-        );
+        let corners = [
+            (400.0, 300.0),
+            (550.0, 300.0),
+            (550.0, 450.0),
+            (400.0, 450.0),
+        ];
+        let corners = corners.map(|(x, y)| Vector::new(x, y));
+        panel.fill_set(&corners, "#000000", 0.5);
+        panel.label(&[("600 s".to_owned(), Vector::new(470.0, 380.0))], true);
+        assert!(panel.taken[0].part_of(&panel.filled[0]).is_empty());
     }
 
     #[test]
@@ -381,7 +471,7 @@ mod tests {
         for line in [ends, ends.map(|p| Vector::new(p.y, p.x))] {
             let mut panel = panel();
             panel.curve(&line, false, Stroke::solid("#000000", 1.0));
-            panel.label("600 s", 0.5 * (line[0] + line[1]));
+            panel.label(&[("600 s".to_owned(), 0.5 * (line[0] + line[1]))], true);
             assert!(!crosses(&line, &panel.taken[0]));
             assert!(crosses(&line, &Window::at(line[1]).grown(1.0)));
         }

@@ -13,7 +13,7 @@ const JOINT: Stroke = Stroke::dashed("#bbbbbb", 0.8);
 /// Colours of successive targets; they also differ in lightness.
 const COLOURS: [&str; 12] = [
     "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#6a3d9a",
-    "#9aa800", "#e7298a", "#1b4f3f", "#4d5f8a",
+    "#9aa800", "#e7298a", "#1b4f3f", "#7a3b2e",
 ];
 
 /// Time shown after the last arrival, as a fraction of the time until then.
@@ -90,8 +90,32 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     named.sort_unstable();
     named.dedup();
     for index in named {
-        let stroke = Stroke::solid(target_colour(index), 3.0);
-        panel.line_key(names.get(index).copied().unwrap_or_default(), stroke);
+        let name = names.get(index).copied().unwrap_or_default();
+        panel.area_key(name, target_colour(index), 0.35);
     }
     panel
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Measures by the formula "redmean", in which black and white are 765 apart.
+    #[test]
+    fn colours_of_targets_are_distinguishable() {
+        let parts = |colour: &str| {
+            [1, 3, 5].map(|at| u8::from_str_radix(&colour[at..at + 2], 16).expect("hexadecimal"))
+        };
+        let apart = |a: &str, b: &str| {
+            let [a, b] = [a, b].map(|colour| parts(colour).map(f64::from));
+            let [r, g, b2] = [0, 1, 2].map(|i| (a[i] - b[i]).powi(2));
+            let red = 0.5 * (a[0] + b[0]) / 256.0;
+            ((2.0 + red) * r + 4.0 * g + (3.0 - red) * b2).sqrt()
+        };
+        for (index, colour) in COLOURS.iter().enumerate() {
+            for other in COLOURS[..index].iter().chain(&["#ffffff", "#000000"]) {
+                assert!(apart(colour, other) > 100.0, "{colour} {other}");
+            }
+        }
+    }
 }

@@ -32,17 +32,27 @@ const FOUND: Stroke = Stroke::solid("#009e73", 0.8);
 pub(super) const LAND: &str = "#d9cba3";
 const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
-const OTHER_SETS: Stroke = Stroke::dashed("#777777", 0.8);
+pub(super) const OTHER_SETS: Stroke = Stroke::dashed("#777777", 0.8);
+
+/// Opacity of a filled set.
+pub(super) const FILLED: f64 = 0.25;
+
+/// Margin of a chart, and the reach in which it shows sets, as fractions of own ship's tracks.
+const AIR: f64 = 0.07;
+const REACH: f64 = 0.3;
+
+/// Interval in seconds to which the times of panels are rounded.
+const ROUND: f64 = 10.0;
 
 /// Most letters of a name beside a ship.
-const NAME_LETTERS: usize = 14;
+pub(super) const NAME_LETTERS: usize = 14;
 
 /// Least interval between a round time and the closest approach, as a fraction of the interval
 /// between round times.
 const TIMES_APART: f64 = 0.25;
 
 /// Most instants after the start at which the sets are drawn.
-pub(super) const INSTANTS: f64 = 4.0;
+const INSTANTS: f64 = 4.0;
 
 /// Least distance between two ships with a time each, as a fraction of the width of the chart.
 const LABELS_APART: f64 = 0.04;
@@ -53,7 +63,7 @@ const INTERVALS: [f64; 13] = [
 ];
 
 /// Round times from 0 to `end` seconds, at most `most` of them after the start.
-pub(super) fn round_times(end: f64, most: f64) -> Vec<f64> {
+fn round_times(end: f64, most: f64) -> Vec<f64> {
     let interval = INTERVALS.into_iter().find(|i| end <= most * i);
     let interval = interval.unwrap_or(end / most);
     (0..=(end / interval) as usize)
@@ -62,7 +72,8 @@ pub(super) fn round_times(end: f64, most: f64) -> Vec<f64> {
 }
 
 /// The times that a chart marks: those asked for, or round ones, and the closest approach; and the
-/// index of the closest approach, of 0 without one.
+/// index of the closest approach, of 0 without one. For panels: those asked for, or the start, the
+/// closest approach, the end and the middles between them; the index is beyond them without one.
 pub(super) fn marked_times(
     style: &Style,
     end: f64,
@@ -70,12 +81,31 @@ pub(super) fn marked_times(
     closest: Option<f64>,
 ) -> (Vec<f64>, usize) {
     let asked = !style.times.is_empty();
+    let closest = closest.filter(|time| time.is_finite());
+    if style.panels {
+        let middle = closest.unwrap_or(0.5 * end);
+        let round = |time: f64| (time / ROUND).round() * ROUND;
+        let mut times = match asked {
+            true => style.times.clone(),
+            false => vec![
+                0.0,
+                round(0.5 * middle),
+                middle,
+                round(0.5 * (middle + end)).min(end),
+            ],
+        };
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let is_closest = |time: &f64| closest.is_some_and(|c| minutes(c) == minutes(*time));
+        let place = times.iter().position(is_closest);
+        return (times.clone(), place.unwrap_or(times.len()));
+    }
     let mut times = match asked {
         true => style.times.clone(),
         // a small chart has room for fewer
         false => round_times(end, most * (style.area[0] / AREA[0]).clamp(0.5, 1.0)),
     };
-    let Some(closest) = closest.filter(|time| time.is_finite()) else {
+    let Some(closest) = closest else {
         return (times, 0);
     };
     let apart = match (asked, &times[..]) {
@@ -93,15 +123,21 @@ pub(super) fn marked_times(
 const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
-/// Draws the chart of a run, with its path-time diagram or its velocities and forces if present.
-/// The title is that of the scenario; the verdict is above the chart.
+/// Draws the chart of a run, with its path-time diagram or its velocities and forces if present, or
+/// a chart for each of several times. The title is that of the scenario; the verdict is above the
+/// chart.
 pub fn plan_figure(
     run: &Run,
     document: &PlanDocument,
     options: &FigureOptions,
 ) -> Result<Figure, FigureError> {
     options.draw(end(run), |style| {
-        Figure::new(2, plan_panels(run, document, style)).titled(&run.scenario.title)
+        let figure = if style.panels {
+            moments(&run.scenario, style, &traffic(run, style))
+        } else {
+            Figure::new(2, plan_panels(run, document, style))
+        };
+        figure.titled(&run.scenario.title)
     })
 }
 
@@ -156,6 +192,12 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
 
 /// Draws the chart with `others` above the sets and below the plan.
 fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
+    let traffic = traffic(run, style);
+    traffic_chart(title, &run.scenario, style, &traffic, None, others)
+}
+
+/// Own ship of a run and its targets.
+fn traffic(run: &Run, style: &Style) -> Traffic {
     let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
     let end = end(run);
@@ -173,9 +215,9 @@ fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
     let targets = scenario.targets.iter().zip(&obstacles).zip(&run.targets);
     let targets = targets.map(|((target, obstacle), outcome)| Charted {
         name: target.name.clone(),
-        key: match outcome.sets.encounter.role {
-            Role::None => format!("{}: nominal track", target.name),
-            role => format!("{}, {}: nominal track", target.name, role.word()),
+        role: match outcome.sets.encounter.role {
+            Role::None => "",
+            role => role.word(),
         },
         hull: target.ship().map(|ship| ship.hull),
         track: sampled
@@ -196,15 +238,9 @@ fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
             pose(&passage.tcpa)?.position,
             target.position_at(passage.tcpa),
         ];
-        let (apart, time) = (tenths(passage.dcpa), passage.tcpa);
-        let label = format!(
-            "closest approach: {apart} m to {} at {}",
-            target.name,
-            minutes(time)
-        );
-        Some((ends, label))
+        Some((ends, format!("{} m", tenths(passage.dcpa))))
     });
-    let traffic = Traffic {
+    Traffic {
         own: times.iter().filter_map(pose).collect(),
         track: (sampled.iter().filter_map(pose))
             .map(|pose| pose.position)
@@ -212,18 +248,15 @@ fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
         times,
         filled,
         targets,
-        planned: "planned",
+        words: ["planned", "nominal tracks"],
         closest,
-        others,
-    };
-    traffic_chart(title, scenario, style, traffic)
+    }
 }
 
 pub(super) struct Charted {
-    /// Its name.
+    /// Its name, and its role if it has one.
     pub name: String,
-    /// The words of the legend.
-    pub key: String,
+    pub role: &'static str,
     /// Its hull, if it has one.
     pub hull: Option<Hull>,
     /// Its track, which may be empty.
@@ -232,6 +265,16 @@ pub(super) struct Charted {
     pub poses: Vec<Option<Pose>>,
     /// The boundary of its set at each of the times; empty without one.
     pub areas: Vec<Vec<Vector>>,
+}
+
+impl Charted {
+    /// Where it is at one of the times, or the middle of its set.
+    fn place(&self, k: usize) -> Option<Vector> {
+        let pose = self.poses.get(k).copied().flatten();
+        let area = self.areas.get(k).filter(|area| !area.is_empty());
+        pose.map(|pose| pose.position)
+            .or_else(|| Some(area?.iter().sum::<Vector>() / area?.len() as f64))
+    }
 }
 
 /// Own ship and the targets at the same times, as a chart shows them.
@@ -245,48 +288,67 @@ pub(super) struct Traffic {
     /// Own ship at these times; empty without a track.
     pub own: Vec<Pose>,
     pub targets: Vec<Charted>,
-    /// The legend's word for own ship's track.
-    pub planned: &'static str,
-    /// Where own ship and a target are closest, and the words of the legend.
+    /// The legend's words for own ship's track and for those of the targets.
+    pub words: [&'static str; 2],
+    /// Where own ship and a target are closest, and how close.
     pub closest: Option<([Vector; 2], String)>,
-    /// Drawn above the areas and below own ship.
-    pub others: Vec<Plot>,
 }
 
-/// Draws the mission, land, the targets and own ship, with the times beside the ships.
-pub(super) fn traffic_chart(
-    title: &str,
-    scenario: &Scenario,
-    style: &Style,
-    traffic: Traffic,
-) -> Panel {
+/// Draws one chart per time, all of the same window.
+pub(super) fn moments(scenario: &Scenario, style: &Style, traffic: &Traffic) -> Figure {
+    let count = traffic.times.len();
+    let charts = (0..count).map(|k| {
+        let title = minutes(traffic.times[k]);
+        traffic_chart(&title, scenario, style, traffic, Some(k), Vec::new())
+    });
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let figure = Figure::new(columns, charts.collect());
+    figure.with_shared_axes().with_titles()
+}
+
+/// The part of the plane that shows own ship's tracks, and of the filled sets what is near them.
+fn shown(scenario: &Scenario, style: &Style, traffic: &Traffic) -> Window {
     let waypoints = scenario.desired.waypoints();
     let paths = scenario.alternatives.iter().flatten();
     let mut shown: Vec<Vector> = (waypoints.iter().chain(&traffic.track).chain(paths))
         .copied()
         .collect();
-    let reach = window_around(shown.iter().copied(), 0.3);
-    // distant areas and ships are clipped
-    let within = |p: &Vector| reach.contains(*p);
-    for target in &traffic.targets {
-        let areas = target.areas.iter().filter(|area| area.iter().any(within));
-        shown.extend(areas.flatten().copied().filter(within));
-        let places = target.poses.iter().flatten().map(|pose| pose.position);
-        shown.extend(places.filter(within));
+    let reach = window_around(shown.iter().copied(), REACH);
+    let filled = |k: usize| style.panels || k == traffic.filled;
+    for k in (0..traffic.times.len()).filter(|k| filled(*k)) {
+        for target in &traffic.targets {
+            let area = target.areas.get(k).into_iter().flatten().copied();
+            shown.extend(area.chain(target.place(k)).filter(|p| reach.contains(*p)));
+        }
     }
-    let mut panel =
-        Panel::plan(title.to_owned(), PLAN, window_around(shown, 0.09)).sized(style.area);
+    window_around(shown, AIR)
+}
+
+/// Draws the mission, land, the targets and own ship, with the times beside the ships; in a panel
+/// of one time, at that one alone. `others` are above the sets and below own ship.
+pub(super) fn traffic_chart(
+    title: &str,
+    scenario: &Scenario,
+    style: &Style,
+    traffic: &Traffic,
+    only: Option<usize>,
+    others: Vec<Plot>,
+) -> Panel {
+    let instants = only.map_or(0..traffic.times.len(), |k| k..k + 1);
+    let filled = only.unwrap_or(traffic.filled);
+    let content = shown(scenario, style, traffic);
+    let mut panel = Panel::plan(title.to_owned(), PLAN, content).sized(style.area);
     let window = panel.window();
     let land = scenario.land.as_ref();
-    panel.plots.extend(land_areas(land, window));
+    panel.plots.extend(land_areas(land, panel.inside()));
+    let outlined = only.is_none() && !style.is_small();
     for (index, target) in traffic.targets.iter().enumerate() {
         let colour = target_colour(index);
         for (k, area) in target.areas.iter().enumerate() {
             // sets of other times are no place that own ship has to avoid at this one
-            if k == traffic.filled {
-                panel.fill_hull(area, colour, 0.25);
-                panel.curve(area, true, Stroke::solid(colour, 1.0));
-            } else {
+            if k == filled {
+                panel.fill_set(area, colour, FILLED);
+            } else if outlined {
                 panel
                     .plots
                     .push(curve(area, true, Stroke::dashed(colour, 0.5)));
@@ -296,94 +358,123 @@ pub(super) fn traffic_chart(
     for path in &scenario.alternatives {
         panel.curve(path, false, ALTERNATIVE);
     }
-    panel.plots.extend(traffic.others);
-    panel.curve(&waypoints, false, DESIRED);
+    panel.plots.extend(others);
+    panel.curve(&scenario.desired.waypoints(), false, DESIRED);
     for (index, target) in traffic.targets.iter().enumerate() {
-        panel.curve(
-            &target.track,
-            false,
-            Stroke::solid(target_colour(index), 1.2),
-        );
+        let stroke = Stroke::solid(target_colour(index), 1.2);
+        panel.curve(&target.track, false, stroke);
     }
-    if let Some((ends, _)) = &traffic.closest {
+    let closest = traffic
+        .closest
+        .as_ref()
+        .filter(|_| filled == traffic.filled);
+    if let Some((ends, _)) = closest {
         panel.curve(ends, false, CLOSEST);
     }
     panel.curve(&traffic.track, false, PLANNED);
-    let times: Vec<String> = traffic.times.iter().map(|time| minutes(*time)).collect();
-    // with several targets their numbers stand before the times
-    let number = |index: usize| match traffic.targets.len() {
-        1 => String::new(),
-        _ => format!("{}: ", index + 1),
+    // that of the closest approach stands there
+    let time = |k: usize| match only.is_some() || (k == filled && closest.is_some()) {
+        true => String::new(),
+        false => minutes(traffic.times[k]),
     };
-    // the first place of a ship has its name, too
-    let named = |k: usize, name: &str, number: &str, time: &str| match k {
-        0 => format!("{number}{}, {time}", shortened(name, NAME_LETTERS)),
-        _ => format!("{number}{time}"),
-    };
-    let mut labels: Vec<(String, Vector)> = Vec::new();
-    for (k, (pose, time)) in traffic.own.iter().zip(&times).enumerate() {
-        panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
-        labels.push((named(k, "own ship", "", time), pose.position));
-    }
-    for (index, target) in traffic.targets.iter().enumerate() {
-        for (k, (place, time)) in target.poses.iter().zip(&times).enumerate() {
-            let place = match (place, target.hull, target.areas.get(k)) {
-                (Some(pose), Some(hull), _) => {
-                    panel.ship(&hull, pose, target_colour(index));
-                    pose.position
-                }
-                (_, _, Some(area)) if !area.is_empty() => middle(area),
-                _ => continue,
-            };
-            if window.contains(place) {
-                labels.push((named(k, &target.name, &number(index), time), place));
-            }
+    let mut ships: Vec<(String, Vec<(String, Vector)>)> = Vec::new();
+    let mut places = Vec::new();
+    for (k, pose) in traffic.own.iter().enumerate() {
+        if instants.contains(&k) && window.contains(pose.position) {
+            panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
+            places.push((time(k), pose.position));
         }
     }
-    // a ship that hardly moves is named once, own ship first
-    let apart = LABELS_APART * window.size().x;
+    let again = only.is_some() && style.is_small() && instants.start > 0;
+    let name = if again { "" } else { "own ship" };
+    ships.push((name.to_owned(), places));
+    let mut outside: Vec<(Stroke, String)> = Vec::new();
+    for (index, target) in traffic.targets.iter().enumerate() {
+        let name = shortened(&target.name, NAME_LETTERS);
+        let name = match target.role {
+            role if role.is_empty() || style.is_small() => name,
+            role => format!("{name}, {role}"),
+        };
+        let mut places = Vec::new();
+        for k in instants.clone() {
+            if let Some(place) = target.place(k).filter(|place| window.contains(*place)) {
+                if let Some((hull, pose)) = target.hull.zip(target.poses[k]) {
+                    panel.ship(&hull, &pose, target_colour(index));
+                }
+                places.push((time(k), place));
+            }
+        }
+        if places.is_empty() && only.is_none() {
+            let stroke = Stroke::solid(target_colour(index), 1.2);
+            outside.push((stroke, format!("{name}: outside the chart")));
+        }
+        // small charts of one time have each name once
+        let seen = |k: usize| target.place(k).is_some_and(|place| window.contains(place));
+        let again = only.is_some() && style.is_small() && (0..instants.start).any(seen);
+        ships.push((if again { String::new() } else { name }, places));
+    }
+    if let Some((ends, apart)) = closest {
+        let text = match only.is_some() {
+            true => apart.clone(),
+            false => format!("{apart}, {}", minutes(traffic.times[filled])),
+        };
+        let middle = 0.5 * (ends[0] + ends[1]);
+        panel.label(&[(text.clone(), middle), (text, ends[0])], true);
+    }
+    // names first
     let mut labelled: Vec<Vector> = Vec::new();
-    for (label, place) in labels {
-        if labelled.iter().all(|p| (p - place).norm() > apart) {
-            panel.label(&label, place);
+    for (name, places) in ships.iter().filter(|(name, _)| !name.is_empty()) {
+        let named = |(time, place): &(String, Vector)| match time.is_empty() {
+            true => (name.clone(), *place),
+            false => (format!("{name}, {time}"), *place),
+        };
+        let named: Vec<(String, Vector)> = places.iter().map(named).collect();
+        labelled.extend(panel.label(&named, true));
+    }
+    // a ship that hardly moves has one label, own ship first
+    let apart = LABELS_APART * window.size().x;
+    for (time, place) in ships.into_iter().flat_map(|(_, places)| places) {
+        if !time.is_empty() && labelled.iter().all(|p| (p - place).norm() > apart) {
+            panel.label(&[(time, place)], !style.times.is_empty());
             labelled.push(place);
         }
     }
     if !traffic.track.is_empty() {
-        panel.line_key(&format!("own ship, {}", traffic.planned), PLANNED);
+        panel.line_key(traffic.words[0], PLANNED);
     }
     panel.line_key("desired", DESIRED);
+    let colour = target_colour(0);
+    if traffic.targets.iter().any(|target| target.track.len() > 1) {
+        panel.line_key(traffic.words[1], Stroke::solid(colour, 1.2));
+    }
     if land.is_some() {
-        panel.line_key("land", Stroke::solid(LAND, 3.0));
+        panel.area_key("land", LAND, 1.0);
     }
-    for (index, target) in traffic.targets.iter().enumerate() {
-        let stroke = Stroke::solid(target_colour(index), 3.0);
-        let places = target.poses.iter().flatten().map(|pose| pose.position);
-        let all = target.areas.iter().flatten().copied().chain(places);
-        let place = match all.into_iter().any(|place| window.contains(place)) {
-            true => "",
-            false => ", outside the chart",
-        };
-        panel.line_key(&format!("{}{}{place}", number(index), target.key), stroke);
+    if closest.is_some() {
+        panel.line_key("closest approach", CLOSEST);
     }
-    if let Some((_, label)) = &traffic.closest {
-        panel.line_key(label, CLOSEST);
-    }
-    let sets = |target: &Charted| {
-        target
-            .areas
-            .get(traffic.filled)
-            .is_some_and(|a| !a.is_empty())
+    let has_sets = |k: usize| {
+        let mut areas = traffic
+            .targets
+            .iter()
+            .filter_map(|target| target.areas.get(k));
+        areas.any(|area| !area.is_empty())
     };
-    if traffic.targets.iter().any(sets) {
-        let now = &times[traffic.filled];
-        panel.line_key(&format!("sets: filled at {now}, else dashed"), OTHER_SETS);
+    if has_sets(filled) {
+        let label = match closest {
+            _ if only.is_some() => "sets".to_owned(),
+            Some(_) => "sets at that time".to_owned(),
+            None => format!("sets at {}", minutes(traffic.times[filled])),
+        };
+        panel.area_key(&label, colour, FILLED);
+        if outlined && traffic.times.len() > 1 {
+            panel.line_key("sets at other times", OTHER_SETS);
+        }
+    }
+    for (stroke, label) in outside {
+        panel.line_key(&label, stroke);
     }
     panel
-}
-
-fn middle(boundary: &[Vector]) -> Vector {
-    boundary.iter().sum::<Vector>() / boundary.len() as f64
 }
 
 /// Chart of a run of the space-time planner with every collision-free motion found by its search.

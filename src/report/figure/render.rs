@@ -1,15 +1,17 @@
 //! Rendering of panels in a grid to bytes.
 
 use std::collections::BTreeMap;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use kuva::backend::pdf::{PageSize, PdfBackend};
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::figure::Figure as Canvas;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 use super::Panel;
-use super::panel::{AREA, MARGIN};
+use super::panel::{AREA, Key, text_size, text_width};
 use crate::report::{WriteError, write_atomically};
 
 /// Dots per inch: of a PNG unless asked otherwise, of SVG pixels, of PDF points.
@@ -26,6 +28,18 @@ const LETTERS: usize = 44;
 
 /// Prefix of clip path names in the drawing library. A process-wide counter follows it.
 const CLIP: &str = "kuva-clip-";
+
+/// Pixels around the whole and between the panels, and the height of a title.
+const PADDING: f64 = 6.0;
+const TITLE: f64 = 28.2;
+
+/// Height in pixels of the letter of a panel.
+const LETTER: f64 = 20.0;
+
+/// Pixels of a legend: the height of a row, the width of a mark, and the gap after a text.
+const ROW: f64 = 16.0;
+const SWATCH: f64 = 24.0;
+const GAP: f64 = 12.0;
 
 /// Format of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,6 +118,10 @@ pub struct Figure {
     /// Width and height in SVG pixels, unless as much as the panels need.
     size: Option<[f64; 2]>,
     dpi: f64,
+    /// True where all panels have the same axes, numbered at the left and at the foot alone.
+    shared: bool,
+    /// True where titles tell the panels apart.
+    keeps_titles: bool,
 }
 
 impl Figure {
@@ -117,6 +135,8 @@ impl Figure {
             area: AREA,
             size: None,
             dpi: PNG_DPI,
+            shared: false,
+            keeps_titles: false,
         }
     }
 
@@ -128,6 +148,22 @@ impl Figure {
         }
     }
 
+    /// Numbers the axes at the left and at the foot alone, because all panels have the same.
+    pub(super) fn with_shared_axes(self) -> Self {
+        Self {
+            shared: true,
+            ..self
+        }
+    }
+
+    /// Keeps the titles of the panels whatever the width.
+    pub(super) fn with_titles(self) -> Self {
+        Self {
+            keeps_titles: true,
+            ..self
+        }
+    }
+
     pub(super) fn with_dpi(self, dpi: Option<f64>) -> Self {
         Self {
             dpi: dpi.unwrap_or(self.dpi),
@@ -135,14 +171,30 @@ impl Figure {
         }
     }
 
-    /// Sets the areas between the axes and the size of the whole, in pixels.
-    pub(super) fn with_size(self, area: [f64; 2], size: [f64; 2]) -> Self {
+    /// Removes the titles, except those that tell panels apart.
+    pub(super) fn untitled(mut self) -> Self {
+        self.title = None;
+        if !self.keeps_titles {
+            self.panels.iter_mut().for_each(Panel::remove_title);
+        }
+        self
+    }
+
+    /// Sets the areas between the axes in pixels.
+    pub(super) fn sized(self, area: [f64; 2]) -> Self {
         let panels = self.panels.into_iter().map(|panel| panel.sized(area));
         Self {
             panels: panels.collect(),
             area,
-            size: Some(size),
             ..self
+        }
+    }
+
+    /// Sets the areas between the axes and the size of the whole, in pixels.
+    pub(super) fn with_size(self, area: [f64; 2], size: [f64; 2]) -> Self {
+        Self {
+            size: Some(size),
+            ..self.sized(area)
         }
     }
 
@@ -152,51 +204,111 @@ impl Figure {
         [columns, self.panels.len().div_ceil(columns).max(1)]
     }
 
-    /// Width and height in SVG pixels.
-    pub(super) fn pixels(self) -> [f64; 2] {
-        let scene = self.scene();
-        [scene.width, scene.height]
+    /// True where a panel has numbers at its left, and at its foot.
+    fn numbered(&self, index: usize) -> [bool; 2] {
+        let is_last = index + self.columns >= self.panels.len();
+        [index.is_multiple_of(self.columns), is_last].map(|edge| edge || !self.shared)
     }
 
-    fn scene(self) -> kuva::render::render::Scene {
-        let rows: Vec<f64> = self
-            .panels
-            .chunks(self.columns)
-            .map(|row| Panel::below(row.iter().map(Panel::legend_lines).max().unwrap_or(0)))
+    fn is_lettered(&self) -> bool {
+        self.panels.len() > 1 && !self.shared
+    }
+
+    /// Pixels beside the areas: to the left in each column, to the right, above, and below in each
+    /// row.
+    fn margins(&self) -> (Vec<f64>, f64, f64, Vec<f64>) {
+        let [columns, rows] = self.grid();
+        let left = (0..columns).map(|i| Panel::left(self.area, self.numbered(i)[0]));
+        let below = (0..rows).map(|row| {
+            let mut panels = row * columns..self.panels.len().min((row + 1) * columns);
+            Panel::below(panels.any(|i| self.numbered(i)[1]))
+        });
+        let right = self.panels.iter().map(Panel::right).fold(0.0, f64::max);
+        let least = if self.is_lettered() { LETTER } else { 0.0 };
+        let top = self.panels.iter().map(Panel::top).fold(least, f64::max);
+        (left.collect(), right, top, below.collect())
+    }
+
+    /// Width and height in pixels of all but the areas and the legend.
+    pub(super) fn frame(&self) -> [f64; 2] {
+        let [columns, rows] = self.grid().map(|count| count as f64);
+        let (left, right, top, below) = self.margins();
+        let title = self.title.as_ref().map_or(0.0, |_| TITLE);
+        [
+            PADDING * (columns + 1.0) + left.iter().sum::<f64>() + columns * right,
+            PADDING * (rows + 1.0) + title + rows * top + below.iter().sum::<f64>(),
+        ]
+    }
+
+    /// The legend of all panels in rows of a width: offset in pixels, row, and key.
+    fn legend(&self, width: f64) -> Vec<(f64, usize, &Key)> {
+        let mut placed: Vec<(f64, usize, &Key)> = Vec::new();
+        let (mut at, mut row) = (PADDING, 0);
+        for key in self.panels.iter().flat_map(Panel::legend) {
+            if placed.iter().any(|(.., known)| *known == key) {
+                continue;
+            }
+            let length = SWATCH + GAP + text_width(&key.label, self.area);
+            if at > PADDING && at + length - GAP > width - PADDING {
+                (at, row) = (PADDING, row + 1);
+            }
+            placed.push((at, row, key));
+            at += length;
+        }
+        placed
+    }
+
+    pub(super) fn legend_height(&self, width: f64) -> f64 {
+        let rows = self.legend(width).last().map_or(0, |(_, row, _)| row + 1);
+        ROW * rows as f64
+    }
+
+    fn scene(self) -> Scene {
+        let [columns, rows] = self.grid();
+        let (area, frame) = (self.area, self.frame());
+        let (left, right, top, below) = self.margins();
+        let grid = [columns as f64, rows as f64];
+        let [width, foot] = [0, 1].map(|i| frame[i] + grid[i] * area[i]);
+        let [width, height] = self
+            .size
+            .unwrap_or([width, foot + self.legend_height(width)]);
+        let legend: Vec<Primitive> = (self.legend(width).into_iter())
+            .flat_map(|(x, row, key)| {
+                let letters = ((width - x - SWATCH) / text_width("n", area)) as usize;
+                drawn_key(key, [x, foot + ROW * row as f64], letters, text_size(area))
+            })
             .collect();
-        let (area, size) = (self.area, self.size);
         let count = self.panels.len();
-        let [left, beside, top] = MARGIN;
-        let right = match &self.panels[..] {
-            [panel] => panel.right(),
-            _ => beside,
-        };
         let layouts = (self.panels.iter().enumerate())
-            .map(|(i, panel)| panel.layout(right, rows[i / self.columns]))
+            .map(|(i, panel)| {
+                let [column, row] = [i % columns, i / columns];
+                let sides = [left[column], right, top, below[row]];
+                panel.layout(sides, self.numbered(i))
+            })
             .collect();
-        let mut canvas = Canvas::new(rows.len().max(1), self.columns)
-            .with_cell_size(left + area[0] + right, top + area[1] + Panel::below(0))
+        let mut canvas = Canvas::new(rows, columns)
             .with_structure((0..count).map(|i| vec![i]).collect())
-            .with_plots(self.panels.into_iter().map(|p| p.plots).collect())
             .with_layouts(layouts)
-            .with_spacing(6.0)
-            .with_padding(8.0);
-        if count > 1 {
+            .with_spacing(PADDING)
+            .with_padding(PADDING);
+        if self.is_lettered() {
             canvas = canvas.with_labels_lowercase();
         }
+        canvas = canvas.with_plots(self.panels.into_iter().map(|p| p.plots).collect());
         if let Some(title) = self.title {
-            let letters =
-                self.columns as f64 * LETTERS as f64 * (area[0] + left) / (AREA[0] + left);
-            let title = shortened(&title, letters as usize);
+            let letters = (width / AREA[0] * LETTERS as f64) as usize;
+            let title = shortened(&title, letters);
             canvas = canvas.with_title(title).with_title_size(TITLE_SIZE);
         }
-        for (i, below) in rows.into_iter().enumerate() {
+        for (i, left) in left.into_iter().enumerate() {
+            canvas = canvas.with_col_width(i, left + area[0] + right);
+        }
+        for (i, below) in below.into_iter().enumerate() {
             canvas = canvas.with_row_height(i, top + area[1] + below);
         }
         let mut scene = canvas.render();
-        if let Some(size) = size {
-            [scene.width, scene.height] = size;
-        }
+        legend.into_iter().for_each(|part| scene.add(part));
+        [scene.width, scene.height] = [width, height];
         scene
     }
 
@@ -207,7 +319,7 @@ impl Figure {
 
     /// Renders PNG bytes.
     pub fn png(self) -> Result<Vec<u8>, FigureError> {
-        let scale = self.dpi / SVG_DPI;
+        let (dpi, scale) = (self.dpi, self.dpi / SVG_DPI);
         let mut scene = self.scene();
         let pixels = [scene.width, scene.height].map(|length| (length * scale).round());
         let millions = pixels[0] * pixels[1] / 1e6;
@@ -216,10 +328,9 @@ impl Figure {
         }
         // the backend rounds up
         [scene.width, scene.height] = pixels.map(|pixels| (pixels - 0.3) / scale);
-        PngBackend::new()
-            .with_scale(scale as f32)
-            .render_scene(&scene)
-            .map_err(FigureError::Draw)
+        let drawn = PngBackend::new().with_scale(scale as f32);
+        let bytes = drawn.render_scene(&scene).map_err(FigureError::Draw)?;
+        with_resolution(&bytes, dpi).map_err(|e| FigureError::Draw(e.to_string()))
     }
 
     /// Renders PDF bytes: one page as large as the figure.
@@ -245,6 +356,63 @@ impl Figure {
         };
         Ok(write_atomically(file, &bytes)?)
     }
+}
+
+/// The same image with its resolution, which the drawing library leaves out.
+fn with_resolution(bytes: &[u8], dpi: f64) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
+    let mut pixels = vec![0; reader.output_buffer_size().ok_or("too large")?];
+    reader.next_frame(&mut pixels)?;
+    let mut info = reader.info().clone();
+    let per_metre = (dpi / 0.0254).round() as u32;
+    info.pixel_dims = Some(png::PixelDimensions {
+        xppu: per_metre,
+        yppu: per_metre,
+        unit: png::Unit::Meter,
+    });
+    let mut written = Vec::new();
+    let mut writer = png::Encoder::with_info(&mut written, info)?.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    Ok(written)
+}
+
+/// Mark and text of a key whose upper left corner is given in pixels.
+fn drawn_key(key: &Key, [x, y]: [f64; 2], letters: usize, size: u32) -> [Primitive; 2] {
+    let (middle, stroke) = (y + 0.5 * ROW, key.stroke);
+    let width = SWATCH - 6.0;
+    let mark = match key.filled {
+        None => Primitive::Line {
+            x1: x,
+            y1: middle,
+            x2: x + width,
+            y2: middle,
+            stroke: stroke.colour.into(),
+            stroke_width: stroke.width,
+            stroke_dasharray: stroke.dashed.then(|| "5 3".to_owned()),
+        },
+        opacity => Primitive::Rect {
+            x,
+            y: middle - 5.0,
+            width,
+            height: 10.0,
+            fill: stroke.colour.into(),
+            stroke: None,
+            stroke_width: None,
+            opacity,
+        },
+    };
+    let text = Primitive::Text {
+        x: x + SWATCH,
+        y: middle + 0.36 * f64::from(size),
+        content: shortened(&key.label, letters),
+        size,
+        anchor: TextAnchor::Start,
+        rotate: None,
+        bold: false,
+        color: None,
+    };
+    [mark, text]
 }
 
 /// A text cut to at most this many letters.

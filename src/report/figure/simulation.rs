@@ -1,7 +1,6 @@
 //! Figure of a simulation: what was sailed, and the closest approach.
 
-use super::plan::{Charted, Traffic, marked_times, traffic_chart};
-use super::sections::minutes;
+use super::plan::{Charted, Traffic, marked_times, moments, traffic_chart};
 use super::{Figure, FigureError, FigureOptions, Panel, Style};
 use crate::document::SimulationDocument;
 use crate::report::simulation::headline;
@@ -26,8 +25,11 @@ pub fn simulation_figure(
         false => headline(simulation),
     };
     options.draw(simulation.duration_s, |style| {
-        let panel = simulation_panel(scenario, simulation, style);
-        Figure::new(1, vec![panel]).titled(&title)
+        let figure = match style.panels {
+            true => moments(scenario, style, &traffic(simulation, style)),
+            false => Figure::new(1, vec![simulation_panel(scenario, simulation, style)]),
+        };
+        figure.titled(&title)
     })
 }
 
@@ -37,6 +39,11 @@ pub(in crate::report) fn simulation_panel(
     simulation: &SimulationDocument,
     style: &Style,
 ) -> Panel {
+    let traffic = traffic(simulation, style);
+    traffic_chart("Sailed", scenario, style, &traffic, None, Vec::new())
+}
+
+fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let end = simulation.duration_s;
     let step = STEP.max(end / MOST_POINTS);
     let steps = (end / step).ceil() as usize;
@@ -52,7 +59,7 @@ pub(in crate::report) fn simulation_panel(
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
     let targets = simulation.targets.iter().map(|target| Charted {
         name: target.name.clone(),
-        key: format!("{}: hull and track", target.name),
+        role: "",
         hull: Some(target.hull()),
         track: (sampled.iter())
             .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))
@@ -63,28 +70,23 @@ pub(in crate::report) fn simulation_panel(
         areas: Vec::new(),
     });
     let closest = nearest.and_then(|target| {
-        let (name, time) = (&target.name, target.least_clearance_t_s);
+        let time = target.least_clearance_t_s;
         let ends = [own(&time)?.position, target.at(time)?.pose.position];
         let apart = target
             .least_clearance_m
             .filter(|_| target.contact_t_s.is_none());
-        let apart = apart.map_or("CONTACT with".to_owned(), |m| format!("{} m to", tenths(m)));
-        Some((
-            ends,
-            format!("closest approach: {apart} {name} at {}", minutes(time)),
-        ))
+        let apart = apart.map_or("CONTACT".to_owned(), |m| format!("{} m", tenths(m)));
+        Some((ends, apart))
     });
-    let traffic = Traffic {
+    Traffic {
         track: (sampled.iter().filter_map(own))
             .map(|pose| pose.position)
             .collect(),
         own: times.iter().filter_map(own).collect(),
         targets: targets.collect(),
-        planned: "sailed",
+        words: ["sailed", "targets"],
         closest,
-        others: Vec::new(),
         times,
         filled,
-    };
-    traffic_chart("Sailed", scenario, style, traffic)
+    }
 }
