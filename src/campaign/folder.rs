@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::part::{Header, Part};
+use super::part::{Header, Part, PartError};
 use super::row::Cell;
 use super::specification::Specification;
 use crate::input::{Fault, InputError, read_text};
@@ -67,7 +67,7 @@ pub struct Folder {
 pub(super) struct Found {
     pub file: PathBuf,
     /// What it belongs to, or why it is damaged.
-    pub header: Result<Header, String>,
+    pub header: Result<Header, PartError>,
 }
 
 impl Folder {
@@ -228,7 +228,14 @@ impl Folder {
     ) -> Result<(), CampaignError> {
         let ours = Header::new(&self.index.hash, 0..0);
         for Found { file, header } in found {
-            let Ok(header) = header else { continue };
+            let header = match header {
+                Ok(header) => header,
+                Err(PartError::Damaged(_)) => continue,
+                Err(PartError::OtherColumns(_)) => {
+                    let found = "columns of another version of the program";
+                    return Err(CampaignError::refused(file, found, "those of this one"));
+                }
+            };
             if header.hash != ours.hash {
                 let found = format!("rows of the specification {}", short(&header.hash));
                 return Err(CampaignError::refused(file, found, short(&ours.hash)));

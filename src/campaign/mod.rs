@@ -13,7 +13,7 @@ mod summary;
 pub use bounds::{anytime, clopper_pearson};
 pub use encounter::{Distribution, Encounter, EncounterKind, Miss};
 pub use folder::{CampaignError, Folder, Index};
-pub use part::{Header, Part, differing, untimed};
+pub use part::{Header, Part, PartError, differing, untimed};
 pub use row::{COLUMNS, Cell, Column, Row, TIMED};
 pub use run::{Done, Progress, Shard, run};
 pub use specification::{RowScenario, Specification, Stratum};

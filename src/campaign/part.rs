@@ -46,6 +46,17 @@ pub struct Part {
     pub rows: Vec<Vec<Cell>>,
 }
 
+/// Why a file is no part.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PartError {
+    /// It was not written whole, or has changed since.
+    #[error("{0}")]
+    Damaged(String),
+    /// It is whole, with the columns of another version of the program.
+    #[error("{0}")]
+    OtherColumns(String),
+}
+
 impl Header {
     /// Of this build.
     pub fn new(hash: &str, rows: Range<u64>) -> Self {
@@ -183,16 +194,19 @@ impl Part {
         })
     }
 
-    /// Reads a part. The error says in words why it is none that was written whole.
-    pub fn read(file: &Path) -> Result<Self, String> {
+    /// Reads a part and checks its digest.
+    pub fn read(file: &Path) -> Result<Self, PartError> {
         // a damaged footer may lead the reader anywhere
         let read = std::panic::catch_unwind(|| read(file));
         let read = read.unwrap_or_else(|_| Err("a footer that makes no sense".to_owned()));
-        read.map_err(|error| format!("{}: {error}", file.display()))
+        let named = |error: String| format!("{}: {error}", file.display());
+        let part = read.map_err(|error| PartError::Damaged(named(error)))?;
+        part.ok_or_else(|| PartError::OtherColumns(named("columns of another version".to_owned())))
     }
 }
 
-fn read(file: &Path) -> Result<Part, String> {
+/// `None` for a part with other columns.
+fn read(file: &Path) -> Result<Option<Part>, String> {
     let open = std::fs::File::open(file).map_err(|error| error.to_string())?;
     let unread = |error: ParquetError| format!("not a whole Parquet file ({error})");
     let reader = SerializedFileReader::new(open).map_err(unread)?;
@@ -211,7 +225,7 @@ fn read(file: &Path) -> Result<Part, String> {
     let format = entry("format")?;
     let names = meta.schema_descr().columns().iter().map(|c| c.name());
     if format != FORMAT || !names.eq(COLUMNS.iter().map(|column| column.name)) {
-        return Err(format!("format {format:?} with other columns"));
+        return Ok(None);
     }
     let header = Header {
         hash: entry("specification")?,
@@ -233,7 +247,7 @@ fn read(file: &Path) -> Result<Part, String> {
     if !numbers.eq(header.rows.clone().map(Some)) {
         return Err("other rows than its footer says".to_owned());
     }
-    Ok(Part { header, rows })
+    Ok(Some(Part { header, rows }))
 }
 
 fn read_group(group: &dyn RowGroupReader) -> ParquetResult<Vec<Vec<Cell>>> {

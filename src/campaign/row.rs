@@ -1,10 +1,16 @@
 //! The rows of a campaign: what is kept of each simulation, column by column.
 
 use super::specification::{RowScenario, Specification, Stratum};
-use crate::document::SimulationDocument;
-use crate::frame::{clockwise_deg, deg_from_radians, relative_bearing};
+use crate::colregs::compliance::MonitorVerdict;
+use crate::document::{
+    ReplanDocument, SailedDocument, SimulatedTargetDocument, SimulationDocument,
+};
+use crate::frame::{Vector, clockwise_deg, deg_from_radians, relative_bearing};
+use crate::pipeline::Verdict;
+use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 use crate::target::ShipTrack;
+use crate::vessel::OwnShip;
 
 /// A value; `None` where there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +45,7 @@ pub(super) enum Of {
 pub(super) struct Sailed<'a> {
     row: u64,
     stratum: &'a Stratum,
-    scenario: Option<&'a RowScenario>,
+    drawn: Option<&'a RowScenario>,
     document: Option<&'a SimulationDocument>,
     cpu_s: f64,
 }
@@ -56,29 +62,21 @@ pub const COLUMNS: [Column; 58] = [
     Column::count("row", |s| Some(s.row as usize)),
     Column::word("stratum", |s| Some(s.stratum.name.clone())),
     Column::word("class", |s| Some(s.stratum.class.to_owned())),
-    Column::word("outcome", |s| {
-        Some(s.document.map_or(FAULT, |_| SAILED).to_owned())
-    }),
-    Column::count("seed", |s| {
-        Some(s.scenario?.scenario.simulation.seed as usize)
-    }),
-    Column::count("redrawn", |s| Some(s.scenario?.redrawn)),
-    Column::count("targets", |s| Some(s.scenario?.scenario.targets.len())),
-    Column::number("own_speed_mps", |s| {
-        Some(s.scenario?.scenario.own_ship.speed)
-    }),
+    Column::word("outcome", |s| Some(s.outcome().to_owned())),
+    Column::count("seed", |s| Some(s.scenario()?.simulation.seed as usize)),
+    Column::count("redrawn", |s| Some(s.drawn?.redrawn)),
+    Column::count("targets", |s| Some(s.scenario()?.targets.len())),
+    Column::number("own_speed_mps", |s| Some(s.own()?.speed)),
     // the first target at the start
     Column::number("range_m", |s| Some(s.between()?.norm())),
     Column::number("bearing_deg", |s| {
-        let own = s.scenario?.scenario.own_ship.pose;
-        Some(deg_from_radians(relative_bearing(
-            &own,
-            s.ship()?.pose.position,
-        )))
+        let bearing = relative_bearing(&s.own()?.pose, s.ship()?.pose.position);
+        Some(deg_from_radians(bearing))
     }),
     Column::number("relative_course_deg", |s| {
-        let own = s.scenario?.scenario.own_ship.pose;
-        Some(clockwise_deg(s.ship()?.pose.heading - own.heading))
+        Some(clockwise_deg(
+            s.ship()?.pose.heading - s.own()?.pose.heading,
+        ))
     }),
     Column::number("tcpa_s", |s| Some(s.approach()?.0)),
     Column::number("dcpa_m", |s| Some(s.approach()?.1)),
@@ -97,92 +95,63 @@ pub const COLUMNS: [Column; 58] = [
     Column::number("duration_s", |s| Some(s.document?.duration_s)),
     Column::number("clearance_m", |s| Some(s.nearest()?.0)),
     Column::number("clearance_t_s", |s| Some(s.nearest()?.1)),
-    Column::number("contact_t_s", |s| {
-        let times = s.document?.targets.iter().filter_map(|t| t.contact_t_s);
-        times.min_by(f64::total_cmp)
-    }),
+    Column::number("contact_t_s", |s| s.least(|t| t.contact_t_s)),
     Column::number("land_m", |s| s.document?.land.as_ref()?.least_m),
     Column::word("roles", |s| {
-        let targets = s.document?.targets.iter();
-        let roles = targets.flat_map(|t| t.conduct.roles.iter().map(|role| role.role.clone()));
-        joined(roles)
+        let roles = s.targets()?.iter().flat_map(|t| &t.conduct.roles);
+        joined(roles.map(|role| &role.role))
     }),
     // both judges
-    Column::count("broken", |s| Some(s.document?.conduct.breaks.len())),
-    Column::word("breaks", |s| {
-        joined(s.document?.conduct.breaks.iter().cloned())
-    }),
+    Column::count("broken", |s| Some(s.conduct()?.breaks.len())),
+    Column::word("breaks", |s| joined(s.conduct()?.breaks.iter())),
     Column::number("least_score", |s| {
-        let targets = s.document?.targets.iter();
-        let scores = targets.flat_map(|t| t.conduct.scores.values().copied());
-        scores.min_by(f64::total_cmp)
+        s.least(|t| t.conduct.scores.values().copied().min_by(f64::total_cmp))
     }),
-    Column::count("rules_broken", |s| {
-        let targets = s.document?.targets.iter();
-        Some(targets.map(|t| t.conduct.violations.len()).sum())
-    }),
+    Column::count("rules_broken", |s| s.sum(|t| t.conduct.violations.len())),
     Column::count("monitors_violated", |s| {
-        let targets = s.document?.targets.iter();
-        let monitors = targets.flat_map(|t| &t.conduct.monitors);
-        Some(monitors.filter(|m| m.verdict == "violated").count())
+        let violated = MonitorVerdict::Violated.word();
+        let of = |t: &SimulatedTargetDocument| {
+            let monitors = t.conduct.monitors.iter();
+            monitors.filter(|m| m.verdict == violated).count()
+        };
+        s.sum(of)
     }),
     // own ship's manoeuvres
     Column::number("lead_s", |s| {
-        let leads =
-            (s.document?.targets.iter()).filter_map(|t| t.conduct.manoeuvre.as_ref()?.lead_s);
-        leads.min_by(f64::total_cmp)
+        s.least(|t| t.conduct.manoeuvre.as_ref()?.lead_s)
     }),
     Column::number("smallest_turn_deg", |s| {
-        let turns = (s.document?.targets.iter())
-            .filter_map(|t| t.conduct.manoeuvre.as_ref()?.smallest_turn_deg);
-        turns.min_by(f64::total_cmp)
+        s.least(|t| t.conduct.manoeuvre.as_ref()?.smallest_turn_deg)
     }),
-    Column::count("turns", |s| Some(s.document?.conduct.turns)),
-    Column::count("speed_changes", |s| Some(s.document?.conduct.speed_changes)),
+    Column::count("turns", |s| Some(s.conduct()?.turns)),
+    Column::count("speed_changes", |s| Some(s.conduct()?.speed_changes)),
     Column::count("replaced_manoeuvres", |s| {
-        Some(s.document?.conduct.replaced_manoeuvres)
+        Some(s.conduct()?.replaced_manoeuvres)
     }),
-    Column::count("side_switches", |s| Some(s.document?.conduct.side_switches)),
-    Column::number("planned_cost_m2", |s| {
-        s.document?.conduct.first_plan_cost_m2
-    }),
-    Column::number("sailed_cost_m2", |s| Some(s.document?.conduct.cost_m2)),
+    Column::count("side_switches", |s| Some(s.conduct()?.side_switches)),
+    Column::number("planned_cost_m2", |s| s.conduct()?.first_plan_cost_m2),
+    Column::number("sailed_cost_m2", |s| Some(s.conduct()?.cost_m2)),
     // plans
-    Column::count("plans", |s| Some(s.document?.replans.len())),
-    Column::count("plans_kept", |s| {
-        let replans = s.document?.replans.iter();
-        Some(replans.filter(|replan| replan.keeps_plan).count())
-    }),
+    Column::count("plans", |s| s.plans(|_| 1)),
+    Column::count("plans_kept", |s| s.plans(|p| p.keeps_plan.into())),
     Column::count("plans_relaxed", |s| {
-        let replans = s.document?.replans.iter();
-        Some(replans.filter(|r| !r.relaxations.is_empty()).count())
+        s.plans(|p| (!p.relaxations.is_empty()).into())
     }),
     Column::count("plans_infeasible", |s| {
-        let replans = s.document?.replans.iter();
-        Some(replans.filter(|r| r.verdict == "infeasible").count())
+        s.plans(|p| (p.verdict == Verdict::Infeasible.word()).into())
     }),
-    Column::count("no_plan", |s| Some(s.document?.conduct.without_plan)),
-    Column::count("unsafe_plans", |s| Some(s.document?.conduct.unsafe_plans)),
-    Column::count("lost_remainders", |s| {
-        Some(s.document?.conduct.lost_remainders)
-    }),
+    Column::count("no_plan", |s| Some(s.conduct()?.without_plan)),
+    Column::count("unsafe_plans", |s| Some(s.conduct()?.unsafe_plans)),
+    Column::count("lost_remainders", |s| Some(s.conduct()?.lost_remainders)),
     // assumptions
-    Column::count("outside_sets", |s| {
-        Some(s.document?.targets.iter().map(|t| t.outside_sets).sum())
-    }),
+    Column::count("outside_sets", |s| s.sum(|t| t.outside_sets)),
     Column::count("outside_velocities", |s| {
-        let replans = s.document?.replans.iter();
-        Some(replans.map(|r| r.outside_velocities.len()).sum())
+        s.plans(|p| p.outside_velocities.len())
     }),
-    Column::count("outside_places", |s| {
-        let replans = s.document?.replans.iter();
-        Some(replans.map(|r| r.outside_places.len()).sum())
-    }),
-    Column::number("off_plan_m", |s| {
-        Some(s.document?.conduct.largest_off_plan_m)
-    }),
+    Column::count("outside_places", |s| s.plans(|p| p.outside_places.len())),
+    Column::number("off_plan_m", |s| Some(s.conduct()?.largest_off_plan_m)),
     Column::truth("within_tracking_margin", |s| {
-        Some(s.document?.conduct.within_tracking_margin)
+        Some(s.conduct()?.within_tracking_margin)
     }),
     Column::count("alarms", |s| Some(s.document?.alarms.len())),
     // of the machine
@@ -240,24 +209,56 @@ impl Column {
 }
 
 /// Words with semicolons between them; `None` for none.
-fn joined(words: impl Iterator<Item = String>) -> Option<String> {
-    let words: Vec<String> = words.collect();
+fn joined<'w>(words: impl Iterator<Item = &'w String>) -> Option<String> {
+    let words: Vec<&str> = words.map(String::as_str).collect();
     (!words.is_empty()).then(|| words.join(";"))
 }
 
-impl Sailed<'_> {
-    fn ship(&self) -> Option<&ShipTrack> {
-        self.scenario?.scenario.targets.first()?.ship()
+impl<'a> Sailed<'a> {
+    fn outcome(&self) -> &'static str {
+        self.document.map_or(FAULT, |_| SAILED)
+    }
+
+    fn scenario(&self) -> Option<&'a Scenario> {
+        self.drawn.map(|drawn| &drawn.scenario)
+    }
+
+    fn own(&self) -> Option<&'a OwnShip> {
+        self.scenario().map(|scenario| &scenario.own_ship)
+    }
+
+    fn ship(&self) -> Option<&'a ShipTrack> {
+        self.scenario()?.targets.first()?.ship()
+    }
+
+    fn conduct(&self) -> Option<&'a SailedDocument> {
+        self.document.map(|document| &document.conduct)
+    }
+
+    fn targets(&self) -> Option<&'a [SimulatedTargetDocument]> {
+        self.document.map(|document| document.targets.as_slice())
+    }
+
+    fn sum(&self, of: impl Fn(&SimulatedTargetDocument) -> usize) -> Option<usize> {
+        Some(self.targets()?.iter().map(of).sum())
+    }
+
+    fn least(&self, of: impl Fn(&SimulatedTargetDocument) -> Option<f64>) -> Option<f64> {
+        self.targets()?.iter().filter_map(of).min_by(f64::total_cmp)
+    }
+
+    fn plans(&self, of: impl Fn(&ReplanDocument) -> usize) -> Option<usize> {
+        Some(self.document?.replans.iter().map(of).sum())
     }
 
     /// From own ship to the first target at the start, metres.
-    fn between(&self) -> Option<crate::frame::Vector> {
-        Some(self.ship()?.pose.position - self.scenario?.scenario.own_ship.pose.position)
+    fn between(&self) -> Option<Vector> {
+        Some(self.ship()?.pose.position - self.own()?.pose.position)
     }
 
     /// Seconds to the closest approach on nominal tracks, and metres then.
     fn approach(&self) -> Option<(f64, f64)> {
-        let own = &self.scenario?.scenario.own_ship;
+        let own = self.own()?;
         let relative = own.pose.ahead() * own.speed - self.ship()?.velocity();
         let time = self.between()?.dot(&relative) / relative.norm_squared();
         Some((time, (self.between()? - relative * time).norm()))
@@ -266,8 +267,7 @@ impl Sailed<'_> {
     /// Least distance of the hulls from any target, metres, and its time. A distance that is no
     /// number is a contact, and the least.
     fn nearest(&self) -> Option<(f64, f64)> {
-        let targets = self.document?.targets.iter();
-        let each = targets.map(|t| {
+        let each = self.targets()?.iter().map(|t| {
             let least = t.least_clearance_m.unwrap_or(f64::NEG_INFINITY);
             (least, t.least_clearance_t_s)
         });
@@ -300,28 +300,24 @@ impl Row {
         };
         // a fault of one row in a million must not end the others; `replay` shows where it is
         let sailed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(sail));
-        let (scenario, document) = sailed.ok().flatten().unzip();
-        Self::of(
-            specification,
-            row,
-            scenario.as_ref(),
-            document,
-            thread_seconds() - begun,
-        )
+        let (drawn, document) = sailed.ok().flatten().unzip();
+        let cpu_s = thread_seconds() - begun;
+        Self::of(specification, row, drawn.as_ref(), document, cpu_s)
     }
 
     /// The row of a simulation that was sailed.
     pub fn of(
         specification: &Specification,
         row: u64,
-        scenario: Option<&RowScenario>,
+        drawn: Option<&RowScenario>,
         document: Option<SimulationDocument>,
         cpu_s: f64,
     ) -> Self {
+        let stratum = specification.stratum(row);
         let sailed = Sailed {
             row,
-            stratum: specification.stratum(row),
-            scenario,
+            stratum,
+            drawn,
             document: document.as_ref(),
             cpu_s,
         };

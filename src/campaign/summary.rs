@@ -107,17 +107,22 @@ fn sound(
     Err(InputError::faults(&folder.parts(), faults).into())
 }
 
+/// Columns that are an event of a row where they are true or above zero.
+const EVENTS: [&str; 6] = [
+    "contact",
+    "no_plan",
+    "unsafe_plans",
+    "outside_sets",
+    "broken",
+    "late",
+];
+
 /// Counts over some rows.
 #[derive(Debug, Default, Clone)]
 struct Tally {
     rows: u64,
     faults: u64,
-    contact: u64,
-    no_plan: u64,
-    unsafe_plan: u64,
-    outside_sets: u64,
-    rule_broken: u64,
-    late: u64,
+    events: [u64; EVENTS.len()],
     breaks: BTreeMap<String, u64>,
     clearances: Vec<f64>,
 }
@@ -129,18 +134,14 @@ impl Tally {
             self.faults += 1;
             return;
         }
-        let is_some = |name: &str| match cell(name) {
-            Cell::Count(Some(count)) => u64::from(*count > 0),
-            Cell::Truth(Some(truth)) => u64::from(*truth),
-            _ => 0,
-        };
         self.rows += 1;
-        self.contact += is_some("contact");
-        self.no_plan += is_some("no_plan");
-        self.unsafe_plan += is_some("unsafe_plans");
-        self.outside_sets += is_some("outside_sets");
-        self.rule_broken += is_some("broken");
-        self.late += is_some("late");
+        for (count, name) in self.events.iter_mut().zip(EVENTS) {
+            *count += match cell(name) {
+                Cell::Count(Some(count)) => u64::from(*count > 0),
+                Cell::Truth(Some(truth)) => u64::from(*truth),
+                _ => 0,
+            };
+        }
         if let Cell::Word(Some(breaks)) = cell("breaks") {
             for name in breaks.split(';') {
                 *self.breaks.entry(name.to_owned()).or_default() += 1;
@@ -154,12 +155,9 @@ impl Tally {
     fn join(&mut self, other: &Self) {
         self.rows += other.rows;
         self.faults += other.faults;
-        self.contact += other.contact;
-        self.no_plan += other.no_plan;
-        self.unsafe_plan += other.unsafe_plan;
-        self.outside_sets += other.outside_sets;
-        self.rule_broken += other.rule_broken;
-        self.late += other.late;
+        for (count, more) in self.events.iter_mut().zip(other.events) {
+            *count += more;
+        }
         for (name, count) in &other.breaks {
             *self.breaks.entry(name.clone()).or_default() += count;
         }
@@ -167,11 +165,19 @@ impl Tally {
     }
 
     fn document(mut self, name: &str, class: Option<&str>) -> GroupDocument {
-        let share = |count| ShareDocument {
+        let shares = self.events.map(|count| ShareDocument {
             count,
             exact: clopper_pearson(count, self.rows, CONFIDENCE),
             anytime: anytime(count, self.rows, CONFIDENCE),
-        };
+        });
+        let [
+            contact,
+            no_plan,
+            unsafe_plan,
+            outside_sets,
+            rule_broken,
+            late,
+        ] = shares;
         self.clearances.sort_by(f64::total_cmp);
         let last = self.clearances.len().saturating_sub(1);
         let quantile = |p: f64| {
@@ -191,14 +197,12 @@ impl Tally {
             class: class.map(str::to_owned),
             rows: self.rows,
             faults: self.faults,
-            contact: share(self.contact),
-            no_plan: share(self.no_plan),
-            unsafe_plan: share(self.unsafe_plan),
-            outside_sets: share(self.outside_sets),
-            rule_broken: share(self.rule_broken),
-            timing: GroupTimingDocument {
-                late: share(self.late),
-            },
+            contact,
+            no_plan,
+            unsafe_plan,
+            outside_sets,
+            rule_broken,
+            timing: GroupTimingDocument { late },
             clearance_m: quantiles(),
             breaks: self.breaks,
         }
