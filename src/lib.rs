@@ -72,6 +72,7 @@
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
 //! | [`replanning`] | what a plan leaves to the next one |
 //! | [`simulation`] | scenarios sailed in the closed loop |
+//! | [`campaign`] | many random encounters sailed, in parts that are merged and counted |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
 //! | [`document`] | published documents: the single description of a result |
 //! | [`report`] | tables, HTML pages and figures |
@@ -134,6 +135,7 @@ extern crate self as searoom;
 #[macro_use]
 mod text;
 
+pub mod campaign;
 pub mod colregs;
 pub mod document;
 pub mod evaluation;

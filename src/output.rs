@@ -30,11 +30,27 @@ pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> 
 
 /// [`write_atomically`] with the error of the system.
 pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
+    write_with(file, |open| open.write_all(contents))
+}
+
+/// [`write_atomically`] what `write` writes; the file is on the disk when this returns.
+pub(crate) fn write_durably(
+    file: &Path,
+    write: impl FnOnce(&mut fs::File) -> io::Result<()>,
+) -> Result<(), WriteError> {
+    let synced = |open: &mut fs::File| write(open).and_then(|()| open.sync_all());
+    write_with(file, synced).map_err(|source| WriteError {
+        file: file.to_owned(),
+        source,
+    })
+}
+
+fn write_with(file: &Path, write: impl FnOnce(&mut fs::File) -> io::Result<()>) -> io::Result<()> {
     let file = match fs::metadata(file) {
         Ok(there) if there.is_dir() => file.to_owned(),
         Ok(there) if !there.is_file() || is_of_the_system(file) => {
             let mut open = fs::OpenOptions::new().write(true).open(file)?;
-            return open.write_all(contents);
+            return write(&mut open);
         }
         Ok(_) => fs::canonicalize(file)?,
         Err(_) => file.to_owned(),
@@ -50,7 +66,7 @@ pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut temporary = locked(|| builder.tempfile_in(&folder))?;
-    temporary.write_all(contents)?;
+    write(temporary.as_file_mut())?;
     temporary.persist(&file).map_err(|error| error.error)?;
     Ok(())
 }

@@ -28,8 +28,7 @@ pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(usize, &T) -> R +
 
 /// `work` on every item, each of which takes long enough for a thread of its own.
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync) {
-    let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = cores.min(items.len());
+    let threads = cores().min(items.len());
     if threads < 2 || AT_WORK.get() {
         items.iter_mut().for_each(work);
         return;
@@ -55,6 +54,25 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync) {
             thread.join().unwrap_or_else(|panic| resume_unwind(panic));
         }
     });
+}
+
+/// `work` on so many threads at once; work within it stays on its thread.
+pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
+    thread::scope(|scope| {
+        let marked = || {
+            AT_WORK.set(true);
+            work();
+        };
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(marked)).collect();
+        for thread in running {
+            thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        }
+    });
+}
+
+/// All cores that this process may use.
+pub(crate) fn cores() -> usize {
+    thread::available_parallelism().map_or(1, NonZero::get)
 }
 
 /// Ends the part of the calling thread, after a panic too.

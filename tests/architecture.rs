@@ -32,6 +32,7 @@ verification: document input frame tolerance geometry vessel target trajectory e
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
+campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
 study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text
@@ -65,6 +66,8 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("roxmltree", &["scenario/import/"]),
     ("kuva", &["report/figure/"]),
     ("png", &["report/figure/render.rs"]),
+    ("parquet", &["campaign/part.rs"]),
+    ("statrs", &["campaign/bounds.rs"]),
     ("clap", &["cli/", "main.rs"]),
     ("textwrap", &["cli/output/mod.rs"]),
     ("to_degrees", &["frame.rs"]),

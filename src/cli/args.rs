@@ -16,6 +16,7 @@ use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
+use super::campaign::CampaignArgs;
 use super::input::rows;
 use super::output::products::Wanted;
 use super::output::status::ExitStatus;
@@ -35,7 +36,7 @@ macro_rules! example {
 ///   1    a scenario has no safe plan, or `verify` rejects a plan
 ///   2    bad input or usage, or a result that cannot be written
 ///   3    a fault of the program
-///   130  a simulation was ended by Ctrl-C
+///   130  a simulation or a campaign was ended by Ctrl-C
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100, verbatim_doc_comment)]
 pub struct Arguments {
@@ -66,6 +67,9 @@ pub enum Command {
     /// Sails scenarios in the closed loop: plans again and again while the targets move
     #[command(after_help = example!("searoom simulate scenarios/closed-loop/head-on-radar.toml --seed 2"))]
     Simulate(SimulateArgs),
+    /// Sails thousands of random encounters, in parts that are resumed, merged and counted
+    #[command(after_help = example!("searoom campaign run spec.toml --shard 1/4 --out sailed"))]
+    Campaign(CampaignArgs),
     /// Turns files of other formats into scenario files
     #[command(after_help = example!("searoom import scenarios/dnv --out imported"))]
     Import(ImportArgs),

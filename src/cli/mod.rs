@@ -2,6 +2,7 @@
 
 mod args;
 mod assess;
+mod campaign;
 mod check;
 mod compare;
 mod import;
@@ -38,6 +39,7 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
         Command::Simulate(args) => simulate::simulate(args, &output),
+        Command::Campaign(args) => campaign::campaign(&args.command, &output),
         Command::Import(args) => import::import(args, &output),
         Command::Compare(args) => compare::compare(args, &output),
         #[cfg(feature = "recording")]

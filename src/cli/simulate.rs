@@ -107,7 +107,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
 }
 
 /// A flag that Ctrl-C sets. A second one ends the program at once.
-fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
+pub fn catch_interrupt(output: &Output) -> Arc<AtomicBool> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupted);
     let handler = move || {

@@ -50,12 +50,13 @@ pub use verification::*;
 pub type MakeSchema = fn() -> Schema;
 
 /// The JSON schemas of the documents, by the command that prints each with `--json`.
-pub const SCHEMAS: [(&str, MakeSchema); 8] = [
+pub const SCHEMAS: [(&str, MakeSchema); 9] = [
     ("plan", schema::<PlanDocument>),
     ("suite", schema::<SuiteDocument>),
     ("lint", schema::<LintDocument>),
     ("compare", schema::<ComparisonDocument>),
     ("simulate", schema::<SimulatedDocument>),
+    ("campaign", schema::<CampaignDocument>),
     ("assess", schema::<AssessmentDocument>),
     ("check", schema::<CheckDocument>),
     ("verify", schema::<VerificationDocument>),

@@ -1,5 +1,9 @@
 //! Simulation document, see docs/documents.md. The closed loop fills it.
 
+mod campaign;
+
+pub use campaign::*;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -2,6 +2,7 @@
 //! starboard positive.
 
 mod assessment;
+mod campaign;
 mod comparison;
 pub mod figure;
 mod lint;
@@ -16,6 +17,7 @@ pub use crate::output::{WriteError, write_atomically};
 pub use crate::pipeline::Verdict;
 pub use crate::text::{counted, printable, printable_lines};
 pub use assessment::assessment_text;
+pub use campaign::campaign_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
 pub use plan::{

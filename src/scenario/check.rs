@@ -8,7 +8,7 @@ use super::planner::{PlannerTable, planner};
 use super::route::Route;
 use super::simulation::simulation;
 use super::targets::targets;
-use super::{Compliance, Land, Memory, Scenario, land, limits};
+use super::{Compliance, Land, Memory, Scenario, SimulationSettings, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Fault, Faults, Field, Node, Table, every, from_toml};
@@ -67,7 +67,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let map = land::map(&mut root, &plane, folder);
     let own_ship = root
         .required_table("own_ship")
-        .map(|table| own_ship(table, &plane));
+        .map(|table| own_ship(table, |table| pose(table, &plane)));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().map(|own| own.land_margin);
     let acceleration = own_ship.as_ref().and_then(|own| own.acceleration);
@@ -99,34 +99,13 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let desired = mission.desired;
     let (targets, known): (Vec<Target>, Vec<TargetMemory>) = targets?.into_iter().unzip();
     let known_any = known.iter().any(|known| known.role.is_some());
-    let mean_speed = desired.length() / desired.duration();
-    let kind = planner.kind.unwrap_or(DEFAULT_PLANNER);
     let tracked = targets.iter().any(|target| target.ship().is_some());
-    let default_compliance = if kind.facts().keeps_rules && tracked {
-        Compliance::Rules
-    } else {
-        Compliance::Shape
-    };
     Some(Scenario {
-        title: title?.to_owned(),
         time: time?,
-        horizon: horizon?,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
-        time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
-        own_ship,
-        acceleration,
-        desired,
         alternatives: mission.alternatives,
         targets,
-        planner: kind,
-        objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
-        settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),
-        search: planner.search.unwrap_or(SearchKind::AStar),
-        compliance: planner.compliance.unwrap_or(default_compliance),
-        max_risk: planner.max_risk.unwrap_or(0.0),
-        deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
-        limits: Arc::new(planner.limits(length)),
-        thresholds: None,
+        acceleration,
         earth: plane.earth(),
         land,
         memory: Memory {
@@ -134,7 +113,53 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
             ..Memory::default()
         },
         simulation,
+        ..bare(title?, horizon?, own_ship, desired, planner, tracked)
     })
+}
+
+/// A scenario of own ship alone; `tracked` where it will meet tracked ships.
+pub(super) fn bare(
+    title: &str,
+    horizon: f64,
+    own_ship: OwnShip,
+    desired: DesiredTrajectory,
+    planner: PlannerTable,
+    tracked: bool,
+) -> Scenario {
+    let length = own_ship.hull.length;
+    let mean_speed = desired.length() / desired.duration();
+    let kind = planner.kind.unwrap_or(DEFAULT_PLANNER);
+    let default_compliance = if kind.facts().keeps_rules && tracked {
+        Compliance::Rules
+    } else {
+        Compliance::Shape
+    };
+    let limits = planner.limits(length);
+    Scenario {
+        title: title.to_owned(),
+        time: 0.0,
+        horizon,
+        arrival_hold: DEFAULT_ARRIVAL_HOLD,
+        time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
+        own_ship,
+        acceleration: None,
+        desired,
+        alternatives: Vec::new(),
+        targets: Vec::new(),
+        planner: kind,
+        objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
+        settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),
+        search: planner.search.unwrap_or(SearchKind::AStar),
+        compliance: planner.compliance.unwrap_or(default_compliance),
+        max_risk: planner.max_risk.unwrap_or(0.0),
+        deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
+        limits: Arc::new(limits),
+        thresholds: None,
+        earth: None,
+        land: None,
+        memory: Memory::default(),
+        simulation: SimulationSettings::default(),
+    }
 }
 
 /// A pose from the keys `position` and `course_deg`.
@@ -152,16 +177,20 @@ pub(super) fn hull(table: &mut Table) -> Option<Hull> {
 }
 
 /// Own ship; its speed and margin are known even if another field is faulty.
-struct OwnShipFields {
-    ship: Option<OwnShip>,
+pub(super) struct OwnShipFields {
+    pub(super) ship: Option<OwnShip>,
     speed: Option<f64>,
     /// Metres.
     land_margin: f64,
-    acceleration: Option<f64>,
+    pub(super) acceleration: Option<f64>,
 }
 
-fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
-    let pose = pose(&mut table, plane);
+/// Own ship, whose pose is read by `pose`.
+pub(super) fn own_ship(
+    mut table: Table,
+    pose: impl FnOnce(&mut Table) -> Option<Pose>,
+) -> OwnShipFields {
+    let pose = pose(&mut table);
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(&mut table);
     let turning_radius = table.required_distance("turning_radius", limits::LENGTH);

@@ -7,6 +7,7 @@ pub mod import;
 mod land;
 mod limits;
 mod memory;
+mod open_water;
 mod plane;
 mod planner;
 mod route;
@@ -19,6 +20,7 @@ pub use crate::input::{Fault, InputError as ScenarioError};
 pub use land::Land;
 pub use limits::FILE_MEBIBYTES;
 pub use memory::Memory;
+pub(crate) use open_water::{open_water, simulation_of, true_motion};
 pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
 };

@@ -29,6 +29,15 @@ impl Plane {
         }
     }
 
+    /// A plane whose positions are in metres.
+    pub(super) fn in_metres() -> Self {
+        Self {
+            earth: None,
+            given: false,
+            wanted: Cell::new(false),
+        }
+    }
+
     pub(super) fn earth(&self) -> Option<Georeference> {
         self.earth
     }

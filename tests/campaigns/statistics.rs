@@ -1,5 +1,7 @@
 //! Quantiles, and bounds on a proportion.
 
+use searoom::campaign::clopper_pearson;
+
 /// The value below which the fraction `p` of the values lies; NaN without values.
 pub fn quantile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();
@@ -30,33 +32,9 @@ pub fn spread(values: &[f64]) -> String {
 }
 
 /// Clopper–Pearson, one-sided, 95 %: the largest failure probability at which `failures` or fewer
-/// in `trials` still has a chance of 5 %. Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404. By
-/// bisection of the binomial distribution function; O(failures · 60).
+/// in `trials` still has a chance of 5 %.
 pub fn failure_bound(failures: usize, trials: usize) -> f64 {
-    if failures >= trials {
-        return 1.0;
-    }
-    let (mut low, mut high) = (failures as f64 / trials as f64, 1.0);
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if at_most(failures, trials, middle) > 0.05 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
-
-/// Probability of at most `k` events in `n` trials of probability `0 < p < 1`, terms in logarithms.
-fn at_most(k: usize, n: usize, p: f64) -> f64 {
-    let mut log_term = n as f64 * (1.0 - p).ln();
-    let mut sum = log_term.exp();
-    for i in 0..k {
-        log_term += ((n - i) as f64 / (i + 1) as f64).ln() + p.ln() - (1.0 - p).ln();
-        sum += log_term.exp();
-    }
-    sum
+    clopper_pearson(failures as u64, trials as u64, 0.9)[1]
 }
 
 #[test]

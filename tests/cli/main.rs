@@ -2,6 +2,7 @@
 
 mod assessing;
 mod bad_input;
+mod campaign;
 mod compare;
 mod docs;
 mod figures;

@@ -91,6 +91,11 @@ fn other_documents_fit_their_schemas() {
     keep(&plan, "plan scenarios/colregs/head-on.toml --json");
     let radar = "scenarios/closed-loop/head-on-radar.toml";
     keep(&sailed, &format!("simulate {radar} --duration-s 60 --json"));
+    let rows = crate::campaign::SPECIFICATION.replace("rows = 40", "rows = 3");
+    let rows = folder.write("campaign.toml", rows);
+    folder.write("head-on.toml", HEAD_ON);
+    let sailed_campaign = folder.at("campaign");
+    run(&format!("campaign run {rows} --out {sailed_campaign}")).success();
     let land = "scenarios/closed-loop/harbour-ferries.toml";
     let others = "scenarios/imazu scenarios/dnv/traffic_situation_01.json";
     for (kind, words) in [
@@ -117,6 +122,10 @@ fn other_documents_fit_their_schemas() {
         (
             "simulate",
             format!("simulate {bad} {radar} {land} --duration-s 20 --json"),
+        ),
+        (
+            "campaign",
+            format!("campaign summarise {sailed_campaign} --json"),
         ),
         (
             "assess",

@@ -192,6 +192,14 @@ impl Simulation {
         Ok(simulation)
     }
 
+    /// Why a scenario cannot be sailed; the fault that [`Self::new`] would return.
+    pub(crate) fn unfit(scenario: &Scenario) -> Option<Fault> {
+        let duration = scenario.simulation.duration.unwrap_or(scenario.horizon);
+        let checked = check(scenario, duration);
+        let checked = checked.and_then(|()| mutual::mutual_targets(scenario).map(drop));
+        checked.err()
+    }
+
     /// Keeps the document of every plan from now on; the first plan is the one that is followed.
     pub fn keep_plans(&mut self) {
         self.keep_plans = true;

@@ -1,0 +1,318 @@
+//! The folder of a campaign: its index, its parts, and which rows are there.
+
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::part::{Header, Part, PartError};
+use super::row::Cell;
+use super::specification::Specification;
+use crate::input::{Fault, InputError, read_text};
+use crate::output::{WriteError, write_atomically};
+use crate::scenario::FILE_MEBIBYTES;
+
+const INDEX: &str = "campaign.json";
+const INDEX_FORMAT: &str = "searoom-campaign-index/1";
+
+/// Why a campaign cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum CampaignError {
+    /// A file that is wrong, or is not of this campaign.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl CampaignError {
+    /// A file that is not as it has to be.
+    pub(super) fn refused(file: &Path, found: impl Into<String>, allowed: &str) -> Self {
+        let fault = Fault::new("", found.into(), allowed);
+        Self::Input(InputError::faults(file, vec![fault]))
+    }
+}
+
+/// What `campaign.json` says of the campaign in its folder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Index {
+    /// Format of this file.
+    pub format: String,
+    /// Name of the campaign.
+    pub name: String,
+    /// Hash of the specification.
+    pub hash: String,
+    /// Number of rows.
+    pub rows: u64,
+    /// Names and classes of the strata.
+    pub strata: Vec<(String, String)>,
+    /// Text of the specification.
+    pub specification: String,
+    /// Where the files that it names are, seen from this folder.
+    pub folder: PathBuf,
+}
+
+/// A folder with an index.
+#[derive(Debug, Clone)]
+pub struct Folder {
+    path: PathBuf,
+    /// Its index.
+    pub index: Index,
+}
+
+/// A part as it was found.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub file: PathBuf,
+    /// What it belongs to, or why it is damaged.
+    pub header: Result<Header, PartError>,
+}
+
+impl Folder {
+    /// Opens the folder of a campaign.
+    pub fn open(path: &Path) -> Result<Self, CampaignError> {
+        let file = path.join(INDEX);
+        let text = read_text(&file, FILE_MEBIBYTES, "the index of a campaign")?;
+        let wrong = |found: String| {
+            CampaignError::refused(&file, found, "the index that `campaign run` wrote")
+        };
+        let index: Index = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        if index.format != INDEX_FORMAT {
+            return Err(wrong(format!("format {:?}", index.format)));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            index,
+        })
+    }
+
+    /// Makes the folder, or opens it if it is of the same specification, which is in `file`.
+    pub fn of(
+        specification: &Specification,
+        file: &Path,
+        path: &Path,
+    ) -> Result<Self, CampaignError> {
+        for folder in [path.to_owned(), path.join("parts"), path.join("rows")] {
+            fs::create_dir_all(&folder).map_err(|source| WriteError {
+                file: folder.clone(),
+                source,
+            })?;
+        }
+        if path.join(INDEX).exists() {
+            let folder = Self::open(path)?;
+            folder.refuse_unless(&specification.hash)?;
+            return Ok(folder);
+        }
+        let beside = crate::output::folder_of(file);
+        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let (from, to) = (absolute(path), absolute(&beside));
+        let strata = specification.strata.iter();
+        let index = Index {
+            format: INDEX_FORMAT.to_owned(),
+            name: specification.name.clone(),
+            hash: specification.hash.clone(),
+            rows: specification.rows,
+            strata: strata
+                .map(|s| (s.name.clone(), s.class.to_owned()))
+                .collect(),
+            specification: specification.text.clone(),
+            folder: pathdiff::diff_paths(&to, &from).unwrap_or(to),
+        };
+        let text = crate::document::json(&index).unwrap_or_default();
+        write_atomically(&path.join(INDEX), text.as_bytes())?;
+        Ok(Self {
+            path: path.to_owned(),
+            index,
+        })
+    }
+
+    fn refuse_unless(&self, hash: &str) -> Result<(), CampaignError> {
+        if self.index.hash == hash {
+            return Ok(());
+        }
+        let found = format!(
+            "the campaign {:?} of the specification {}",
+            self.index.name,
+            short(&self.index.hash)
+        );
+        let allowed = format!("{}, or another folder for --out", short(hash));
+        let file = self.path.join(INDEX);
+        Err(CampaignError::refused(&file, found, &allowed))
+    }
+
+    /// The specification, read again with the files that it names. An error if these have changed.
+    pub fn specification(&self) -> Result<Specification, CampaignError> {
+        let beside = self.path.join(&self.index.folder);
+        let read = Specification::parse(&self.index.specification, &beside);
+        let file = self.path.join(INDEX);
+        let specification = read.map_err(|faults| InputError::faults(&file, faults))?;
+        if specification.hash != self.index.hash {
+            let found = "scenario files, maps or routes that have changed since the campaign";
+            return Err(CampaignError::refused(
+                &file,
+                found,
+                "those of the specification",
+            ));
+        }
+        Ok(specification)
+    }
+
+    /// Where the document of a row is kept.
+    pub(super) fn row_file(&self, row: u64) -> PathBuf {
+        self.path.join(format!("rows/row-{row:010}.json"))
+    }
+
+    /// Where a part is kept.
+    pub(super) fn part_file(&self, header: &Header) -> PathBuf {
+        self.parts().join(header.file_name())
+    }
+
+    /// Where the joined parts are kept.
+    pub(super) fn joined_file(&self) -> PathBuf {
+        self.path.join("campaign.parquet")
+    }
+
+    /// The folder of the parts.
+    pub(super) fn parts(&self) -> PathBuf {
+        self.path.join("parts")
+    }
+
+    /// A row as it is kept in a part, if one has it.
+    pub fn row(&self, row: u64) -> Result<Option<Vec<Cell>>, CampaignError> {
+        let mut kept = None;
+        self.each_part(Some(row), |part| {
+            let index = row.checked_sub(part.header.rows.start);
+            let index = index.and_then(|index| usize::try_from(index).ok());
+            kept = kept
+                .take()
+                .or(index.and_then(|i| part.rows.get(i)).cloned());
+        })?;
+        Ok(kept)
+    }
+
+    /// Reads every part, or those that have a row by their names, in the order of names, and gives
+    /// those that are whole to `take`.
+    pub(super) fn each_part(
+        &self,
+        with: Option<u64>,
+        mut take: impl FnMut(&Part),
+    ) -> Result<Vec<Found>, CampaignError> {
+        let folder = self.parts();
+        let unread = |source| InputError::Read {
+            file: folder.clone(),
+            source,
+        };
+        let entries = fs::read_dir(&folder).map_err(unread)?;
+        let entries = entries.collect::<Result<Vec<_>, _>>().map_err(unread)?;
+        let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+        files.retain(|file| file.extension().is_some_and(|e| e == "parquet"));
+        files.retain(|file| with.is_none_or(|row| may_have(file, row)));
+        files.sort();
+        let found = files.into_iter().map(|file| {
+            let header = Part::read(&file).map(|part| {
+                take(&part);
+                part.header
+            });
+            Found { file, header }
+        });
+        Ok(found.collect())
+    }
+
+    /// Refuses parts of another specification, and of another build unless these are allowed.
+    pub(super) fn refuse_foreign(
+        &self,
+        found: &[Found],
+        other_builds: bool,
+    ) -> Result<(), CampaignError> {
+        let ours = Header::new(&self.index.hash, 0..0);
+        for Found { file, header } in found {
+            let header = match header {
+                Ok(header) => header,
+                Err(PartError::Damaged(_)) => continue,
+                Err(PartError::OtherColumns(_)) => {
+                    let found = "columns of another version of the program";
+                    return Err(CampaignError::refused(file, found, "those of this one"));
+                }
+            };
+            if header.hash != ours.hash {
+                let found = format!("rows of the specification {}", short(&header.hash));
+                return Err(CampaignError::refused(file, found, short(&ours.hash)));
+            }
+            if header.build != ours.build && !other_builds {
+                let found = format!("rows of searoom {}", header.build);
+                let allowed = format!(
+                    "rows of searoom {}; `merge` and `summarise` take others with \
+                     --allow-other-builds",
+                    ours.build
+                );
+                return Err(CampaignError::refused(file, found, &allowed));
+            }
+            if header.rows.end > self.index.rows {
+                let found = format!("rows up to {}", header.rows.end - 1);
+                let allowed = format!("rows below {}", self.index.rows);
+                return Err(CampaignError::refused(file, found, &allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// False where the name of a part says that it does not have a row.
+fn may_have(file: &Path, row: u64) -> bool {
+    let name = file.file_stem().and_then(|name| name.to_str());
+    let mut numbers = name.into_iter().flat_map(|name| name.split('-').skip(1));
+    let mut number = || numbers.next().and_then(|number| number.parse::<u64>().ok());
+    match (number(), number()) {
+        (Some(first), Some(last)) => (first..=last).contains(&row),
+        _ => true,
+    }
+}
+
+/// The beginning of a hash, for messages.
+fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+/// The rows of `all` that none of these ranges has, as ranges in order.
+pub(super) fn missing(
+    all: Range<u64>,
+    there: impl IntoIterator<Item = Range<u64>>,
+) -> Vec<Range<u64>> {
+    let mut there: Vec<Range<u64>> = there.into_iter().collect();
+    there.sort_by_key(|rows| rows.start);
+    let mut missing = Vec::new();
+    let mut next = all.start;
+    for rows in there {
+        let until = rows.start.min(all.end);
+        if until > next {
+            missing.push(next..until);
+        }
+        next = next.max(rows.end);
+    }
+    if next < all.end {
+        missing.push(next..all.end);
+    }
+    missing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::missing;
+
+    #[test]
+    fn rows_that_are_missing_are_found_whatever_is_there() {
+        let found = |there: &[(u64, u64)]| -> Vec<(u64, u64)> {
+            let there = there.iter().map(|(start, end)| *start..*end);
+            let left = missing(3..9, there).into_iter();
+            left.map(|rows| (rows.start, rows.end)).collect()
+        };
+        assert_eq!(found(&[]), [(3, 9)]);
+        assert_eq!(found(&[(0, 4), (6, 7)]), [(4, 6), (7, 9)]);
+        // out of order, one within another, at the edges, empty
+        assert_eq!(found(&[(8, 20), (3, 6), (4, 5), (5, 5)]), [(6, 8)]);
+        assert_eq!(found(&[(0, 5), (5, 9)]), []);
+        assert!(missing(5..5, []).is_empty());
+    }
+}

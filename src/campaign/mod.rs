@@ -1,0 +1,20 @@
+//! Campaigns: many closed-loop rows of one specification, in parts that any number of processes
+//! write; merged, counted and sailed again (docs/campaigns.md).
+
+mod bounds;
+mod encounter;
+mod folder;
+mod part;
+mod row;
+mod run;
+mod specification;
+mod summary;
+
+pub use bounds::{anytime, clopper_pearson};
+pub use encounter::{Distribution, Encounter, EncounterKind, Miss};
+pub use folder::{CampaignError, Folder, Index};
+pub use part::{Header, Part, PartError, differing, untimed};
+pub use row::{COLUMNS, Cell, Column, Row, TIMED};
+pub use run::{Done, Progress, Shard, run};
+pub use specification::{RowScenario, Specification, Stratum};
+pub use summary::{merge, summarise};

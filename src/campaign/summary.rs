@@ -1,0 +1,278 @@
+//! Joins the parts of a campaign, and counts their rows.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+
+use super::bounds::{anytime, clopper_pearson};
+use super::folder::{CampaignError, Folder, Found, missing};
+use super::part::{Header, Part, join};
+use super::row::{Cell, FAULT, column};
+use super::run::word;
+use crate::document::{
+    CAMPAIGN_FORMAT, CampaignDocument, CampaignTimingDocument, GroupDocument, GroupTimingDocument,
+    QuantilesDocument, ShareDocument, WorstRowDocument,
+};
+use crate::input::{Fault, InputError};
+use crate::text::counted;
+
+const CONFIDENCE: f64 = 0.95;
+
+/// Rows that a summary names.
+const WORST: usize = 10;
+
+/// Ranges of rows that a message names.
+const NAMED: usize = 10;
+
+/// Joins all parts of a campaign as one file in the order of rows, which is returned. Damaged,
+/// foreign, missing and double rows are refused; the error names all of them.
+pub fn merge(folder: &Folder, other_builds: bool) -> Result<PathBuf, CampaignError> {
+    let found = sound(folder, other_builds, |_| ())?;
+    let rows = found.iter().map(|(_, header)| header.rows.clone());
+    let left = missing(0..folder.index.rows, rows);
+    if !left.is_empty() {
+        let some: Vec<String> = left.iter().take(NAMED).map(named).collect();
+        let more = match left.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {} more", counted(more, "range")),
+        };
+        let found = format!("no {}{more}", some.join(", "));
+        let allowed = "every row once; `campaign run` sails those that are missing";
+        return Err(CampaignError::refused(&folder.parts(), found, allowed));
+    }
+    let mut builds: Vec<&str> = found.iter().map(|(_, header)| &*header.build).collect();
+    builds.sort_unstable();
+    builds.dedup();
+    let header = Header {
+        build: builds.join(", "),
+        ..Header::new(&folder.index.hash, 0..folder.index.rows)
+    };
+    let files: Vec<PathBuf> = found.iter().map(|(file, _)| file.clone()).collect();
+    let file = folder.joined_file();
+    join(&file, &header, &files)?;
+    Ok(file)
+}
+
+fn named(rows: &Range<u64>) -> String {
+    match rows.end - rows.start {
+        1 => format!("row {}", rows.start),
+        _ => format!("rows {} to {}", rows.start, rows.end - 1),
+    }
+}
+
+/// The parts in the order of their rows, each of which is given to `take`; an error where one is
+/// damaged or foreign, or has a row that another one has.
+fn sound(
+    folder: &Folder,
+    other_builds: bool,
+    take: impl FnMut(&Part),
+) -> Result<Vec<(PathBuf, Header)>, CampaignError> {
+    let found = folder.each_part(None, take)?;
+    folder.refuse_foreign(&found, other_builds)?;
+    let mut faults = Vec::new();
+    let mut parts = Vec::new();
+    for Found { file, header } in found {
+        match header {
+            Ok(header) => parts.push((file, header)),
+            Err(error) => {
+                let allowed = "a whole part; `campaign run` sails its rows again";
+                faults.push(Fault::new("", error, allowed));
+            }
+        }
+    }
+    parts.sort_by_key(|(_, header)| header.rows.start);
+    // the part of all before that reaches farthest
+    let mut last: Option<&(PathBuf, Header)> = None;
+    for part in &parts {
+        let (file, Header { rows, .. }) = part;
+        if let Some((other, before)) = last
+            && rows.start < before.rows.end
+        {
+            let both = rows.start..rows.end.min(before.rows.end);
+            let (file, other) = (file.display(), other.display());
+            let found = format!("{} in {other} and in {file}", named(&both));
+            faults.push(Fault::new(
+                "",
+                found,
+                "every row once; delete one of the two",
+            ));
+        }
+        if last.is_none_or(|(_, before)| rows.end > before.rows.end) {
+            last = Some(part);
+        }
+    }
+    if faults.is_empty() {
+        return Ok(parts);
+    }
+    Err(InputError::faults(&folder.parts(), faults).into())
+}
+
+/// Columns that are an event of a row where they are true or above zero.
+const EVENTS: [&str; 6] = [
+    "contact",
+    "no_plan",
+    "unsafe_plans",
+    "outside_sets",
+    "broken",
+    "late",
+];
+
+/// Counts over some rows.
+#[derive(Debug, Default, Clone)]
+struct Tally {
+    rows: u64,
+    faults: u64,
+    events: [u64; EVENTS.len()],
+    breaks: BTreeMap<String, u64>,
+    clearances: Vec<f64>,
+}
+
+impl Tally {
+    fn add(&mut self, row: &[Cell]) {
+        let cell = |name: &str| &row[column(name)];
+        if *cell("outcome") == word(FAULT) {
+            self.faults += 1;
+            return;
+        }
+        self.rows += 1;
+        for (count, name) in self.events.iter_mut().zip(EVENTS) {
+            *count += match cell(name) {
+                Cell::Count(Some(count)) => u64::from(*count > 0),
+                Cell::Truth(Some(truth)) => u64::from(*truth),
+                _ => 0,
+            };
+        }
+        if let Cell::Word(Some(breaks)) = cell("breaks") {
+            for name in breaks.split(';') {
+                *self.breaks.entry(name.to_owned()).or_default() += 1;
+            }
+        }
+        if let Cell::Number(Some(clearance)) = cell("clearance_m") {
+            self.clearances.push(*clearance);
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.rows += other.rows;
+        self.faults += other.faults;
+        for (count, more) in self.events.iter_mut().zip(other.events) {
+            *count += more;
+        }
+        for (name, count) in &other.breaks {
+            *self.breaks.entry(name.clone()).or_default() += count;
+        }
+        self.clearances.extend(&other.clearances);
+    }
+
+    fn document(mut self, name: &str, class: Option<&str>) -> GroupDocument {
+        let shares = self.events.map(|count| ShareDocument {
+            count,
+            exact: clopper_pearson(count, self.rows, CONFIDENCE),
+            anytime: anytime(count, self.rows, CONFIDENCE),
+        });
+        let [
+            contact,
+            no_plan,
+            unsafe_plan,
+            outside_sets,
+            rule_broken,
+            late,
+        ] = shares;
+        self.clearances.sort_by(f64::total_cmp);
+        let last = self.clearances.len().saturating_sub(1);
+        let quantile = |p: f64| {
+            let index = (p * last as f64).ceil() as usize;
+            self.clearances.get(index).copied()
+        };
+        let quantiles = || {
+            Some(QuantilesDocument {
+                least: quantile(0.0)?,
+                percent_1: quantile(0.01)?,
+                percent_5: quantile(0.05)?,
+                median: quantile(0.5)?,
+            })
+        };
+        GroupDocument {
+            name: name.to_owned(),
+            class: class.map(str::to_owned),
+            rows: self.rows,
+            faults: self.faults,
+            contact,
+            no_plan,
+            unsafe_plan,
+            outside_sets,
+            rule_broken,
+            timing: GroupTimingDocument { late },
+            clearance_m: quantiles(),
+            breaks: self.breaks,
+        }
+    }
+}
+
+/// Counts the rows that are there, whole or not: the same document for any number of shards.
+pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument, CampaignError> {
+    let index = &folder.index;
+    let mut tallies = vec![Tally::default(); index.strata.len()];
+    let mut worst: Vec<WorstRowDocument> = Vec::new();
+    let mut cpu_s = 0.0;
+    sound(folder, other_builds, |part| {
+        for row in &part.rows {
+            let Cell::Word(Some(stratum)) = &row[column("stratum")] else {
+                continue;
+            };
+            let own = index.strata.iter().position(|(name, _)| name == stratum);
+            if let Some(tally) = own.and_then(|own| tallies.get_mut(own)) {
+                tally.add(row);
+            }
+            if let Cell::Number(Some(seconds)) = row[column("cpu_s")] {
+                cpu_s += seconds;
+            }
+            if let (Cell::Number(Some(clearance_m)), Cell::Count(Some(number))) =
+                (&row[column("clearance_m")], &row[0])
+            {
+                worst.push(WorstRowDocument {
+                    row: *number as u64,
+                    stratum: stratum.clone(),
+                    clearance_m: *clearance_m,
+                    contact: row[column("contact")] == Cell::Truth(Some(true)),
+                });
+            }
+        }
+        worst.sort_by(|a, b| (a.clearance_m.total_cmp(&b.clearance_m)).then(a.row.cmp(&b.row)));
+        worst.truncate(WORST);
+    })?;
+    let group = |is_one: &dyn Fn(usize) -> bool, name: &str, class: Option<&str>| {
+        let mut sum = Tally::default();
+        let own = tallies
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| is_one(*index));
+        own.for_each(|(_, tally)| sum.join(tally));
+        sum.document(name, class)
+    };
+    let mut classes: Vec<&str> = Vec::new();
+    for (_, class) in &index.strata {
+        if !classes.contains(&class.as_str()) {
+            classes.push(class);
+        }
+    }
+    let all = group(&|_| true, "all", None);
+    Ok(CampaignDocument {
+        format: CAMPAIGN_FORMAT.to_owned(),
+        build: env!("CARGO_PKG_VERSION").to_owned(),
+        campaign: index.name.clone(),
+        specification: index.hash.clone(),
+        rows: index.rows,
+        rows_there: all.rows + all.faults,
+        confidence: CONFIDENCE,
+        classes: (classes.iter())
+            .map(|class| group(&|at| index.strata[at].1 == *class, class, Some(class)))
+            .collect(),
+        strata: (index.strata.iter().enumerate())
+            .map(|(own, (name, class))| group(&|at| at == own, name, Some(class)))
+            .collect(),
+        all,
+        worst,
+        timing: CampaignTimingDocument { cpu_s },
+    })
+}

@@ -1,0 +1,227 @@
+//! `searoom campaign`: many random encounters, sailed in parts.
+
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use anyhow::{Context, anyhow, bail};
+use clap::{Args, Subcommand, ValueHint};
+use indicatif::ProgressStyle;
+use searoom::campaign::{
+    Folder, Progress, Row, Shard, Specification, differing, merge, run, summarise,
+};
+use searoom::report::{campaign_text, simulation_text, write_atomically};
+use searoom::simulation::Simulation;
+
+use super::input::files::Found;
+use super::output::products::{Products, Wanted, make_parent};
+use super::output::status::ExitStatus;
+use super::output::{Output, json};
+use super::simulate::catch_interrupt;
+
+#[derive(Debug, Args)]
+pub struct CampaignArgs {
+    #[command(subcommand)]
+    pub command: CampaignCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum CampaignCommand {
+    /// Sails the rows of a shard that are not in the folder yet
+    Run(RunArgs),
+    /// Joins all parts as DIR/campaign.parquet; refuses missing, double and foreign rows
+    Merge(MergeArgs),
+    /// Counts the rows that are there, with bounds on each probability
+    Summarise(SummariseArgs),
+    /// Sails a row again, and compares it with the one that is there
+    Replay(ReplayArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// The specification (docs/campaigns.md)
+    #[arg(value_name = "SPEC.toml", value_hint = ValueHint::FilePath)]
+    pub specification: PathBuf,
+    /// Number of this shard, and how many there are
+    #[arg(long, value_name = "K/N", default_value = "1/1", value_parser = shard)]
+    pub shard: Shard,
+    /// Folder of the campaign; all shards may share it
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Rows that are sailed at once [default: as many as there are cores]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
+}
+
+#[derive(Debug, Args)]
+pub struct MergeArgs {
+    /// Folder of the campaign
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// Take rows of other builds of the program, too
+    #[arg(long)]
+    pub allow_other_builds: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct SummariseArgs {
+    #[command(flatten)]
+    pub parts: MergeArgs,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// Folder of the campaign
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// Number of the row, from 0
+    #[arg(long, value_name = "I")]
+    pub row: u64,
+    /// Write the simulation document
+    #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
+    pub json: Option<PathBuf>,
+    /// Write a Rerun recording
+    #[arg(long, value_name = "FILE.rrd", value_hint = ValueHint::FilePath)]
+    pub rrd: Option<PathBuf>,
+}
+
+fn shard(word: &str) -> Result<Shard, String> {
+    let read = || {
+        let (number, of) = word.split_once('/')?;
+        let (number, of) = (number.parse().ok()?, of.parse().ok()?);
+        (number <= of).then_some(Shard { number, of })
+    };
+    read().ok_or_else(|| "allowed: K/N with K from 1 to N, such as 1/8".to_owned())
+}
+
+pub fn campaign(command: &CampaignCommand, output: &Output) -> anyhow::Result<ExitStatus> {
+    match command {
+        CampaignCommand::Run(args) => sail(args, output),
+        CampaignCommand::Merge(args) => {
+            let folder = Folder::open(&args.folder)?;
+            output.wrote(&merge(&folder, args.allow_other_builds)?);
+            Ok(ExitStatus::Good)
+        }
+        CampaignCommand::Summarise(args) => {
+            let folder = Folder::open(&args.parts.folder)?;
+            let summary = summarise(&folder, args.parts.allow_other_builds)?;
+            let text = || campaign_text(&summary, output.display);
+            Ok(output.show(args.json, &summary, text))
+        }
+        CampaignCommand::Replay(args) => replay(args, output),
+    }
+}
+
+fn sail(args: &RunArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let specification = Specification::read(&args.specification)?;
+    let stop = catch_interrupt(output);
+    let bar = output.progress(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {per_sec} {eta} left") {
+        bar.set_style(style);
+    }
+    let progress = |progress| match progress {
+        Progress::Begins(left, _) => bar.set_length(left),
+        Progress::Row => bar.inc(1),
+        Progress::Damaged(text) => bar.suspend(|| output.note(&text)),
+    };
+    let done = run(
+        &specification,
+        &args.specification,
+        args.shard,
+        &args.out,
+        args.threads,
+        &stop,
+        &progress,
+    );
+    bar.finish_and_clear();
+    let done = done?;
+    let mut text = format!(
+        "{}, shard {}: {} rows sailed, {} were there",
+        specification.name, args.shard, done.sailed, done.there
+    );
+    if done.faults > 0 {
+        text += &format!("; the program failed at {} of them", done.faults);
+    }
+    if done.interrupted {
+        text += "; interrupted, the same command goes on";
+    }
+    let shown = output.result(&text);
+    let status = match (done.interrupted, done.faults) {
+        (true, _) => ExitStatus::Interrupted,
+        (false, 0) => ExitStatus::Good,
+        (false, _) => ExitStatus::InternalFault,
+    };
+    Ok(shown.max(status))
+}
+
+fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let (row, folder) = (args.row, Folder::open(&args.folder)?);
+    let specification = folder.specification()?;
+    if row >= specification.rows {
+        let last = specification.rows - 1;
+        bail!("--row: found {row}; allowed: a row from 0 to {last}");
+    }
+    let stem = format!("row-{row:010}");
+    let found = Found {
+        file: args.folder.clone(),
+        stem: stem.clone(),
+        in_folder: false,
+    };
+    let wanted = Wanted {
+        recordings: args.rrd.as_deref(),
+        ..Wanted::default()
+    };
+    let products = Products::prepare(&[found], wanted)?;
+    if let Some(file) = &args.json {
+        make_parent(file)?;
+    }
+    let stop = catch_interrupt(output);
+    let drawn = specification.scenario(row);
+    let drawn = drawn.with_context(|| format!("row {row}: no draw is of its class"))?;
+    let simulation = Simulation::new(drawn.scenario.clone(), false);
+    let mut simulation = simulation.map_err(|fault| anyhow!("row {row}: {fault}"))?;
+    if args.rrd.is_some() {
+        simulation.keep_plans();
+    }
+    while !simulation.finished() {
+        simulation.step();
+        if stop.load(Ordering::Relaxed) {
+            output.note(&"interrupted; nothing is written");
+            return Ok(ExitStatus::Interrupted);
+        }
+    }
+    let document = simulation.record();
+    let mut status = output.result(&simulation_text(&document, output.display));
+    if !document.safe {
+        status = status.max(ExitStatus::NoPlan);
+    }
+    if let Some(file) = &args.json {
+        write_atomically(file, json(&document)?.as_bytes())?;
+        output.wrote(file);
+    }
+    let written = products.write_simulation(&stem, &drawn.scenario, &simulation, &document);
+    let written = output.written(written);
+    products.announce(written, output);
+    let again = Row::of(&specification, row, Some(&drawn), Some(document), 0.0);
+    let compared = match folder.row(row)? {
+        None => {
+            output.note(&format_args!("row {row} is not in the campaign yet"));
+            ExitStatus::Good
+        }
+        Some(kept) => match differing(&kept, &again.cells).as_slice() {
+            [] => {
+                output.note(&format_args!("row {row} is as it was in the campaign"));
+                ExitStatus::Good
+            }
+            columns => output.fault(&format_args!(
+                "row {row} is not as it was in the campaign, which another build may have sailed: \
+                 {}",
+                columns.join(", ")
+            )),
+        },
+    };
+    Ok(status.max(written).max(compared))
+}

@@ -1,0 +1,99 @@
+//! Summary document of a campaign, see docs/campaigns.md.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Format name of the summary.
+pub const CAMPAIGN_FORMAT: &str = "searoom-campaign-summary/1";
+
+/// What the rows of a campaign say so far.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CampaignDocument {
+    pub format: String,
+    pub build: String,
+    pub campaign: String,
+    /// Hash of the specification.
+    pub specification: String,
+    /// Rows of the specification, and those that are there.
+    pub rows: u64,
+    pub rows_there: u64,
+    /// Confidence of every interval.
+    pub confidence: f64,
+    pub all: GroupDocument,
+    /// Over the strata of each class.
+    pub classes: Vec<GroupDocument>,
+    pub strata: Vec<GroupDocument>,
+    /// The rows with the least clearance, the least first.
+    pub worst: Vec<WorstRowDocument>,
+    pub timing: CampaignTimingDocument,
+}
+
+/// Processor time of all rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CampaignTimingDocument {
+    pub cpu_s: f64,
+}
+
+/// Counts over some rows.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupDocument {
+    pub name: String,
+    /// Class of the rows; null where they are of several.
+    pub class: Option<String>,
+    /// Rows that were sailed: the trials of every share.
+    pub rows: u64,
+    /// Rows at which the program failed.
+    pub faults: u64,
+    /// Rows with a contact.
+    pub contact: ShareDocument,
+    /// Rows with a cycle without a plan.
+    pub no_plan: ShareDocument,
+    /// Rows with a plan that is not safe.
+    pub unsafe_plan: ShareDocument,
+    /// Rows with a target outside the sets of a plan.
+    pub outside_sets: ShareDocument,
+    /// Rows with a broken rule or a violated monitor.
+    pub rule_broken: ShareDocument,
+    /// Rows that break each rule or monitor.
+    pub breaks: BTreeMap<String, u64>,
+    /// Least distance of the hulls in each row; null without a target.
+    pub clearance_m: Option<QuantilesDocument>,
+    pub timing: GroupTimingDocument,
+}
+
+/// What depends on the machine.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupTimingDocument {
+    /// Rows with a plan that took longer than the delay.
+    pub late: ShareDocument,
+}
+
+/// How many rows, and bounds on their probability.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShareDocument {
+    pub count: u64,
+    /// Clopper-Pearson interval, for a number of rows that was fixed beforehand.
+    pub exact: [f64; 2],
+    /// Interval that holds at all numbers of rows at once: a run may be watched and stopped.
+    pub anytime: [f64; 2],
+}
+
+/// Quantiles over rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct QuantilesDocument {
+    pub least: f64,
+    pub percent_1: f64,
+    pub percent_5: f64,
+    pub median: f64,
+}
+
+/// A row to look at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WorstRowDocument {
+    pub row: u64,
+    pub stratum: String,
+    pub clearance_m: f64,
+    pub contact: bool,
+}

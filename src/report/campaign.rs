@@ -1,0 +1,108 @@
+//! Text of the summary of a campaign.
+
+use super::table::{Display, Grid, Styled, Tone, or_dash, plain};
+use crate::document::{CampaignDocument, GroupDocument, ShareDocument};
+use crate::text::{counted, tenths};
+
+/// Formats the counts of all rows, of classes with several strata and of strata, then the bounds,
+/// and the rows with the least clearance.
+pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
+    let groups = groups(summary);
+    let confidence = 100.0 * summary.confidence;
+    let mut blocks = vec![
+        format!(
+            "{}: {} of {} rows, {:.0} s of processor time",
+            summary.campaign, summary.rows_there, summary.rows, summary.timing.cpu_s
+        ),
+        counts(&groups).text(display),
+        format!(
+            "Probabilities in percent, {confidence:.0} % confidence; \"anytime\" holds for a run that \
+             is watched."
+        ),
+        bounds(&groups).text(display),
+    ];
+    let breaks = summary.all.breaks.iter();
+    let breaks: Vec<String> = breaks.map(|(name, n)| format!("{name} {n}")).collect();
+    let mut lines = Vec::new();
+    if !breaks.is_empty() {
+        lines.push(format!("Rows that break: {}", breaks.join(", ")));
+    }
+    if !summary.worst.is_empty() {
+        let worst = summary.worst.iter();
+        let worst = worst.map(|row| match row.contact {
+            true => format!("{} (CONTACT)", row.row),
+            false => format!("{} ({} m)", row.row, tenths(row.clearance_m)),
+        });
+        let worst: Vec<String> = worst.collect();
+        lines.push(format!("Least clearance in rows: {}", worst.join(", ")));
+    }
+    if summary.all.faults > 0 {
+        lines.push(format!(
+            "NOT COUNTED: {} at which the program failed",
+            counted(summary.all.faults as usize, "row")
+        ));
+    }
+    if !lines.is_empty() {
+        blocks.push(lines.join("\n"));
+    }
+    blocks.join("\n\n")
+}
+
+/// Groups with their names, without classes of one stratum.
+fn groups(summary: &CampaignDocument) -> Vec<(String, &GroupDocument)> {
+    let all = std::iter::once(("all".to_owned(), &summary.all));
+    let has_several = |class: &&GroupDocument| {
+        let mut own = summary.strata.iter().filter(|g| g.class == class.class);
+        own.nth(1).is_some()
+    };
+    let classes = summary.classes.iter().filter(has_several);
+    let classes = classes.map(|g| (format!("class {}", g.name), g));
+    let strata = summary.strata.iter().map(|g| (g.name.clone(), g));
+    all.chain(classes).chain(strata).collect()
+}
+
+fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
+    let count = |share: &ShareDocument, tone| {
+        let tone = if share.count > 0 { tone } else { Tone::Plain };
+        (share.count.to_string(), tone)
+    };
+    let rows = groups.iter().map(|(name, group)| {
+        let quantiles = group.clearance_m.as_ref();
+        let quantiles =
+            quantiles.map(|q| [q.least, q.percent_1, q.percent_5, q.median].map(tenths));
+        let quantiles = quantiles.map_or([None, None, None, None], |all| all.map(Some));
+        let mut cells = vec![
+            plain(name.clone()),
+            plain(group.rows.to_string()),
+            count(&group.contact, Tone::Bad),
+            count(&group.no_plan, Tone::Bad),
+            count(&group.unsafe_plan, Tone::Bad),
+            count(&group.outside_sets, Tone::Fair),
+            count(&group.rule_broken, Tone::Fair),
+            count(&group.timing.late, Tone::Fair),
+        ];
+        cells.extend(quantiles.map(or_dash));
+        cells
+    });
+    let header = "stratum, rows, contact, no\nplan, unsafe\nplan, left\nits set, rule\nbroken, \
+                  late, clearance\nleast [m], 1 %\n[m], 5 %\n[m], 50 %\n[m]";
+    Grid::new(header, 1..12, rows)
+}
+
+fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
+    let interval = |[low, high]: [f64; 2]| -> Styled {
+        // rounded outwards
+        let percent = |share: f64, round: fn(f64) -> f64| round(share * 1e5) / 1e3;
+        let (low, high) = (percent(low, f64::floor), percent(high, f64::ceil));
+        plain(format!("{low} to {high}"))
+    };
+    let rows = groups.iter().map(|(name, group)| {
+        let shares = [&group.contact, &group.no_plan, &group.rule_broken];
+        let pairs = shares.map(|share| [interval(share.exact), interval(share.anytime)]);
+        let cells = pairs.into_iter().flatten();
+        std::iter::once(plain(name.clone())).chain(cells).collect()
+    });
+    let header = "stratum, contact\nexact, contact\nanytime, no plan\nexact, no plan\nanytime, \
+                  rule broken\nexact, rule broken\nanytime";
+    Grid::new(header, 1..7, rows)
+}
