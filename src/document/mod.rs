@@ -22,7 +22,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
 pub use assessment::*;
-pub use check::{CheckDocument, CheckedDocument, FaultDocument};
+pub use check::*;
 pub use comparison::*;
 pub use encounter::*;
 pub(crate) use lines::{
@@ -46,7 +46,7 @@ pub use verification::*;
 pub type MakeSchema = fn() -> Schema;
 
 /// The JSON schemas of the documents, by the command that prints each with `--json`.
-pub const SCHEMAS: [(&str, MakeSchema); 8] = [
+pub const SCHEMAS: [(&str, MakeSchema); 9] = [
     ("plan", schema::<PlanDocument>),
     ("suite", schema::<SuiteDocument>),
     ("lint", schema::<LintDocument>),
@@ -55,6 +55,7 @@ pub const SCHEMAS: [(&str, MakeSchema); 8] = [
     ("assess", schema::<AssessmentDocument>),
     ("check", schema::<CheckDocument>),
     ("verify", schema::<VerificationDocument>),
+    ("inspect", schema::<InspectionDocument>),
 ];
 
 fn schema<T: JsonSchema>() -> Schema {
