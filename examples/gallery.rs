@@ -49,7 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         plan_figure(&run, &PlanDocument::of(&run), &natural)?.write(&picture(name, ""))?;
     }
     let scenario = read(SAILED)?;
-    let mut simulation = Simulation::new(scenario.clone(), false).map_err(|f| f.to_string())?;
+    let mut simulation =
+        Simulation::new(scenario.clone(), false).map_err(|faults| faults[0].to_string())?;
     while !simulation.finished() {
         simulation.step();
     }

@@ -2,6 +2,10 @@
 
 use std::borrow::Cow;
 
+use textwrap::{WordSeparator, WordSplitter};
+
+use crate::frame::knots_from_mps;
+
 /// Defines the names that the values of an enum have in files and on the command line.
 macro_rules! words {
     ($kind:ty { $($value:ident => $word:literal),+ $(,)? }) => {
@@ -116,6 +120,40 @@ pub(crate) fn tenths(value: f64) -> String {
     short_numbers(&format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0))
 }
 
+/// A line broken between words to a width, with an indent before all but the first. A number stays
+/// with its unit.
+pub fn broken(line: &str, width: usize, indent: &str) -> String {
+    const BOUND: char = '\u{a0}';
+    let mut bound = String::with_capacity(line.len());
+    let mut chars = line.chars().peekable();
+    let mut last = ' ';
+    while let Some(c) = chars.next() {
+        let is_unit = last.is_ascii_digit() && chars.peek().is_some_and(|c| c.is_alphabetic());
+        bound.push(if c == ' ' && is_unit { BOUND } else { c });
+        last = c;
+    }
+    let options = textwrap::Options::new(width)
+        .subsequent_indent(indent)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation);
+    textwrap::wrap(&bound, options)
+        .join("\n")
+        .replace(BOUND, " ")
+}
+
+/// Formats a speed, m/s, in knots with its unit.
+pub(crate) fn knots(speed: f64) -> String {
+    format!("{} kn", knots_figure(speed))
+}
+
+/// Formats a speed, m/s, in knots: one decimal, two below a knot.
+pub(crate) fn knots_figure(speed: f64) -> String {
+    let knots = knots_from_mps(speed);
+    let decimals = if (0.005..0.95).contains(&knots) { 2 } else { 1 };
+    format!("{knots:.decimals$}")
+}
+
 /// Formats one decimal with a sign; values that round to zero give `+0.0`.
 pub(crate) fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
@@ -146,6 +184,18 @@ mod tests {
             (tenths(-0.06), signed(0.06)),
             ("-0.1".into(), "+0.1".into())
         );
+    }
+
+    #[test]
+    fn a_number_stays_with_its_unit() {
+        let line = "closest to 'b': 61.4 m, starboard";
+        assert_eq!(
+            broken(line, 21, "  "),
+            "closest to 'b':\n  61.4 m, starboard"
+        );
+        assert_eq!(broken("8 (d)", 4, ""), "8\n(d)");
+        let speeds = [2.5, 0.05, 0.0, 0.48].map(knots);
+        assert_eq!(speeds, ["4.9 kn", "0.10 kn", "0.0 kn", "0.93 kn"]);
     }
 
     #[test]

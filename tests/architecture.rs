@@ -17,7 +17,7 @@ numerics:
 search:
 output:
 parallel:
-text:
+text: frame
 input: frame text
 geometry: tolerance frame numerics
 trajectory: frame tolerance geometry
@@ -69,7 +69,10 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("parquet", &["campaign/part.rs"]),
     ("statrs", &["campaign/bounds.rs"]),
     ("clap", &["cli/", "main.rs"]),
-    ("textwrap", &["cli/output/mod.rs"]),
+    (
+        "textwrap",
+        &["cli/output/mod.rs", "report/table.rs", "text.rs"],
+    ),
     ("to_degrees", &["frame.rs"]),
     ("to_radians", &["frame.rs"]),
     // nothing outside asks which planner it has

@@ -25,7 +25,7 @@ impl Simulation {
         })?;
         match begun {
             Ok(inner) => Ok(Self { inner }),
-            Err(fault) => Err(faults(None, &[fault])),
+            Err(found) => Err(faults(None, &found)),
         }
     }
 

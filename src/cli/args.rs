@@ -85,7 +85,7 @@ pub enum Command {
     /// Prints the completion script of a shell
     #[command(after_help = example!("searoom completions bash > ~/.local/share/bash-completion/completions/searoom"))]
     Completions(CompletionsArgs),
-    /// Prints the JSON schema of scenario files, or of the document of a command
+    /// Prints the JSON schema of scenario files, of thresholds, or of the document of a command
     #[command(after_help = example!("searoom schema scenario > scenario.schema.json"))]
     Schema(SchemaArgs),
 }
@@ -307,7 +307,7 @@ pub struct CompletionsArgs {
 
 #[derive(Debug, Args)]
 pub struct SchemaArgs {
-    /// A scenario file, or the command that prints the document with --json
+    /// A scenario file, a file of thresholds, or the command that prints the document with --json
     #[arg(value_name = "KIND", value_parser = PossibleValuesParser::new(schema_kinds()))]
     pub kind: String,
 }

@@ -4,10 +4,12 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
-use searoom::document::{PlanDocument, ScenarioComparisonDocument, SimulationDocument};
-use searoom::recording::{EntityContents, EntityTable, Recorded, TimelineContents};
+use searoom::document::{
+    InspectionDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument,
+    TimelineContents,
+};
+use searoom::recording::{EntityTable, Recorded};
 use searoom::report::{Display, comparison_table, plan_document_text, simulation_text};
-use serde::Serialize;
 use serde_json::Value;
 
 use super::args::InspectArgs;
@@ -30,7 +32,9 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
         return Ok(output.print(text.trim_end()));
     }
     let contents = Contents::of(&args.recording, &recorded);
-    Ok(output.show(args.json, &contents, || contents.text(output.display)))
+    Ok(output.show(args.json, &contents.document, || {
+        contents.text(output.display)
+    }))
 }
 
 /// Reads a recording. A panic of the decoder counts as an invalid file.
@@ -90,36 +94,12 @@ fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<Entit
     )
 }
 
-#[derive(Debug, Serialize)]
+/// The document, and what its text is made of.
 struct Contents {
-    file: String,
-    bytes: u64,
-    application: &'static str,
-    rerun_version: Option<String>,
-    /// Fields from the plan document; null without one.
-    scenario: Value,
-    planner: Value,
-    search: Value,
-    outcome: Value,
-    verified: Value,
-    safe: Value,
-    cost: Value,
-    search_stats: Value,
-    /// Escape; null unless own ship stands on.
-    escape: Value,
-    targets: Vec<Value>,
-    /// Entry of `compare --json`; null for a plan.
-    comparison: Value,
-    /// `simulate --json` without the motions and the estimates; null for a plan.
-    simulation: Value,
-    #[serde(skip)]
+    document: InspectionDocument,
     plan: Option<PlanDocument>,
-    #[serde(skip)]
     compared: Option<ScenarioComparisonDocument>,
-    #[serde(skip)]
     sailed: Option<SimulationDocument>,
-    timelines: Vec<TimelineContents>,
-    entities: Vec<EntityContents>,
 }
 
 /// A timeline with its range, to the millisecond.
@@ -148,7 +128,7 @@ impl Contents {
             .cloned();
         let field = |key: &str| document.get(key).cloned().unwrap_or_default();
         let names = document["encounters"].as_array().into_iter().flatten();
-        Self {
+        let inspection = InspectionDocument {
             file: file.display().to_string(),
             bytes: recorded.bytes,
             application: "searoom",
@@ -163,23 +143,27 @@ impl Contents {
             search_stats: field("search_stats"),
             escape: field("escape"),
             targets: names.cloned().collect(),
-            plan: serde_json::from_value(document).ok(),
-            compared: serde_json::from_value(comparison.clone()).ok(),
-            comparison,
-            sailed: serde_json::from_value(simulation.clone()).ok(),
-            simulation,
+            comparison: comparison.clone(),
+            simulation: simulation.clone(),
             timelines: recorded.timelines(),
             entities: recorded.entities(),
+        };
+        Self {
+            document: inspection,
+            plan: serde_json::from_value(document).ok(),
+            compared: serde_json::from_value(comparison).ok(),
+            sailed: serde_json::from_value(simulation).ok(),
         }
     }
 
     fn text(&self, display: Display) -> String {
         let mut lines = vec![format!(
             "{}: {:.0} kB, recorded by {} with Rerun {}",
-            self.file,
-            self.bytes as f64 / 1e3,
-            self.application,
-            self.rerun_version
+            self.document.file,
+            self.document.bytes as f64 / 1e3,
+            self.document.application,
+            self.document
+                .rerun_version
                 .as_deref()
                 .unwrap_or("of an unknown version")
         )];
@@ -190,9 +174,9 @@ impl Contents {
             (None, None, None) => "no plan document in it".to_owned(),
         });
         lines.push(String::new());
-        let timelines = list(&self.timelines, "none");
+        let timelines = list(&self.document.timelines, "none");
         lines.push(format!("Timelines: {timelines}"));
-        lines.push(format!("Entities: {}", self.entities.len()));
+        lines.push(format!("Entities: {}", self.document.entities.len()));
         let mut table = Table::new();
         table
             .load_style(presets::UTF8_HORIZONTAL_ONLY)
@@ -200,7 +184,7 @@ impl Contents {
             .set_header(["entity", "rows", "times", "components"])
             .force_no_tty();
         table.style_mut().row_separator = presets::NOTHING.row_separator;
-        for entity in &self.entities {
+        for entity in &self.document.entities {
             let short = |c: &String| c.rsplit(':').next().unwrap_or(c).to_owned();
             let components: Vec<String> = entity.components.iter().map(short).collect();
             table.add_row([

@@ -30,7 +30,9 @@ pub fn suite(scenes: Vec<Result<Scene, Refused>>, args: &SuiteArgs, output: &Out
         }));
     }
     let document = LintDocument::of(documents);
+    let some = document.scenarios.iter().any(|s| s.error.is_none());
     status.max(output.show(args.shared.written.json, &document, || {
-        lint_text(&document, output.display)
+        let text = some.then(|| lint_text(&document, output.display));
+        text.unwrap_or_default()
     }))
 }

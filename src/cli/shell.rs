@@ -2,6 +2,7 @@
 
 use clap::CommandFactory;
 use clap_complete::generate;
+use searoom::colregs::Thresholds;
 use searoom::document::SCHEMAS;
 use searoom::scenario;
 
@@ -9,8 +10,9 @@ use super::args::{Arguments, CompletionsArgs, SchemaArgs};
 use super::output::Output;
 use super::output::status::ExitStatus;
 
-/// The kind of schema that is of a file, not of a document.
+/// The kinds of schema that are of files, not of documents.
 const SCENARIO: &str = "scenario";
+const THRESHOLDS: &str = "thresholds";
 
 /// Prints the completion script, generated from the argument definitions.
 pub fn completions(args: &CompletionsArgs, output: &Output) -> ExitStatus {
@@ -23,13 +25,15 @@ pub fn completions(args: &CompletionsArgs, output: &Output) -> ExitStatus {
 
 /// The files and documents that have a schema.
 pub fn schema_kinds() -> impl Iterator<Item = &'static str> {
-    std::iter::once(SCENARIO).chain(SCHEMAS.iter().map(|(kind, _)| *kind))
+    let files = [SCENARIO, THRESHOLDS].into_iter();
+    files.chain(SCHEMAS.iter().map(|(kind, _)| *kind))
 }
 
 /// Prints a JSON schema.
 pub fn schema(args: &SchemaArgs, output: &Output) -> ExitStatus {
     match SCHEMAS.iter().find(|(kind, _)| *kind == args.kind) {
         Some((_, schema)) => output.document(&schema()),
+        None if args.kind == THRESHOLDS => output.document(&Thresholds::schema()),
         None => output.print(scenario::SCHEMA.trim_end()),
     }
 }

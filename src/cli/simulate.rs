@@ -9,8 +9,8 @@ use searoom::document::{
 };
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
+use searoom::scenario::ScenarioError;
 use searoom::scenario::import::Imported;
-use searoom::scenario::{Fault, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
@@ -97,7 +97,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
             }
         };
         status = status.max(output.document(&document));
-    } else if several {
+    } else if several && sailed {
         status = status.max(output.result(&simulations_line(&documents, failed)));
     }
     if sailed {
@@ -136,7 +136,7 @@ fn sail(
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);
-    let refused = |fault: Fault| ScenarioError::faults(file, scene.located(vec![fault]));
+    let refused = |faults| ScenarioError::faults(file, scene.located(faults));
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();

@@ -91,6 +91,10 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
     let written = output.written(report);
     let shown = output.show(args.shared.written.json, &document, || {
+        // the errors say all of files that hold no scenario
+        if document.runs.iter().all(|run| run.scenario.is_none()) {
+            return String::new();
+        }
         let table = suite_table(&document.runs, output.display);
         format!("{table}\n{}", document.summary)
     });

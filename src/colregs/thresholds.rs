@@ -6,6 +6,8 @@ use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_6;
 use std::path::Path;
 
+use serde_json::{Map, Value, json};
+
 use super::Sectors;
 use crate::frame::radians_from_deg;
 use crate::input::{Fault, Faults, Field, InputError, Range, from_toml, read_text};
@@ -362,6 +364,35 @@ impl Thresholds {
     pub fn read(file: &Path) -> Result<Self, InputError> {
         let text = read_text(file, FILE_MEBIBYTES, "a file of thresholds")?;
         Self::parse(&text).map_err(|faults| InputError::faults(file, faults))
+    }
+
+    /// The JSON schema (draft 7) of a file of thresholds, for editors.
+    pub fn schema() -> Value {
+        let line = json!({ "type": "string", "minLength": 1, "maxLength": 200 });
+        let like: Vec<&str> = PUBLISHED.iter().map(|set| &*set.name).collect();
+        let mut properties = Map::new();
+        properties.insert("name".to_owned(), line.clone());
+        properties.insert("source".to_owned(), line);
+        properties.insert("like".to_owned(), json!({ "enum": like }));
+        let numbers = NUMBERS.iter().map(|(key, range, _)| (key, range, "number"));
+        let counts = COUNTS.iter().map(|(key, range, _)| (key, range, "integer"));
+        let all: Vec<_> = numbers.chain(counts).collect();
+        properties.extend(all.iter().map(|(key, range, kind)| {
+            let limits = json!({ "type": kind, "minimum": range.low, "maximum": range.high });
+            ((**key).to_owned(), limits)
+        }));
+        let keys: Vec<_> = all.iter().map(|(key, ..)| key).collect();
+        json!({
+            "$schema": "http://json-schema.org/draft-07/schema#",
+            "title": "Thresholds of Searoom's compliance monitors",
+            "description": "docs/rules.md says what each key means; with 'like' absent keys are \
+                            those of a published set",
+            "type": "object",
+            "required": ["name", "source"],
+            "anyOf": [{ "required": ["like"] }, { "required": keys }],
+            "additionalProperties": false,
+            "properties": properties,
+        })
     }
 
     /// [`Thresholds::read`] of a text.

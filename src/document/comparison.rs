@@ -36,9 +36,18 @@ pub struct EntryDocument {
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
     pub breaks: Option<Vec<String>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collision: Option<CollisionDocument>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
     pub track: Vec<TrackPointDocument>,
+}
+
+/// The first contact of a motion that collides, to a second.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CollisionDocument {
+    pub with: String,
+    pub t_s: f64,
 }
 
 /// Position at a time.

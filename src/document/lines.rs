@@ -4,13 +4,14 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ControlDocument, CostDocument, EncounterDocument, EscapeDocument, ManoeuvreDocument,
-    MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
+    ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
+    ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
+    conduct_breaks,
 };
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
-use crate::text::{printable, rounded, signed, square_metres, tenths};
+use crate::text::{counted, knots, printable, rounded, signed, square_metres, tenths};
 
 const LISTED: usize = 3;
 
@@ -78,7 +79,7 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     if let Some(escape) = &plan.escape {
         add("stands on", stand_on(escape));
     }
-    encounter_lines(plan, &mut add);
+    target_lines(plan, &mut add);
     if let Some(cost) = &plan.cost {
         cost_lines(plan, cost, &mut add);
     }
@@ -182,100 +183,154 @@ fn stand_on(escape: &EscapeDocument) -> String {
         0.0 => String::new(),
         turn => {
             let side = if turn > 0.0 { "starboard" } else { "port" };
-            format!("a turn of {:.0}° to {side} at ", turn.abs())
+            format!("a turn of {:.0}° to {side} ", turn.abs())
         }
     };
     format!(
         "course and speed are held until {held_until_s:.1} s, then there is a clear escape: \
-         {turn}{speed_mps:.2} m/s"
+         {turn}at {}",
+        knots(*speed_mps)
     )
 }
 
-fn encounter_lines(plan: &PlanDocument, add: &mut Add) {
-    let met = met(&plan.encounters);
-    if met.is_empty() {
-        add("encounter", "none".to_owned());
+/// A block per target: own ship's role, the closest approach, the manoeuvre, and what the judges
+/// say of the plan. Targets without a role follow in one line each, the nearest first.
+fn target_lines(plan: &PlanDocument, add: &mut Add) {
+    if plan.encounters.is_empty() {
+        add("target", "none".to_owned());
     }
-    let apart = |e: &EncounterDocument| Some((e.dcpa_m?, e.tcpa_s?, e.target.clone()));
-    let all = plan.encounters.iter().filter_map(apart);
-    let nearest = all.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
-    let count_met = met.len();
+    let altered = altered_for(plan);
+    let matters = |e: &EncounterDocument| {
+        let judged = (e.conduct.as_ref())
+            .is_some_and(|c| !c.roles.is_empty() || !conduct_breaks(c).is_empty());
+        e.role != "none" || judged || altered.contains(&e.target)
+    };
+    let by = |key: fn(&EncounterDocument) -> Option<f64>| {
+        let key = move |e: &EncounterDocument| key(e).unwrap_or(f64::INFINITY);
+        move |a: &&EncounterDocument, b: &&EncounterDocument| key(a).total_cmp(&key(b))
+    };
+    let (mut met, mut others): (Vec<_>, Vec<_>) = plan.encounters.iter().partition(|e| matters(e));
+    met.sort_by(by(|e| e.undisturbed_tcpa_s));
+    others.sort_by(by(|e| e.dcpa_m.or(e.undisturbed_dcpa_m)));
     for encounter in met {
-        let undisturbed = match encounter.undisturbed_dcpa_m {
-            Some(distance) if distance > 0.0 => format!("{distance:.1} m"),
-            _ => "collision".to_owned(),
-        };
-        let (role, target) = (&encounter.role, &encounter.target);
-        let time = encounter.undisturbed_tcpa_s.unwrap_or(f64::NAN);
-        let text = format!("{role} with '{target}': undisturbed {undisturbed} at {time:.0} s");
-        add("encounter", text);
-        if let (Some(dcpa), Some(tcpa)) = (encounter.dcpa_m, encounter.tcpa_s) {
-            let passing = passing(encounter);
-            let text = format!("expected {dcpa:.1} m at {tcpa:.0} s, passing {passing}");
-            add("", text);
+        let EncounterDocument { target, role, .. } = encounter;
+        add("target", format!("'{target}': {}", roles(encounter)));
+        let apart = apart(encounter, true);
+        if !apart.is_empty() {
+            add("", apart);
+        }
+        if let Some(conduct) = &encounter.conduct {
+            conduct_lines(plan, conduct, add);
+        }
+        if plan.compliance == "rules" && role == "none" && altered.contains(target) {
+            let text = "gives no role: the rules do not restrict the alteration for it";
+            add("", text.to_owned());
         }
     }
-    // with one target in an encounter it is in the lines above
-    if let Some((dcpa, tcpa, target)) = nearest
-        && (plan.encounters.len() > 1 || count_met == 0)
-    {
+    let more = others.len().saturating_sub(LISTED);
+    for encounter in others.into_iter().take(LISTED) {
+        let text = [
+            format!("'{}': no role", encounter.target),
+            apart(encounter, false),
+        ];
+        let text: Vec<String> = text.into_iter().filter(|part| !part.is_empty()).collect();
+        add("target", text.join("; "));
+    }
+    if more > 0 {
         add(
-            "closest",
-            format!("expected {dcpa:.1} m to '{target}' at {tcpa:.0} s"),
+            "",
+            format!("and {more} more without a role, none of them nearer"),
         );
-    }
-    for target in targets_without_role(plan) {
-        let text = format!("'{target}' gives no role: they do not restrict the alteration for it");
-        add("rules", text);
-    }
-    for encounter in &plan.encounters {
-        let Some(conduct) = encounter.conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
-            continue;
-        };
-        let roles = conduct.roles.iter();
-        let roles = roles.map(|r| format!("{} {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
-        let roles = roles.collect::<Vec<_>>().join(", ");
-        add("rules", format!("'{}': {roles}", encounter.target));
-        let scores = conduct
-            .scores
-            .iter()
-            .filter(|(_, score)| **score < FULL_SCORE);
-        let scores: Vec<String> = scores
-            .map(|(name, score)| format!("{} {score:.2} of 1", name.replace('_', " ")))
-            .collect();
-        if !scores.is_empty() {
-            add("", format!("scores: {}", scores.join(", ")));
-        }
-        if let Some(manoeuvre) = &conduct.manoeuvre {
-            add("", manoeuvre_text(manoeuvre));
-        }
-        for violation in &conduct.violations {
-            let (rule, time, what) = (&violation.rule, violation.t_s, &violation.what);
-            add("", format!("violates {rule} at {time:.0} s: {what}"));
-        }
-        for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
-            add("", monitor_text(plan, monitor));
-        }
     }
 }
 
-/// The tracked ships that give own ship no role, but for which a plan by the rules alters course or
-/// speed.
-fn targets_without_role(plan: &PlanDocument) -> BTreeSet<String> {
-    let legs = if plan.compliance == "rules" {
-        plan.legs()
-    } else {
-        Vec::new()
+/// Own ship's role on the desired trajectory, and its roles along the plan where these differ.
+fn roles(encounter: &EncounterDocument) -> String {
+    let role = match encounter.role.as_str() {
+        "none" => "no role",
+        "static" => "at rest, so without a role",
+        role => role,
     };
-    let targets = legs.into_iter().filter_map(|leg| leg.because_of);
-    let without = |target: &String| {
-        let mut encounters = plan.encounters.iter();
-        encounters.any(|e| {
-            let unjudged = e.conduct.as_ref().is_some_and(|c| c.roles.is_empty());
-            e.target == *target && e.role == "none" && unjudged
-        })
+    let Some(conduct) = &encounter.conduct else {
+        return role.to_owned();
     };
-    targets.filter(without).collect()
+    let along = conduct.roles.iter();
+    let along = along.map(|r| format!("{} from {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
+    let along: Vec<String> = along.collect();
+    let first = conduct.roles.first().map(|role| role.role.as_str());
+    match first {
+        Some(first) if first == encounter.role => along.join(", "),
+        Some(_) => format!(
+            "{role} on the desired trajectory; on the plan {}",
+            along.join(", ")
+        ),
+        None if ["none", "static"].contains(&encounter.role.as_str()) => role.to_owned(),
+        None => format!("{role} on the desired trajectory, no role on the plan"),
+    }
+}
+
+/// The closest approach of the plan, and with `desired` that of the desired trajectory, for the
+/// expected motion of the target.
+fn apart(encounter: &EncounterDocument, desired: bool) -> String {
+    let mut parts = Vec::new();
+    if let (Some(distance), Some(time)) = (encounter.dcpa_m, encounter.tcpa_s) {
+        let side = match (&encounter.passing_side, encounter.crosses_astern) {
+            (None, _) => String::new(),
+            (Some(side), None) => format!(", to {side}"),
+            (Some(side), Some(true)) => format!(", to {side}, own ship crosses astern"),
+            (Some(side), Some(false)) => format!(", to {side}, own ship crosses ahead"),
+        };
+        parts.push(format!(
+            "closest {} m at {time:.0} s{side}",
+            tenths(distance)
+        ));
+    }
+    let undisturbed = encounter
+        .undisturbed_dcpa_m
+        .zip(encounter.undisturbed_tcpa_s);
+    if let Some((distance, time)) = undisturbed.filter(|_| desired || parts.is_empty()) {
+        let what = match distance > 0.0 {
+            true => format!("{} m", tenths(distance)),
+            false => "a collision".to_owned(),
+        };
+        parts.push(format!("on the desired trajectory {what} at {time:.0} s"));
+    }
+    parts.join("; ")
+}
+
+/// The manoeuvre, the rules that own ship breaks toward a target, and its scores.
+fn conduct_lines(plan: &PlanDocument, conduct: &ConductDocument, add: &mut Add) {
+    if let Some(manoeuvre) = &conduct.manoeuvre {
+        add("", manoeuvre_text(manoeuvre));
+    }
+    for violation in &conduct.violations {
+        let (rule, time, what) = (&violation.rule, violation.t_s, &violation.what);
+        add("", format!("breaks {rule} at {time:.0} s: {what}"));
+    }
+    for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
+        add("", monitor_text(plan, monitor));
+    }
+    // without a role nobody asks for the scores
+    let scores = conduct.scores.iter();
+    let scores = scores.filter(|(_, score)| !conduct.roles.is_empty() && **score < FULL_SCORE);
+    let scores: Vec<String> = scores
+        .map(|(name, score)| format!("{} {score:.2} of 1", name.replace('_', " ")))
+        .collect();
+    let unbroken = !conduct.roles.is_empty() && conduct_breaks(conduct).is_empty();
+    let said = [
+        unbroken.then(|| "breaks no rule".to_owned()),
+        (!scores.is_empty()).then(|| format!("scores: {}", scores.join(", "))),
+    ];
+    let said: Vec<String> = said.into_iter().flatten().collect();
+    if !said.is_empty() {
+        add("", said.join("; "));
+    }
+}
+
+/// The targets for which the plan alters course or speed.
+fn altered_for(plan: &PlanDocument) -> BTreeSet<String> {
+    let legs = plan.legs().into_iter();
+    legs.filter_map(|leg| leg.because_of).collect()
 }
 
 /// What own ship did against a monitor, when, and by how much. The limits are named if the profile
@@ -311,34 +366,40 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
     };
     let time = monitor.t_s.unwrap_or(f64::NAN);
     let name = &monitor.monitor;
-    format!("{what} ({name}): at {time:.0} s{short}")
+    format!("breaks {name} at {time:.0} s: {what}{short}")
 }
 
 /// The manoeuvre as a navigator looks at it.
 fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
-    let count = |count: usize, what: &str| match count {
-        0 => format!("no {what}"),
-        1 => format!("1 {what}"),
-        _ => {
-            let what = what.replacen("change", "changes", 1);
-            format!("{count} {}", what.replace("turn", "turns"))
-        }
-    };
+    if manoeuvre.lead_s.is_none() && manoeuvre.turns + manoeuvre.speed_changes == 0 {
+        return "no alteration for it".to_owned();
+    }
     let first = match manoeuvre.lead_s {
         None => "no alteration".to_owned(),
         // without a negative zero
         Some(lead) => {
             let lead = lead.round() + 0.0;
-            format!("first alteration {lead} s before the closest approach")
+            format!("first alteration {lead} s before the closest approach without it")
         }
     };
-    let smallest = match manoeuvre.smallest_turn_deg {
-        Some(degrees) if manoeuvre.turns > 0 => format!(" of {degrees:.0}° or more"),
-        _ => String::new(),
+    let smallest = manoeuvre
+        .smallest_turn_deg
+        .map(|degrees| match manoeuvre.turns {
+            1 => format!(" of {degrees:.0}°"),
+            _ => format!(" of {degrees:.0}° or more"),
+        });
+    let turns = counted(manoeuvre.turns, "turn") + &smallest.unwrap_or_default();
+    let speeds = match manoeuvre.speed_changes {
+        1 => "1 change of speed".to_owned(),
+        count => format!("{count} changes of speed"),
     };
-    let turns = count(manoeuvre.turns, "turn");
-    let speeds = count(manoeuvre.speed_changes, "change of speed");
-    format!("manoeuvre: {first}, {turns}{smallest}, {speeds}")
+    let parts = [(manoeuvre.turns, turns), (manoeuvre.speed_changes, speeds)];
+    let parts = parts.into_iter().filter(|(count, _)| *count > 0);
+    let parts: Vec<String> = parts.map(|(_, part)| part).collect();
+    match parts.is_empty() {
+        true => first,
+        false => format!("{first}: {}", parts.join(", ")),
+    }
 }
 
 fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
@@ -517,21 +578,21 @@ mod tests {
         );
         assert_eq!(
             said("R4", "deg", false, name),
-            "did not turn 20° to starboard within 200 s and before the target was past (R4): \
-             at 40 s, missed by 12°"
+            "breaks R4 at 40 s: did not turn 20° to starboard within 200 s and before the target \
+             was past, missed by 12°"
         );
         assert!(said("R3", "deg", true, name).contains(&late));
         assert_eq!(
             said("R6", "deg", false, name),
-            "did not hold its course within 10° (R6): at 40 s, missed by 12°"
+            "breaks R6 at 40 s: did not hold its course within 10°, missed by 12°"
         );
         assert_eq!(
             said("S", "m", false, "mine"),
-            "did not keep the hulls apart (S): at 40 s, missed by 11.2 m"
+            "breaks S at 40 s: did not keep the hulls apart, missed by 11.2 m"
         );
         // a profile of a file has limits of its own
         assert!(said("R5", "deg", false, "mine").starts_with(
-            "did not turn far enough or halve its speed in time and before the target was past"
+            "breaks R5 at 40 s: did not turn far enough or halve its speed in time and before"
         ));
     }
 
@@ -542,7 +603,7 @@ mod tests {
         let mut plan = PlanDocument::of(&run);
         let scores = |plan: &PlanDocument| {
             let mut lines = plan_lines(plan).into_iter();
-            lines.find_map(|(_, line)| Some(line.strip_prefix("scores: ")?.to_owned()))
+            lines.find_map(|(_, line)| Some(line.split_once("scores: ")?.1.to_owned()))
         };
         let conduct = |plan: &mut PlanDocument, score| {
             let conduct = plan.encounters[0].conduct.as_mut().expect("a ship");

@@ -26,7 +26,7 @@ use serde_json::Serializer;
 use serde_json::ser::{Formatter, PrettyFormatter};
 
 pub use assessment::*;
-pub use check::{CheckDocument, CheckedDocument, FaultDocument};
+pub use check::*;
 pub use comparison::*;
 pub use encounter::*;
 pub(crate) use lines::{
@@ -60,6 +60,7 @@ pub const SCHEMAS: [(&str, MakeSchema); 9] = [
     ("assess", schema::<AssessmentDocument>),
     ("check", schema::<CheckDocument>),
     ("verify", schema::<VerificationDocument>),
+    ("inspect", schema::<InspectionDocument>),
 ];
 
 fn schema<T: JsonSchema>() -> Schema {

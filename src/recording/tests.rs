@@ -9,7 +9,7 @@ use rerun::{ChunkStore, ChunkStoreConfig};
 use super::canvas::ViewModel;
 use super::views::curves;
 use super::*;
-use crate::document::PlanDocument;
+use crate::document::{EntityContents, PlanDocument};
 use crate::evaluation::Violation;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};

@@ -2,9 +2,9 @@
 
 use super::table::{Display, Grid, plain};
 use crate::document::{AssessmentDocument, InitialSetDocument};
-use crate::frame::course_deg_from_heading;
+use crate::frame::{course_deg_from_heading, knots_from_mps};
 use crate::study::assess::OwnSituation;
-use crate::text::{counted, tenths};
+use crate::text::{counted, knots, tenths};
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.
@@ -61,9 +61,9 @@ fn held(situation: &OwnSituation, assessment: &AssessmentDocument, display: Disp
     });
     let header = "target, dCPA\n[m], tCPA\n[s], largest\nrisk";
     format!(
-        "Holding course {} at {:.2} m/s\n{}",
+        "Holding course {} at {}\n{}",
         course(situation.pose.heading),
-        situation.speed,
+        knots(situation.speed),
         table(header, 1..4, rows, display)
     )
 }
@@ -81,14 +81,15 @@ fn alteration(situation: &OwnSituation, assessment: &AssessmentDocument) -> Stri
         });
     }
     ways.push(match found.speed_mps {
-        Some(change) if change < 0.0 => format!("{:.2} m/s slower", up(-change)),
-        Some(change) => format!("{:.2} m/s faster", up(change)),
+        Some(change) if change < 0.0 => format!("{:.2} kn slower", up(knots_from_mps(-change))),
+        Some(change) => format!("{:.2} kn faster", up(knots_from_mps(change))),
         None => "no change of speed".to_owned(),
     });
     let alone = "Alteration that leaves every velocity obstacle, each alone: ";
     if found.starboard_deg.is_none() && found.port_deg.is_none() && found.speed_mps.is_none() {
         let limit = situation.max_speed.max(situation.speed);
-        return format!("{alone}none, neither a turn nor a speed up to {limit:.2} m/s");
+        let limit = knots(limit);
+        return format!("{alone}none, neither a turn nor a speed up to {limit}");
     }
     format!("{alone}{}", ways.join("; "))
 }

@@ -2,8 +2,9 @@
 
 use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
 use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
-use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
+use crate::document::{CollisionDocument, CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
+use crate::obstacle::LAND;
 use crate::text::{signed, square_metres, tenths};
 
 pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
@@ -87,7 +88,8 @@ pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let groups = groups(entries);
     let header = "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
                   clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks";
-    let mut grid = Grid::new(header, 2..12, groups.iter().map(|group| row(group)));
+    let rows = groups.iter().map(|group| row(group));
+    let mut grid = Grid::new(header, 2..12, rows).breaking("method");
     if is_sweep(entries) {
         grid.header.insert(2, "accepted\nrisk");
         grid.numbers.end += 1;
@@ -165,6 +167,21 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
         let why = "the motion is not safe, so its J is no measure of it";
         lines.push(format!("J in brackets: {why}"));
     }
+    let mut collided: Vec<String> = Vec::new();
+    for entry in entries {
+        let Some(CollisionDocument { with, t_s }) = &entry.collision else {
+            continue;
+        };
+        let with = match with.as_str() {
+            LAND => with.clone(),
+            name => format!("'{name}'"),
+        };
+        let line = format!("{}: collides with {with} at {t_s:.0} s", entry.method);
+        if !collided.contains(&line) {
+            collided.push(line);
+        }
+    }
+    lines.append(&mut collided);
     let mut methods: Vec<&str> = Vec::new();
     for entry in entries {
         let method = entry.method.as_str();

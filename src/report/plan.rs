@@ -12,7 +12,7 @@ use crate::document::{
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
-use crate::text::{counted, printable, signed, square_metres, tenths};
+use crate::text::{counted, knots_figure, printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
@@ -190,15 +190,15 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
             plain(tenths(motion.start_time)),
             plain(tenths(motion.end_time())),
             plain(format!("{course:03.0}")),
-            plain(format!("{:.2}", motion.speed)),
+            plain(knots_figure(motion.speed)),
             plain(format!("{:.0}", motion.length())),
             plain(turn),
             plain(leg.events.join("\n")),
         ]
     };
     let header =
-        "leg, from\n[s], to\n[s], course\n[°], speed\n[m/s], length\n[m], turn, what happens";
-    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row))
+        "leg, from\n[s], to\n[s], course\n[°], speed\n[kn], length\n[m], turn, what happens";
+    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row)).breaking("what happens")
 }
 
 /// Formats the line for the time of no return.

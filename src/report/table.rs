@@ -1,26 +1,31 @@
 //! Tables for a terminal, and number formats of tables.
 
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
+use textwrap::core::display_width;
 
-use crate::text::printable_lines;
+use crate::text::{broken, printable_lines};
 
 /// Least width for which columns are dropped, in characters. Narrower tables are cards.
 const CARD_WIDTH: usize = 80;
 
 /// Columns that a table drops first where it is too wide, in this order. Cards have none of them.
-const DETAILS: [&str; 10] = [
-    "J", "arc J", "nodes", "time", "risk", "delay", "duration", "length", "to", "leg",
+const DETAILS: [&str; 9] = [
+    "arc J", "nodes", "time", "risk", "delay", "duration", "length", "to", "leg",
 ];
 
 /// Columns that a table drops next, in this order.
-const FURTHER: [&str; 6] = [
+const FURTHER: [&str; 7] = [
     "passing",
     "verified",
     "encounter",
     "largest",
     "turn",
     "clearance",
+    "J",
 ];
+
+/// Least width of a column whose lines are broken before another column is dropped, in characters.
+const BROKEN_WIDTH: usize = 22;
 
 /// Where a text is shown. The default is a file: no colour, and as wide as need be.
 #[derive(Debug, Clone, Copy, Default)]
@@ -50,6 +55,8 @@ pub(super) struct Grid {
     /// Range of numeric columns.
     pub numbers: std::ops::Range<usize>,
     pub rows: Vec<Vec<Styled>>,
+    /// The column whose lines may be broken where the table is too wide.
+    breaking: Option<&'static str>,
 }
 
 impl Grid {
@@ -63,6 +70,15 @@ impl Grid {
             header: names.split(", ").collect(),
             numbers,
             rows: rows.into_iter().collect(),
+            breaking: None,
+        }
+    }
+
+    /// Allows lines of a column to be broken.
+    pub fn breaking(self, name: &'static str) -> Self {
+        Self {
+            breaking: Some(name),
+            ..self
         }
     }
 
@@ -80,25 +96,51 @@ impl Grid {
         self
     }
 
-    /// Formats the table for a terminal. A table that is too wide drops columns until it fits, and
-    /// breaks lines if it still does not. A narrow terminal shows a card per row instead.
+    /// Formats the table for a terminal. A table that is too wide breaks the lines of one column and
+    /// drops others until it fits, and breaks all lines if it still does not. A narrow terminal
+    /// shows a card per row instead.
     pub fn text(self, display: Display) -> String {
         let width = display.width.unwrap_or(usize::MAX);
-        // the border, a single line, is as wide as the table
-        let border = |table: &Table| table.lines().next().map_or(0, |line| line.chars().count());
-        let fits = |grid: &Self| border(&grid.table(display)) <= width;
-        if width < CARD_WIDTH && !fits(&self) {
+        if width < CARD_WIDTH && self.width(display) > width {
             let without = |grid: Self, name: &&str| grid.without(name);
             return DETAILS.iter().fold(self, without).cards(display);
         }
         let mut grid = self;
         for name in DETAILS.into_iter().chain(FURTHER) {
-            if fits(&grid) {
-                return grid.table(display).trim_fmt();
-            }
-            grid = grid.without(name);
+            grid = match grid.fitted(width, display) {
+                Ok(fitted) => return fitted.table(display).trim_fmt(),
+                Err(wide) => wide.without(name),
+            };
         }
         wrapped(grid.table(display), display).trim_fmt()
+    }
+
+    fn width(&self, display: Display) -> usize {
+        // the border, a single line, is as wide as the table
+        let table = self.table(display);
+        table.lines().next().map_or(0, |line| line.chars().count())
+    }
+
+    /// The table with lines broken so that it fits; itself where it is too wide for that.
+    fn fitted(mut self, width: usize, display: Display) -> Result<Self, Self> {
+        let Some(excess) = self.width(display).checked_sub(width).filter(|n| *n > 0) else {
+            return Ok(self);
+        };
+        let is_it = |header: &&str| Some(*header) == self.breaking;
+        let Some(column) = self.header.iter().position(is_it) else {
+            return Err(self);
+        };
+        let cells = self.rows.iter().map(|row| &row[column].0);
+        let widest = cells.flat_map(|cell| cell.lines()).map(display_width).max();
+        let room = widest.unwrap_or(0).saturating_sub(excess);
+        if room < BROKEN_WIDTH {
+            return Err(self);
+        }
+        for row in &mut self.rows {
+            let lines = row[column].0.lines().map(|line| broken(line, room, "  "));
+            row[column].0 = lines.collect::<Vec<_>>().join("\n");
+        }
+        Ok(self)
     }
 
     fn table(&self, display: Display) -> Table {

@@ -9,7 +9,7 @@ use super::{Behaviour, NotReported, explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{
     Pose, Vector, course_deg_from_heading, deg_from_radians, heading_from_course_deg,
-    radians_from_deg, wrap,
+    mps_from_knots, radians_from_deg, wrap,
 };
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::input::{Field, Table};
@@ -176,13 +176,20 @@ fn motion(table: &mut Table, plane: &Plane) -> Option<(Motion, Representation)> 
 }
 
 fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
-    let pose = pose(table, plane);
+    let has_route = table.has("waypoints");
+    let has_course = table.has("course_deg") || !has_route;
+    let pose = match has_course {
+        true => pose(table, plane),
+        // the first leg of the route gives the course
+        false => plane
+            .required_position(table)
+            .map(|place| Pose::new(place, 0.0)),
+    };
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(table);
     let position_std = table.number("position_std_m", limits::DISTANCE);
     let domain = table.read_or("domain", DomainKind::Colregs, domain);
     let given = table.has("velocity_set").then(|| velocities(table));
-    let has_route = table.has("waypoints");
     let start = pose.map(|pose| pose.position);
     let route = route(table, plane, start, speed);
     let time_spread = table.number("time_spread_s", limits::TIME_SPREAD);
@@ -205,7 +212,7 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
         ..ShipTrack::exact(pose?, speed?, hull?)
     };
     if has_route {
-        return on_route(ship, route?);
+        return on_route(ship, has_course, route?);
     }
     let Some(given) = given else {
         return Some(ship);
@@ -267,16 +274,18 @@ fn route<'a>(
     Some(([field, speeds_field], legs.collect()))
 }
 
-/// The ship on its route, if its course and speed are those of the first leg within what it may do.
+/// The ship on its route, if its course, where it is given, and its speed are those of the first leg
+/// within what it may do.
 fn on_route(
     ship: ShipTrack,
+    has_course: bool,
     ([field, speeds_field], route): ([Field; 2], Vec<KnownLeg>),
 ) -> Option<ShipTrack> {
     let (course, speed) = (ship.pose.heading, ship.speed);
     let (widest, fastest) = (ship.course_half_width(), ship.speed_half_width());
     let ship = ship.with_route(route);
     let off = wrap(course - ship.pose.heading).abs();
-    if !(off <= widest + radians_from_deg(ROUTE_COURSE_DEG)) {
+    if has_course && !(off <= widest + radians_from_deg(ROUTE_COURSE_DEG)) {
         let found = format_args!(
             "a first leg of course {:.1}°, which is {:.1}° from course_deg",
             course_deg_from_heading(ship.pose.heading),
@@ -288,7 +297,12 @@ fn on_route(
         );
     }
     if !((speed - ship.speed).abs() <= fastest + tolerance::ALTERATION_MPS) {
-        let found = format_args!("{:.3} m/s first, and {speed:.3} m/s now", ship.speed);
+        let (unit, size) = match speeds_field.path().ends_with("_kn") {
+            true => ("kn", mps_from_knots(1.0)),
+            false => ("m/s", 1.0),
+        };
+        let [first, now] = [ship.speed, speed].map(|speed| speed / size);
+        let found = format_args!("{first:.3} {unit} first, and {now:.3} {unit} now");
         return speeds_field.reject(found, "a first speed within the spread of the present one");
     }
     Some(ship)

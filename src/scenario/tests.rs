@@ -231,6 +231,24 @@ fn a_route_of_a_target_agrees_with_its_course_and_speed() {
             Err(_) => assert_eq!(paths(&text), expected, "{keys}"),
         }
     }
+    // the course follows from the route where it is not given, and speeds have the unit of their key
+    let ship_on = |legs: &str| {
+        let route = "waypoints = [{ east_m = 1000, north_m = 500 }]";
+        format!(
+            "{SCENARIO}\n{}{route}\n{legs}",
+            ship.replace("course_deg = 270\n", "")
+        )
+    };
+    let scenario = Scenario::parse(&ship_on("")).expect("valid");
+    let heading = scenario.targets[0].ship().expect("a ship").pose.heading;
+    assert!(
+        (heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12,
+        "{heading}"
+    );
+    let faults = Scenario::parse(&ship_on("leg_speeds_kn = [10]")).expect_err("too fast");
+    assert_eq!(faults[0].found, "10.000 kn first, and 9.719 kn now");
+    let without = format!("{SCENARIO}\n{}", ship.replace("course_deg = 270\n", ""));
+    assert_eq!(paths(&without), ["targets[0].course_deg"]);
     let risky = format!(
         "{SCENARIO}[planner]\nmax_risk = 0.1\n{ship}waypoints = [{{ east_m = 500, north_m = 0 }}]"
     );

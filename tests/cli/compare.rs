@@ -25,6 +25,7 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     // who rams is told, and of nobody else anything
     says(&drawn, "Overtaking: trajectories | hold course: COLLIDES");
     assert!(!drawn.contains("A*: ") && !drawn.contains("NaN"));
+    says(&shown, "hold course: collides with 'target' at ");
     // the same whatever runs at the same time, but for the times
     let json = |threads: &str| {
         let assert = Command::new(env!("CARGO_BIN_EXE_searoom"))
@@ -42,6 +43,11 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     assert_eq!(entries[1]["max_risk"], 0.2);
     assert_eq!(entries[14]["method"], "hold course");
     assert_eq!(entries[14]["verified"], false);
+    // the first contact, before the centres would meet at 150 s
+    assert_eq!(entries[14]["collision"]["with"], "target");
+    let contact = number(&entries[14]["collision"]["t_s"]);
+    assert!((145.0..150.0).contains(&contact), "{contact}");
+    assert!(entries[0].get("collision").is_none());
     assert!(entries.iter().all(|e| list(&e["track"]).len() > 10));
 }
 

@@ -58,7 +58,7 @@ fn inspect_tells_what_the_rules_say() {
     let [said, lanes] = plan("shape");
     says(
         &said,
-        "stand-on 0 to | scores: rule 17  | violates 17(c) at",
+        "stand-on from 0 to | breaks 17(c) at | scores: rule 17 ",
     );
     says(&lanes, "target: stand-on | target: violates");
     let [said, lanes] = plan("rules");

@@ -76,6 +76,49 @@ fn plan_documents_fit_their_schema() {
     schema.assert_holds(&plan, "after another");
 }
 
+/// The file in the docs, and one that lacks what it needs.
+#[test]
+fn a_file_of_thresholds_fits_its_schema() {
+    let schema = Schema::of("thresholds");
+    let page = include_str!("../../docs/rules.md");
+    let file = page.split("```text\nname").nth(1).expect("a file");
+    let file = format!("name{}", file.split("```").next().expect("its end"));
+    let value: Value = toml::from_str(&file).expect("TOML");
+    assert!(schema.validator.is_valid(&value), "{value}");
+    for (old, new) in [
+        ("like", "#"),
+        ("6.0", "181"),
+        ("apparent_deg", "apparant_deg"),
+    ] {
+        let wrong: Value = toml::from_str(&file.replacen(old, new, 1)).expect("TOML");
+        assert!(!schema.validator.is_valid(&wrong), "{new}");
+    }
+    let folder = Folder::new();
+    let file = folder.write("mine.toml", file);
+    run(&format!(
+        "plan scenarios/colregs/give-way.toml --thresholds {file}"
+    ))
+    .success();
+}
+
+/// The contents of recordings of every kind.
+#[cfg(feature = "recording")]
+#[test]
+fn contents_of_recordings_fit_their_schema() {
+    let schema = Schema::of("inspect");
+    let folder = Folder::new();
+    let file = folder.at("a.rrd");
+    for words in [
+        "plan scenarios/colregs/stand-on.toml",
+        "compare scenarios/colregs/stand-on.toml --planner space-time",
+        "simulate scenarios/colregs/stand-on.toml --duration-s 20",
+    ] {
+        run(&format!("{words} --rrd {file} --quiet"));
+        let contents = document(&run(&format!("inspect {file} --json")).success());
+        schema.assert_holds(&contents, words);
+    }
+}
+
 /// Every other document, with what is wrong in it.
 #[test]
 fn other_documents_fit_their_schemas() {

@@ -20,7 +20,8 @@ fn tables_fit_the_terminal() {
             let (table, _) = text.rsplit_once('─').expect("a table");
             let fits = |line: &str| line.chars().count() <= width;
             assert!(table.lines().all(fits), "{width}: {text}");
-            assert!(table.contains("safe") && table.contains("breaks"), "{text}");
+            let kept = ["safe", "breaks", " J  "];
+            assert!(kept.iter().all(|name| table.contains(name)), "{text}");
             assert_eq!(table.contains("nodes"), width == 200, "{text}");
         }
         let whole = shown(words, None);
@@ -41,6 +42,81 @@ fn tables_fit_the_terminal() {
         "{cards}"
     );
     assert!(!cards.contains('─') && !cards.contains("nodes"), "{cards}");
+}
+
+/// Legs keep their turns; what happens on them is broken into lines.
+#[test]
+fn legs_keep_their_turns_in_a_narrow_terminal() {
+    for scenario in [
+        "scenarios/harbour/munkholmen.toml",
+        "scenarios/harbour/canal-transit.toml",
+        "scenarios/dnv/traffic_situation_55.json",
+    ] {
+        let mut command = command(&["plan", scenario]);
+        let text = stdout(&command.env("COLUMNS", "80").assert());
+        let header = text.lines().find(|line| line.contains("what happens"));
+        let header = header.expect("a table of legs");
+        assert!(
+            header.contains("turn") && header.contains("speed"),
+            "{text}"
+        );
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 80),
+            "{text}"
+        );
+        assert!(text.contains("  [kn]") && !text.contains("m/s"), "{text}");
+    }
+}
+
+/// A ship has one block: its role, the closest approach and what the judges say, or one line.
+#[test]
+fn every_target_of_a_plan_has_one_block() {
+    let text = stdout(&run("plan scenarios/harbour/munkholmen.toml").success());
+    for name in ["ferry", "leisure boat", "tug"] {
+        assert_eq!(
+            text.matches(&format!("  target       '{name}': ")).count(),
+            1,
+            "{text}"
+        );
+    }
+    let both = "head-on on the desired trajectory, no role on the plan\n";
+    let new = "'tug': no role on the desired trajectory; on the plan give-way from 24 to 376 s\n";
+    assert!(text.contains(both) && text.contains(new), "{text}");
+    let text = stdout(&run("plan scenarios/harbour/ferry-crossing.toml").success());
+    let without = "  target       'launch': no role; closest 422.5 m at 226 s, to port\n";
+    assert!(text.contains(without), "{text}");
+    // a rule that is broken without a role is named, too
+    let text = stdout(&run("plan tests/faults/infeasible-at-goal.toml").code(1));
+    assert!(
+        text.contains("; breaks R1, S)") && text.contains("\n               breaks S at 0 s: "),
+        "{text}"
+    );
+}
+
+/// Where nothing could be read there is nothing but the error.
+#[test]
+fn a_folder_that_is_not_there_has_no_table() {
+    let folder = Folder::new();
+    let (nowhere, empty) = (folder.at("nowhere"), folder.at("empty"));
+    std::fs::create_dir(&empty).expect("made");
+    for command in [
+        "suite",
+        "suite --lint",
+        "check",
+        "compare",
+        "simulate",
+        "verify",
+    ] {
+        for place in [&nowhere, &empty] {
+            let refused = run(&format!("{command} {place}")).code(2).stdout("");
+            assert_eq!(stderr(&refused).matches("error: ").count(), 1, "{command}");
+        }
+        // the counts of several documents are no table
+        let both = run(&format!("{command} {nowhere} {empty}")).code(2);
+        let counted = stdout(&both).starts_with("\n2 documents: ");
+        assert!(counted == (command == "verify") && (counted || stdout(&both).is_empty()));
+        assert_eq!(stderr(&both).matches("error: ").count(), 2, "{command}");
+    }
 }
 
 /// `-` is standard input, in the folder in which the program runs.
@@ -169,9 +245,10 @@ fn long_lines_fit_the_terminal() {
         .env("COLUMNS", "80")
         .assert();
     let text = stdout(&shown);
-    let broken = "\n               manoeuvre: first alteration 220 s before the closest approach, 1\n                 turn of";
+    let broken = "\n               first alteration 220 s before the closest approach without it:\n                 1 turn of 40°\n";
     assert!(text.contains(broken), "{text}");
-    assert!(stdout(&run("plan scenarios/harbour/munkholmen.toml")).contains("approach, 1 turn of"));
+    let whole = stdout(&run("plan scenarios/harbour/munkholmen.toml"));
+    assert!(whole.contains("without it: 1 turn of 40°\n"), "{whole}");
 }
 
 /// What is noted of several ships, or of several situations of a file, is one note.

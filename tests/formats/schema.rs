@@ -389,4 +389,11 @@ fn a_file_that_lacks_a_key_or_has_a_wrong_one_does_not_fit_the_schema() {
         let file: Value = toml::from_str(&text.replacen(old, new, 1)).expect("TOML");
         assert!(!validator.is_valid(&file), "{new}");
     }
+    // a target on a known route has the course of its first leg
+    let mut file: Value = toml::from_str(text).expect("TOML");
+    let target = file["targets"][0].as_object_mut().expect("a table");
+    target.remove("course_deg");
+    assert!(!validator.is_valid(&file));
+    file["targets"][0]["waypoints"] = json!([{ "east_m": 0.0, "north_m": 0.0 }]);
+    assert!(validator.is_valid(&file));
 }

@@ -312,12 +312,20 @@ fn a_target_that_plans_sails_as_without_a_map() {
     }
 }
 
+fn only(refused: Result<Simulation, Vec<Fault>>) -> Fault {
+    let faults = refused.expect_err("refused");
+    let [fault] = &faults[..] else {
+        panic!("{faults:?}");
+    };
+    fault.clone()
+}
+
 #[test]
 fn what_the_loop_cannot_sail_is_refused_with_its_place() {
     let refused = |change: &dyn Fn(&mut SimulationSettings)| -> Fault {
         let mut scenario = meeting(EncounterKind::HeadOn, 1, &CONSTANT);
         change(&mut scenario.simulation);
-        Simulation::new(scenario, false).expect_err("refused")
+        only(Simulation::new(scenario, false))
     };
     let weak = VesselModel::Nomoto {
         gain: 0.2,
@@ -344,14 +352,27 @@ fn what_the_loop_cannot_sail_is_refused_with_its_place() {
         let velocities = ship.outer_velocity_set();
         *ship = ship.clone().with_velocities(velocities);
     }
-    let fault = Simulation::new(with_set, false).expect_err("refused");
-    assert_eq!(fault.path, "targets[0].velocity_set");
+    let mut all = with_set.clone();
+    assert_eq!(
+        only(Simulation::new(with_set, false)).path,
+        "targets[0].velocity_set"
+    );
+    // all that is wrong is told at once
+    (all.simulation.replan, all.simulation.delay) = (1e4, 2e4);
+    let faults = Simulation::new(all, false).expect_err("refused");
+    let places: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
+    let wanted = [
+        "targets[0].velocity_set",
+        "simulation.replan_s",
+        "simulation.delay_s",
+    ];
+    assert_eq!(places, wanted);
     for (file, place) in [
         ("paper/figure_9", "planner.kind"),
         ("uncertainty/changing-velocities", "targets[0]"),
     ] {
         let refused = Simulation::new(scenario(&format!("{file}.toml")), false);
-        assert_eq!(refused.expect_err("refused").path, place);
+        assert_eq!(refused.expect_err("refused")[0].path, place);
     }
 }
 
@@ -375,6 +396,8 @@ fn a_target_at_rest_cannot_plan() {
     if let searoom::target::Motion::Ship(ship) = &mut scenario.targets[0].motion {
         ship.speed = 0.0;
     }
-    let fault = Simulation::new(scenario, false).expect_err("refused");
-    assert_eq!(fault.path, "targets[0].behaviour");
+    assert_eq!(
+        only(Simulation::new(scenario, false)).path,
+        "targets[0].behaviour"
+    );
 }

@@ -12,10 +12,9 @@ use std::process::ExitCode;
 use anyhow::Context;
 use comfy_table::Table;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use searoom::report::{Display, printable_lines};
+use searoom::report::{Display, broken, printable_lines};
 use serde::Serialize;
 use textwrap::core::display_width;
-use textwrap::{WordSeparator, WordSplitter};
 
 use super::input::files::Refused;
 use products::Failure;
@@ -73,9 +72,9 @@ impl Output {
         }
     }
 
-    /// Prints a result as text, in lines that fit the terminal.
+    /// Prints a result as text, in lines that fit the terminal; nothing where there is none.
     pub fn result(&self, text: &str) -> ExitStatus {
-        match self.quiet {
+        match self.quiet || text.is_empty() {
             true => ExitStatus::Good,
             false => self.print(&wrapped(text, self.display.width)),
         }
@@ -224,7 +223,7 @@ fn is_dumb() -> bool {
     std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }
 
-/// Breaks lines that are too wide, between words. They go on below their value, or indented.
+/// Breaks lines that are too wide, between words. They go on indented below their value.
 fn wrapped(text: &str, width: Option<usize>) -> Cow<'_, str> {
     let Some(width) = width.filter(|width| text.lines().any(|line| display_width(line) > *width))
     else {
@@ -239,14 +238,8 @@ fn wrapped(text: &str, width: Option<usize>) -> Cow<'_, str> {
         });
         let column = value
             .filter(|column| *column < VALUE_COLUMN)
-            .unwrap_or(begin + 2);
-        let indent = " ".repeat(column);
-        let options = textwrap::Options::new(width)
-            .subsequent_indent(&indent)
-            .break_words(false)
-            .word_separator(WordSeparator::AsciiSpace)
-            .word_splitter(WordSplitter::NoHyphenation);
-        textwrap::wrap(line, options).join("\n")
+            .unwrap_or(begin);
+        broken(line, width, &" ".repeat(column + 2))
     });
     Cow::Owned(lines.collect::<Vec<_>>().join("\n"))
 }

@@ -3,7 +3,7 @@
 use super::PlanDocument;
 use super::reasons::Before;
 use crate::document::encounter::EncounterDocument;
-use crate::document::lines::{met, passing};
+use crate::document::lines::passing;
 use crate::document::parts::segment;
 use crate::frame::{
     clockwise_deg, course_deg_from_heading, heading_from_course_deg, heading_of, wrap,
@@ -29,6 +29,9 @@ const SLIVER_RAD: f64 = 0.035;
 
 /// Radians. Straight runs whose courses differ by less are one leg.
 const SAME_COURSE_RAD: f64 = 1e-3;
+
+/// Event of a leg: the manoeuvre is over.
+const RETURNS: &str = "returns";
 
 /// m/s. A slower ship lies still.
 const STILL_MPS: f64 = 1e-3;
@@ -109,6 +112,7 @@ impl PlanDocument {
             heading: heading_from_course_deg(self.own_ship.course_deg),
             speed: self.own_ship.speed_mps,
         };
+        let (mut cause, mut told) = (None, None);
         for index in 0..legs.len() {
             let returns = self.manoeuvres.iter().any(|m| {
                 let time = legs[index].motion.start_time + tolerance::TIME_S;
@@ -116,14 +120,34 @@ impl PlanDocument {
             });
             let reason = self.reason(&before, &legs[index..]).filter(|_| !returns);
             let reason = reason.map(str::to_owned);
+            let after = self.waited_for(&legs, index).map(str::to_owned);
             let known = index
                 .checked_sub(1)
                 .and_then(|last| legs[last].because_of.as_ref());
             let is_new = known != reason.as_ref();
             let leg = &mut legs[index];
-            if let Some(target) = reason.as_ref().filter(|_| is_new) {
-                leg.events.insert(0, alters_for(leg, &before, target));
+            if let Some(target) = &reason {
+                if is_new {
+                    leg.events.insert(0, alters_for(leg, &before, target));
+                }
+                (cause, told) = (Some(target.clone()), None);
+            } else if let Some(event) = leg.events.iter_mut().find(|event| *event == RETURNS) {
+                // by the rules a manoeuvre lasts until its target is past
+                let is_past = |target: &String| {
+                    let mut encounters = self.encounters.iter();
+                    let passed = |e: &EncounterDocument| e.tcpa_s <= Some(leg.motion.start_time);
+                    encounters.any(|e| e.target == *target && passed(e))
+                };
+                if let Some(target) = after.or_else(|| cause.take().filter(is_past)) {
+                    *event += &after_text(&target);
+                }
+            } else if after.is_some() && after != told {
+                let after_text = after.as_deref().map(after_text).unwrap_or_default();
+                leg.events
+                    .insert(0, format!("{}{after_text}", comes_back(leg, &before)));
+                told = after;
             }
+            let leg = &mut legs[index];
             leg.because_of = reason;
             before = Before {
                 heading: leg.motion.end().heading,
@@ -165,16 +189,16 @@ impl PlanDocument {
         for manoeuvre in &self.manoeuvres {
             let parts = [
                 (manoeuvre.begins_s, "begins the manoeuvre"),
-                (manoeuvre.returns_s, "returns"),
+                (manoeuvre.returns_s, RETURNS),
                 (manoeuvre.joins_s, "back on the mission"),
             ];
             events.extend(parts.map(|(time, what)| (time, what.to_owned())));
         }
-        events.extend(
-            met(&self.encounters)
-                .into_iter()
-                .filter_map(closest_approach),
-        );
+        let has_role = |e: &&EncounterDocument| {
+            e.role != "none" || e.conduct.as_ref().is_some_and(|c| !c.roles.is_empty())
+        };
+        let met = self.encounters.iter().filter(has_role);
+        events.extend(met.filter_map(closest_approach));
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
         events
     }
@@ -195,6 +219,28 @@ fn alters_for(leg: &PlannedLeg, before: &Before, target: &str) -> String {
     match target {
         LAND => format!("{verb} for land"),
         target => format!("{verb} for '{target}'"),
+    }
+}
+
+/// How own ship comes back to the mission's course or speed.
+fn comes_back(leg: &PlannedLeg, before: &Before) -> &'static str {
+    let motion = &leg.motion;
+    if motion.is_arc() || leg.corner_deg != 0.0 {
+        "turns back"
+    } else if before.speed < STILL_MPS {
+        "goes on"
+    } else if motion.speed > before.speed {
+        "goes faster again"
+    } else {
+        "slows again"
+    }
+}
+
+/// Whom own ship has let pass before it comes back.
+fn after_text(target: &str) -> String {
+    match target {
+        LAND => " past land".to_owned(),
+        target => format!(" after '{target}'"),
     }
 }
 

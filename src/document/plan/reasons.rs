@@ -54,6 +54,40 @@ impl PlanDocument {
         self.entered(&held)
     }
 
+    /// The target that own ship lets pass before leg `index` comes back to the mission's course or
+    /// speed, or [`LAND`]: its set would be entered first if the rest of the plan began at the start
+    /// of the straight leg, or of the wait, before. O(sets × legs).
+    pub(super) fn waited_for(&self, legs: &[PlannedLeg], index: usize) -> Option<&str> {
+        let rest = &legs[index..];
+        let (last, leg) = (&legs[index.checked_sub(1)?].motion, &rest[0].motion);
+        let (course, speed) = self.desired_at(leg.start.position)?;
+        let off = |heading: f64| wrap(heading - course).abs();
+        let is_along_path = self.path_time.is_some();
+        let turns_back = off(leg.end().heading) < off(last.end().heading) - COURSE_RAD;
+        let resumes =
+            (leg.speed - speed).abs() < (last.speed - speed).abs() - SPEED * leg.speed.max(speed);
+        if last.is_arc() || !(resumes || turns_back && !is_along_path) {
+            return None;
+        }
+        // along a path own ship comes back where it does, but with the speed after it so far
+        let (mut held, way) = match is_along_path {
+            true => (
+                at_one_speed(&legs[index - 1..index], leg.speed),
+                Vector::zeros(),
+            ),
+            false => (Vec::new(), last.start.position - leg.start.position),
+        };
+        let begins = held.last().map_or(last.start_time, Segment::end_time);
+        let moved = |rest: &PlannedLeg| {
+            let mut motion = rest.motion;
+            motion.start.position += way;
+            motion.start_time += begins - leg.start_time;
+            motion
+        };
+        held.extend(rest.iter().map(moved));
+        self.entered(&held)
+    }
+
     /// Direction and speed of the mission's nearest leg.
     fn desired_at(&self, place: Vector) -> Option<(f64, f64)> {
         let mission = &self.mission;
@@ -226,6 +260,15 @@ mod tests {
         assert_eq!(because[1], Some("target"), "{because:?}");
         assert_eq!(because.iter().flatten().count(), 1, "{because:?}");
         assert_eq!(legs[1].events[0], "turns for 'target'");
+        let events: Vec<&str> = legs
+            .iter()
+            .flat_map(|l| &l.events)
+            .map(String::as_str)
+            .collect();
+        assert!(events.contains(&"turns back after 'target'"), "{events:?}");
+        // it would be free to return, but the rules ask for the other to be past
+        let legs = planned("harbour/munkholmen").legs();
+        assert_eq!(legs[3].events, ["returns after 'ferry'"], "{legs:?}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use rerun::log::{Chunk, LogMsg};
 
 use super::checksum::is_sealed;
 use super::{COMPARISON, DOCUMENT, SIMULATION, TIMELINE};
+use crate::document::{EntityContents, TimelineContents};
 
 /// Longest file that is read: 1 GiB. The whole file is held in memory.
 const FILE_BYTES: u64 = 1 << 30;
@@ -51,33 +52,6 @@ pub struct Recorded {
     pub bytes: u64,
     /// The chunks of each entity, by its path.
     chunks: BTreeMap<String, Vec<Chunk>>,
-}
-
-/// Contents of one entity.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct EntityContents {
-    /// With a leading slash.
-    #[serde(rename = "entity")]
-    pub path: String,
-    /// Rows of all its chunks together.
-    pub rows: usize,
-    /// Names, sorted.
-    pub components: Vec<String>,
-    /// Empty for what holds at all times.
-    pub timelines: Vec<TimelineContents>,
-}
-
-/// The range of a timeline that is used.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct TimelineContents {
-    /// Its name.
-    pub name: String,
-    /// `"s"`.
-    pub unit: &'static str,
-    /// The first time.
-    pub first: f64,
-    /// The last time.
-    pub last: f64,
 }
 
 /// Tests whether a file begins as recordings do.

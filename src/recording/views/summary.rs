@@ -11,7 +11,7 @@ use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
-    let lines = rules_first(plan_lines(plan)).into_iter();
+    let lines = targets_first(plan_lines(plan)).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
     let row = |(name, value): (&str, String)| {
@@ -36,15 +36,15 @@ pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String
     parts.join("\n\n")
 }
 
-/// Puts the lines about the rules before the others: a navigator looks for them first.
-fn rules_first(lines: Vec<(&'static str, String)>) -> Vec<(&'static str, String)> {
-    let mut in_rules = false;
-    let (mut rules, others): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(name, _)| {
-        in_rules = *name == "rules" || (name.is_empty() && in_rules);
-        in_rules
+/// Puts the blocks of the targets before the others: a navigator looks for them first.
+fn targets_first(lines: Vec<(&'static str, String)>) -> Vec<(&'static str, String)> {
+    let mut in_block = false;
+    let (mut targets, others): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(name, _)| {
+        in_block = *name == "target" || (name.is_empty() && in_block);
+        in_block
     });
-    rules.extend(others);
-    rules
+    targets.extend(others);
+    targets
 }
 
 /// Logs the rules that own ship breaks, in red above the chart.

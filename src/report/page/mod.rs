@@ -193,7 +193,7 @@ impl HtmlReport {
                     }
                     @for section in &self.sections { (section) }
                     p.quiet {
-                        "Lengths in metres, times in seconds from the start, \
+                        "Lengths in metres, speeds in knots, times in seconds from the start, \
                          courses clockwise from true north."
                     }
                 }
@@ -246,6 +246,7 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
         header,
         numbers,
         rows,
+        ..
     } = grid.without(TIME_COLUMN);
     let number = |column: usize| numbers.contains(&column);
     html! {

@@ -23,8 +23,9 @@ use tracker::Track;
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
 use crate::planner::Minimises;
-use crate::scenario::{Fault, NotReported, Scenario, SensorKind, SimulationSettings};
+use crate::scenario::{Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
+use crate::text::rounded;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -119,14 +120,19 @@ impl Active {
 impl Simulation {
     /// Settles the tracker on the reports before t = 0 and makes the first plan, which is valid at
     /// once. With `measured_delay` a plan that takes longer than the delay comes too late.
-    pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Fault> {
+    ///
+    /// The error holds every reason why the loop cannot sail the scenario.
+    pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let settings = &scenario.simulation;
         let duration = settings.duration.unwrap_or(scenario.horizon);
-        check(&scenario, duration)?;
+        let faults = faults(&scenario, duration);
+        if !faults.is_empty() {
+            return Err(faults);
+        }
         let exact = settings.sensor.kind == SensorKind::Exact;
         let mut mutual_targets = mutual::mutual_targets(&scenario)?.into_iter();
         let behaviours = settings.behaviours.iter().cloned();
-        let behaviours = behaviours.chain(std::iter::repeat(crate::scenario::Behaviour::Constant));
+        let behaviours = behaviours.chain(std::iter::repeat(Behaviour::Constant));
         let not_reported = settings.not_reported.iter().copied();
         let not_reported = not_reported.chain(std::iter::repeat(NotReported::default()));
         let ships = scenario.targets.iter().zip(behaviours).zip(not_reported);
@@ -465,31 +471,47 @@ impl Simulated {
     }
 }
 
-fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
+/// Everything that the loop cannot sail. Conditions are negated so that a NaN is refused.
+fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
     let (settings, facts) = (&scenario.simulation, scenario.planner.facts());
-    let own_plans = facts.follows_paths || matches!(facts.minimises, Minimises::Own(_));
-    refuse_if(own_plans, "planner.kind", || {
-        let allowed = "\"space-time\": the closed loop goes on from its plans alone";
-        (format!("{:?}", facts.name), allowed.to_owned())
-    })?;
+    let mut faults = Vec::new();
+    let mut refuse_if = |is_wrong: bool, path: &str, found: String, allowed: &str| {
+        if is_wrong {
+            faults.push(Fault::new(path, found, allowed));
+        }
+    };
+    refuse_if(
+        facts.follows_paths || matches!(facts.minimises, Minimises::Own(_)),
+        "planner.kind",
+        format!("{:?}", facts.name),
+        "\"space-time\": the closed loop goes on from its plans alone",
+    );
     for (index, target) in scenario.targets.iter().enumerate() {
         let path = format!("targets[{index}]");
         let Some(ship) = target.ship() else {
             let allowed = "a tracked ship: explicit sets have no true motion";
-            return Err(Fault::new(path, "explicit sets", allowed));
+            refuse_if(true, &path, "explicit sets".to_owned(), allowed);
+            continue;
         };
         refuse_if(
             ship.kept_velocities.is_some(),
             &format!("{path}.velocity_set"),
-            || {
-                let allowed = "spreads: the loop estimates a velocity and its spreads";
-                ("a set of velocities".to_owned(), allowed.to_owned())
-            },
-        )?;
-        refuse_if(!ship.route.is_empty(), &format!("{path}.waypoints"), || {
-            let allowed = "nothing: the loop estimates a course; behaviour = \"track\" turns";
-            ("a known route".to_owned(), allowed.to_owned())
-        })?;
+            "a set of velocities".to_owned(),
+            "spreads: the loop estimates a velocity and its spreads",
+        );
+        refuse_if(
+            !ship.route.is_empty(),
+            &format!("{path}.waypoints"),
+            "a known route".to_owned(),
+            "nothing: the loop estimates a course; behaviour = \"track\" turns",
+        );
+        let is_mutual = settings.behaviours.get(index) == Some(&Behaviour::Mutual);
+        refuse_if(
+            is_mutual && !(ship.speed >= mutual::NO_WAY),
+            &format!("{path}.behaviour"),
+            format!("a ship of {} m/s that plans", rounded(ship.speed)),
+            &format!("a speed of at least {} m/s", mutual::NO_WAY),
+        );
         let path = format!("{path}.not_reported");
         let missing = settings.not_reported.get(index).copied();
         let missing = missing.unwrap_or_default();
@@ -498,55 +520,40 @@ fn check(scenario: &Scenario, duration: f64) -> Result<(), Fault> {
         refuse_if(
             missing != NotReported::default() && reports_all,
             &path,
-            || {
-                let allowed = "\"ais\": other sensors report neither heading nor size";
-                (
-                    format!("a sensor of kind {:?}", kind.word()),
-                    allowed.to_owned(),
-                )
-            },
-        )?;
-        let is_held = ship.hull.length <= default.length && ship.hull.beam <= default.beam;
-        refuse_if(missing.size && !is_held, &path, || {
-            let Hull { length, beam } = default;
-            let found = format!("a larger ship than the default of {length} × {beam} m");
-            let allowed = "a ship within simulation.sensor.default_length_m and default_beam_m";
-            (found, allowed.to_owned())
-        })?;
+            format!("a sensor of kind {:?}", kind.word()),
+            "\"ais\": other sensors report neither heading nor size",
+        );
+        let Hull { length, beam } = default;
+        refuse_if(
+            missing.size && !(ship.hull.length <= length && ship.hull.beam <= beam),
+            &path,
+            format!("a larger ship than the default of {length} × {beam} m"),
+            "a ship within simulation.sensor.default_length_m and default_beam_m",
+        );
     }
     let between_plans = "the time between plans";
-    // conditions are negated so that a NaN is refused
     for (key, value, most, of) in [
         ("replan_s", settings.replan, scenario.horizon, "the horizon"),
         ("delay_s", settings.delay, settings.replan, between_plans),
         ("step_s", settings.step, settings.replan, between_plans),
     ] {
-        refuse_if(!(value <= most), &format!("simulation.{key}"), || {
-            (value.to_string(), format!("at most {most}, {of}"))
-        })?;
+        let allowed = format!("at most {most}, {of}");
+        let path = format!("simulation.{key}");
+        refuse_if(!(value <= most), &path, value.to_string(), &allowed);
     }
-    refuse_if(!(duration > 0.0), "simulation.duration_s", || {
-        (duration.to_string(), "a time above 0".to_owned())
-    })?;
+    refuse_if(
+        !(duration > 0.0),
+        "simulation.duration_s",
+        duration.to_string(),
+        "a time above 0",
+    );
     let vessel = vessel::Vessel::new(settings.vessel, &scenario.own_ship);
     let (least, planned) = (vessel.least_radius(), scenario.own_ship.turning_radius);
-    refuse_if(!(least <= planned), "simulation.vessel", || {
-        (
-            format!("a ship that turns at {least:.1} m at full rudder"),
-            format!("one that can hold the turns of its plans, {planned} m"),
-        )
-    })
-}
-
-/// A fault with what is found and what is allowed.
-fn refuse_if(
-    is_wrong: bool,
-    path: &str,
-    texts: impl FnOnce() -> (String, String),
-) -> Result<(), Fault> {
-    if !is_wrong {
-        return Ok(());
-    }
-    let (found, allowed) = texts();
-    Err(Fault::new(path, found, allowed))
+    refuse_if(
+        !(least <= planned),
+        "simulation.vessel",
+        format!("a ship that turns at {least:.1} m at full rudder"),
+        &format!("one that can hold the turns of its plans, {planned} m"),
+    );
+    faults
 }

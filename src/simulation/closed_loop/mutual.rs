@@ -5,7 +5,6 @@ use crate::colregs::SteadyShip;
 use crate::frame::heading_of;
 use crate::scenario::{Behaviour, Fault, Memory, Scenario, SimulationSettings};
 use crate::target::{Motion, ShipTrack, Target};
-use crate::text::rounded;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -13,42 +12,33 @@ use crate::vessel::OwnShip;
 const SPEEDS: [f64; 2] = [0.5, 1.0];
 
 /// m/s. A slower ship has no mission.
-const NO_WAY: f64 = 0.1;
+pub(super) const NO_WAY: f64 = 0.1;
 
 /// The closed loop of a target, whose only target is own ship.
 #[derive(Debug)]
 pub(super) struct MutualTarget(Box<Simulation>);
 
 /// The loops of the targets that have one, in the scenario's order.
-pub(super) fn mutual_targets(scenario: &Scenario) -> Result<Vec<Option<MutualTarget>>, Fault> {
-    let behaviours = &scenario.simulation.behaviours;
-    let targets = scenario.targets.iter().enumerate();
-    let mutual_targets =
-        targets.map(
-            |(index, target)| match (behaviours.get(index), target.ship()) {
-                (Some(Behaviour::Mutual), Some(ship)) => {
-                    let exchanged = exchanged(scenario, target, ship).ok_or_else(|| {
-                        Fault::new(
-                            format!("targets[{index}].behaviour"),
-                            format_args!("a ship of {} m/s that plans", rounded(ship.speed)),
-                            format_args!("a speed of at least {NO_WAY} m/s"),
-                        )
-                    })?;
-                    let simulation = Simulation::new(exchanged, false)?;
-                    Ok(Some(MutualTarget(Box::new(simulation))))
-                }
-                _ => Ok(None),
-            },
-        );
+pub(super) fn mutual_targets(scenario: &Scenario) -> Result<Vec<Option<MutualTarget>>, Vec<Fault>> {
+    let behaviours = scenario.simulation.behaviours.iter().map(Some);
+    let behaviours = behaviours.chain(std::iter::repeat(None));
+    let targets = scenario.targets.iter().zip(behaviours);
+    let mutual_targets = targets.map(|(target, behaviour)| {
+        let ship = target
+            .ship()
+            .filter(|_| behaviour == Some(&Behaviour::Mutual));
+        let exchanged = ship.and_then(|ship| exchanged(scenario, target, ship));
+        let simulation = exchanged.map(|exchanged| Simulation::new(exchanged, false));
+        Ok(simulation
+            .transpose()?
+            .map(|loop_| MutualTarget(Box::new(loop_))))
+    });
     mutual_targets.collect()
 }
 
 /// The scenario as the target plans in it: its mission is to keep course and speed, and its
 /// estimate of own ship is as good as own ship's of it.
 fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<Scenario> {
-    if !(ship.speed >= NO_WAY) {
-        return None;
-    }
     let own = &scenario.own_ship;
     let way = ship.pose.ahead() * (ship.speed * scenario.horizon);
     let waypoints = [ship.pose.position, ship.pose.position + way];

@@ -3,11 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::{Entry, Inapplicable};
+use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    EntryDocument, InapplicableDocument, ScenarioComparisonDocument, TrackPointDocument, cost_of,
-    finite, minimised, objective, position, timing,
+    CollisionDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
+    TrackPointDocument, cost_of, finite, minimised, objective, position, timing,
 };
 use crate::evaluation::{Safety, outcome_word, without_rules};
+use crate::obstacle::LAND;
 use crate::pipeline::{Run, Verdict};
 use crate::scenario::Scenario;
 use crate::trajectory::largest_alteration;
@@ -97,11 +99,36 @@ impl EntryDocument {
             largest_turn_deg: turn.map(|turn| turn.degrees),
             largest_turn_side: turn.map(|turn| turn.side.to_string()),
             breaks: (!conduct.is_empty()).then_some(broken),
+            collision: collision(scenario, entry),
             search_stats: run.map(|run| run.planned.stats),
             timing: run.map(timing),
             track: track(entry),
         }
     }
+}
+
+/// The first ship that own ship's hull meets if this keeps to its expected motion, else land.
+fn collision(scenario: &Scenario, entry: &Entry) -> Option<CollisionDocument> {
+    let motion = entry.motion.as_ref()?;
+    if motion.safety != Safety::Collides {
+        return None;
+    }
+    let passages = scenario.targets.iter().zip(&motion.evaluation.passages);
+    let met = passages.filter_map(|(target, passage)| {
+        let ship = target.ship().filter(|_| passage.dcpa < 0.0)?;
+        let way = EncounterSamples::along(&motion.trajectory, &scenario.own_ship, ship);
+        let first = way.samples().iter().find(|sample| sample.apart < 0.0);
+        // fast ships may meet between two samples
+        let t_s = finite(first.map_or(passage.tcpa, |sample| sample.time))?;
+        let with = target.name.clone();
+        Some(CollisionDocument { with, t_s })
+    });
+    let first = met.min_by(|a, b| a.t_s.total_cmp(&b.t_s));
+    let aground = finite(motion.evaluation.min_land_distance_time);
+    first.or(aground.map(|t_s| CollisionDocument {
+        with: LAND.to_owned(),
+        t_s,
+    }))
 }
 
 fn track(entry: &Entry) -> Vec<TrackPointDocument> {

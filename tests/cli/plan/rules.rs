@@ -178,7 +178,7 @@ fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
              speed_spread_mps = 0.6\ncourse_spread_deg = 6.0\n"
         )
     };
-    let note = "'coaster' gives no role: they do not restrict the alteration for it";
+    let note = "gives no role: the rules do not restrict the alteration for it";
     let file = folder.write("far.toml", scene(""));
     searoom(&["plan", &file])
         .success()
@@ -186,5 +186,5 @@ fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
     let file = folder.write("near.toml", scene("planner = { cpa_limit_m = 400.0 }"));
     searoom(&["plan", &file])
         .success()
-        .stdout(contains("give-way with 'coaster'").and(contains(note).not()));
+        .stdout(contains("'coaster': give-way from ").and(contains(note).not()));
 }
