@@ -50,7 +50,7 @@ pub use verification::*;
 pub type MakeSchema = fn() -> Schema;
 
 /// The JSON schemas of the documents, by the command that prints each with `--json`.
-pub const SCHEMAS: [(&str, MakeSchema); 9] = [
+pub const SCHEMAS: [(&str, MakeSchema); 10] = [
     ("plan", schema::<PlanDocument>),
     ("suite", schema::<SuiteDocument>),
     ("lint", schema::<LintDocument>),

@@ -182,7 +182,10 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let drawn = specification.scenario(row);
     let drawn = drawn.with_context(|| format!("row {row}: no draw is of its class"))?;
     let simulation = Simulation::new(drawn.scenario.clone(), false);
-    let mut simulation = simulation.map_err(|fault| anyhow!("row {row}: {fault}"))?;
+    let mut simulation = simulation.map_err(|faults| {
+        let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        anyhow!("row {row}: {}", faults.join("; "))
+    })?;
     if args.rrd.is_some() {
         simulation.keep_plans();
     }

@@ -198,12 +198,10 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Why a scenario cannot be sailed; the fault that [`Self::new`] would return.
-    pub(crate) fn unfit(scenario: &Scenario) -> Option<Fault> {
+    /// Every reason why a scenario cannot be sailed, as [`Self::new`] returns them.
+    pub(crate) fn unfit(scenario: &Scenario) -> Vec<Fault> {
         let duration = scenario.simulation.duration.unwrap_or(scenario.horizon);
-        let checked = check(scenario, duration);
-        let checked = checked.and_then(|()| mutual::mutual_targets(scenario).map(drop));
-        checked.err()
+        faults(scenario, duration)
     }
 
     /// Keeps the document of every plan from now on; the first plan is the one that is followed.
