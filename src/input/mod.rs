@@ -54,6 +54,8 @@ impl Fault {
     }
 }
 
+impl std::error::Error for Fault {}
+
 impl Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {

@@ -257,9 +257,9 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Plan with its space-time error, which is integrated anew: searches use coarser quadrature.
-    /// `None` for an invalid trajectory.
-    pub(crate) fn measured(
+    /// Plan that arrives, with its space-time error, which is integrated anew: searches use coarser
+    /// quadrature. `None` for an invalid trajectory.
+    pub fn measured(
         problem: &Problem,
         motion: Vec<Segment>,
         graph_cost: Option<f64>,
@@ -393,7 +393,7 @@ pub struct Planned {
 
 impl Planned {
     /// Result without a search.
-    pub(crate) fn of(outcome: Outcome) -> Self {
+    pub fn of(outcome: Outcome) -> Self {
         Self {
             outcome,
             stats: SearchStats::default(),

@@ -28,6 +28,8 @@ pub use simulation::{
 use std::path::Path;
 use std::sync::Arc;
 
+use planner::PlannerTable;
+
 use crate::colregs::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
@@ -104,6 +106,23 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// A scenario in open water with the defaults of a file (docs/scenario.md). Change its fields as
+    /// needed. [`Self::unfit`] names what its planner cannot use.
+    pub fn new(
+        title: &str,
+        horizon: f64,
+        own_ship: OwnShip,
+        desired: DesiredTrajectory,
+        targets: Vec<Target>,
+    ) -> Self {
+        let tracked = targets.iter().any(|target| target.ship().is_some());
+        let planner = PlannerTable::default();
+        Self {
+            targets,
+            ..check::bare(title, horizon, own_ship, desired, planner, tracked)
+        }
+    }
+
     /// How tidy plans are; `None` for the least cost alone. Plans are tidy where the file asks for
     /// it, and under the rules unless it asks otherwise.
     pub fn tidiness(&self) -> Option<Tidiness> {
