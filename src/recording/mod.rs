@@ -43,7 +43,7 @@ const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
-const RULES: &str = "rules";
+const ROLES: &str = "roles";
 const EVENTS: &str = "events";
 
 /// An entity path. The first part may hold slashes; the others are taken literally, as targets may

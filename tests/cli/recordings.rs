@@ -52,7 +52,7 @@ fn inspect_tells_what_the_rules_say() {
         let asked = format!("plan scenarios/colregs/stand-on.toml --compliance {compliance}");
         run(&format!("{asked} --rrd {file}")).success();
         let said = stdout(&run(&format!("inspect {file}")).success());
-        let lanes = run(&format!("inspect --csv rules/roles {file}")).success();
+        let lanes = run(&format!("inspect --csv roles {file}")).success();
         [said, stdout(&lanes)]
     };
     let [said, lanes] = plan("shape");

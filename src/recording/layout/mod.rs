@@ -29,7 +29,7 @@ use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EARTH, EVENTS, EXPLORED, Logged, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
+    CHART, EARTH, EVENTS, EXPLORED, Logged, ROLES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
     path,
 };
 
@@ -259,7 +259,7 @@ fn rules_view(to: &mut Panes, model: &ViewModel) -> Logged<Option<(Pane, f32)>> 
         return Ok(None);
     }
     let name = "Rules: roles over time, and what is broken";
-    let view = to.view::<StateTimelineView>(name, RULES)?;
+    let view = to.view::<StateTimelineView>(name, ROLES)?;
     to.set(&view, "TimeAxis", &time_axis(model, 0.0))?;
     let share = LANES_HEAD + LANE * lanes.min(MOST_LANES) as f32;
     Ok(Some((view, share)))

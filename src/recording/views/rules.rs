@@ -8,11 +8,7 @@ use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{ViewModel, clock, flat};
 use crate::recording::write::Recorder;
-use crate::recording::{Logged, MAP, TIMELINE, VOLUME, path};
-
-/// Entity of the lanes. It has a row where one changes, with a text per lane, empty where nothing
-/// holds.
-pub const ROLES: &str = "rules/roles";
+use crate::recording::{Logged, MAP, ROLES, TIMELINE, VOLUME, path};
 
 /// Strength of a colour behind white letters.
 const LANE_STRENGTH: f32 = 0.55;
@@ -109,7 +105,8 @@ pub fn height(model: &ViewModel) -> usize {
     lanes(model).len()
 }
 
-/// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies.
+/// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies. A
+/// row where a lane changes has a text per lane, empty where nothing holds.
 pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let lanes = lanes(model);
     if lanes.is_empty() {
