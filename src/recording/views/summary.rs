@@ -9,17 +9,27 @@ use crate::geometry::Window;
 use crate::recording::canvas::{ShownMotion, ViewModel, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
+use crate::text::broken;
+
+/// Characters of a line that a window 1280 wide shows.
+const CELL_WIDTH: usize = 78;
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     let lines = targets_first(plan_lines(plan)).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
+    // the viewer cuts lines that are too long, and a cell of markdown has one line
     let row = |(name, value): (&str, String)| {
-        let value = value.replace('|', "\\|");
-        format!("| {name} | {value} |\n")
+        let value = broken(&value.replace('|', "\\|"), CELL_WIDTH, "");
+        let lines = value.lines().enumerate();
+        let lines = lines.map(|(index, line)| {
+            let name = if index == 0 { name } else { "" };
+            format!("| {name} | {line} |\n")
+        });
+        lines.collect::<Vec<_>>()
     };
     // a table of markdown has a head
-    let mut rows: Vec<String> = rows.map(row).collect();
+    let mut rows: Vec<String> = rows.flat_map(row).collect();
     rows.insert(rows.len().min(1), "|---|---|\n".to_owned());
     let shown = match plan.trajectory {
         Some(_) => graph(drawn),
