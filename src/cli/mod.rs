@@ -55,8 +55,20 @@ pub fn main() -> ExitCode {
     };
     let status = match runner::guarded(run) {
         Ok(Ok(status)) => status,
-        Ok(Err(error)) => output.refuse(&format_args!("{error:#}")),
+        Ok(Err(error)) => output.refuse(&told(&error)),
         Err(fault) => output.fault(&fault),
     };
     status.into()
+}
+
+/// An error and its causes. Some texts hold that of their cause, which is not repeated.
+fn told(error: &anyhow::Error) -> String {
+    error.chain().fold(String::new(), |told, cause| {
+        let cause = cause.to_string();
+        match told.as_str() {
+            "" => cause,
+            _ if told.contains(&cause) => told,
+            _ => format!("{told}: {cause}"),
+        }
+    })
 }
