@@ -37,7 +37,7 @@ study: document frame tolerance trajectory target colregs obstacle planner evalu
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text
 report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
-recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output
+recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text
 ";
 
 /// The row of a module in [`MAY_USE`].
