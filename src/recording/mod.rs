@@ -31,6 +31,7 @@ type Logged<T = ()> = RecordingStreamResult<T>;
 const APPLICATION: &str = "searoom";
 const TIMELINE: &str = "sim_time";
 const SUMMARY: &str = "summary";
+const LEGS: &str = "legs";
 const DOCUMENT: &str = "plan_document";
 const COMPARISON: &str = "comparison_document";
 const SIMULATION: &str = "simulation_document";

@@ -137,7 +137,7 @@ fn assert_entities(run: &Run, there: &str, absent: &str) -> BTreeMap<String, u64
 
 #[test]
 fn every_kind_of_run_has_its_entities() {
-    let there = "summary chart/map chart/map/desired chart/map/planned chart/map/own_ship
+    let there = "summary legs chart/map chart/map/desired chart/map/planned chart/map/own_ship
         chart/map/closest_points chart/map/targets/{} chart/map/hard_sets/{}
         chart/map/domain_sets/{} chart/map/explored/free chart/map/explored/blocked
         space_time/domain_sets/{} space_time/planned space_time/explored/free
@@ -145,7 +145,7 @@ fn every_kind_of_run_has_its_entities() {
         velocities/plane/own_ship velocities/plane/obstacles/{}";
     assert_entities(&run(), there, "chart/map/conflict");
     let there = "chart/map/conflict curves/margin_m";
-    assert_entities(&run_without_plan(), there, "chart/map/planned");
+    assert_entities(&run_without_plan(), there, "chart/map/planned legs");
     let mut there = "chart/map/violations".to_owned();
     for name in ["drifting", "round", "slabs"] {
         there += &format!(
@@ -160,11 +160,47 @@ fn every_kind_of_run_has_its_entities() {
     scenario.deadline = 60.0;
     let run = pipeline::run(scenario);
     let there = "chart/map/planned space_time/planned chart/map/hard_sets/ahead";
-    let entities = assert_entities(&run, there, "");
+    let entities = assert_entities(&run, there, "legs");
     let nodes = run.planned.control.as_ref().expect("forces").intervals as u64 + 1;
     for entity in ["/curves/states", "/curves/forces"] {
         assert_eq!(entities[entity], nodes, "{entity}");
     }
+}
+
+#[test]
+fn the_legs_are_those_of_the_plan() {
+    let run = run();
+    let table = recorded_run(&run).table("legs").expect("legs");
+    let texts = table.rows.iter().flat_map(|row| &row.values);
+    let mut texts = texts.map(|value| value[0].as_str().unwrap_or_default());
+    let text = texts.find(|text| text.contains("from")).expect("a table");
+    let cells = |row: &str| {
+        row.split('|')
+            .map(|c| c.trim().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let mut rows: Vec<Vec<String>> = text.lines().skip(2).map(cells).collect();
+    let events: Vec<String> = rows.iter().map(|row| row[7].clone()).collect();
+    rows.retain(|row| !row[1].is_empty());
+    let legs = PlanDocument::of(&run).legs();
+    assert_eq!(rows.len(), legs.len());
+    for (row, leg) in rows.iter().zip(&legs) {
+        assert_eq!(row[3], format!("{:03.0}", leg.course_deg().round() % 360.0));
+        assert_eq!(row[4], format!("{:.1}", 3600.0 / 1852.0 * leg.motion.speed));
+    }
+    let told = legs
+        .iter()
+        .flat_map(|leg| &leg.events)
+        .cloned()
+        .collect::<Vec<_>>();
+    let (told, events) = (told.join(" "), events.join(" "));
+    let words = |text: &str| {
+        text.split_whitespace()
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(words(&events), words(&told));
+    assert!(told.contains(NAME), "{told}");
 }
 
 /// Compares with the file, which gives own ship and the ferry in latitude and longitude.

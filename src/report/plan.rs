@@ -18,9 +18,6 @@ use crate::text::{counted, knots_figure, printable, signed, square_metres, tenth
 const LISTED: usize = 3;
 const MOST_LEGS: usize = 40;
 
-/// Least turn that a table of legs shows, degrees.
-const LEAST_TURN_DEG: f64 = 0.05;
-
 pub(super) const TIME_COLUMN: &str = "time";
 
 /// Formats a table with one row per scenario.
@@ -168,31 +165,15 @@ pub fn legs_text(plan: &PlanDocument, display: Display) -> String {
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
     let row = |(index, leg): (usize, PlannedLeg)| {
-        let sided = |turn: f64| {
-            let side = if turn > 0.0 { "starboard" } else { "port" };
-            format!("{side} {:.*}°", usize::from(turn.abs() < 0.5), turn.abs())
-        };
-        let [corner, turn] = [leg.corner_deg, leg.turn_deg()].map(|turn| {
-            let shown = turn.abs() >= LEAST_TURN_DEG;
-            shown.then(|| sided(turn))
-        });
-        let turn = match (corner, turn) {
-            _ if leg.waits() => "waits".to_owned(),
-            (None, turn) => turn.unwrap_or("–".to_owned()),
-            (Some(corner), None) => format!("{corner} at once"),
-            (Some(corner), Some(turn)) => format!("{corner} at once, {turn}"),
-        };
-        // 359.9° is 000
-        let course = leg.course_deg().round() % 360.0;
         let motion = &leg.motion;
         vec![
             plain((index + 1).to_string()),
             plain(tenths(motion.start_time)),
             plain(tenths(motion.end_time())),
-            plain(format!("{course:03.0}")),
+            plain(leg.course_figure()),
             plain(knots_figure(motion.speed)),
             plain(format!("{:.0}", motion.length())),
-            plain(turn),
+            plain(leg.turn_words().unwrap_or("–".to_owned())),
             plain(leg.events.join("\n")),
         ]
     };

@@ -30,6 +30,9 @@ const SLIVER_RAD: f64 = 0.035;
 /// Radians. Straight runs whose courses differ by less are one leg.
 const SAME_COURSE_RAD: f64 = 1e-3;
 
+/// Degrees. A smaller turn is not told.
+const LEAST_TURN_DEG: f64 = 0.05;
+
 /// Event of a leg: the manoeuvre is over.
 const RETURNS: &str = "returns";
 
@@ -59,6 +62,28 @@ impl PlannedLeg {
     /// Change of course along the leg, degrees; positive to starboard, 0 for a straight run.
     pub fn turn_deg(&self) -> f64 {
         clockwise_deg(self.motion.turn_rate * self.motion.duration)
+    }
+
+    /// The turn in words: side and degrees, at a corner "at once"; `None` where own ship goes
+    /// straight on.
+    pub(crate) fn turn_words(&self) -> Option<String> {
+        let sided = |turn: f64| {
+            let side = if turn > 0.0 { "starboard" } else { "port" };
+            let shown = turn.abs() >= LEAST_TURN_DEG;
+            shown.then(|| format!("{side} {:.*}°", usize::from(turn.abs() < 0.5), turn.abs()))
+        };
+        match (sided(self.corner_deg), sided(self.turn_deg())) {
+            _ if self.waits() => Some("waits".to_owned()),
+            (None, turn) => turn,
+            (Some(corner), None) => Some(format!("{corner} at once")),
+            (Some(corner), Some(turn)) => Some(format!("{corner} at once, {turn}")),
+        }
+    }
+
+    /// The course at the end as three digits, 000 to 359.
+    pub(crate) fn course_figure(&self) -> String {
+        // 359.9° is 000
+        format!("{:03.0}", self.course_deg().round() % 360.0)
     }
 
     /// True where own ship lies still, or moves too slowly for any log to show it.

@@ -29,14 +29,14 @@ use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::{rules, velocities};
 use crate::recording::write::Recorder;
 use crate::recording::{
-    CHART, EARTH, EVENTS, EXPLORED, Logged, ROLES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
-    path,
+    CHART, EARTH, EVENTS, EXPLORED, LEGS, Logged, ROLES, SUMMARY, TIMELINE, TRAILS, VELOCITIES,
+    VOLUME, path,
 };
 
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
-pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
+pub fn of_run(model: &ViewModel, has_legs: bool) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let mut chart = chart_view(to, model)?;
@@ -51,7 +51,12 @@ pub fn of_run(model: &ViewModel) -> Logged<Recorder> {
         left.push(rules);
         left_shares = vec![0.66 - share, share];
     }
-    left.push(to.view::<TextDocumentView>("Verdict", SUMMARY)?);
+    let mut words = to.view::<TextDocumentView>("Verdict", SUMMARY)?;
+    if has_legs {
+        let legs = to.view::<TextDocumentView>("Legs", LEGS)?;
+        words = to.tabs(&[words, legs])?;
+    }
+    left.push(words);
     left_shares.push(0.34);
     let left = to.below(&left, left_shares)?;
     let volume = volume_view(to, model, path(&[VOLUME, "explored", BLOCKED]))?;

@@ -9,41 +9,79 @@ use crate::geometry::Window;
 use crate::recording::canvas::{ShownMotion, ViewModel, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
-use crate::text::broken;
+use crate::text::{broken, knots_figure};
 
 /// Characters of a line that a window 1280 wide shows.
 const CELL_WIDTH: usize = 78;
+const EVENT_WIDTH: usize = 42;
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
     let lines = targets_first(plan_lines(plan)).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
-    // the viewer cuts lines that are too long, and a cell of markdown has one line
-    let row = |(name, value): (&str, String)| {
-        let value = broken(&value.replace('|', "\\|"), CELL_WIDTH, "");
-        let lines = value.lines().enumerate();
-        let lines = lines.map(|(index, line)| {
-            let name = if index == 0 { name } else { "" };
-            format!("| {name} | {line} |\n")
-        });
-        lines.collect::<Vec<_>>()
-    };
-    // a table of markdown has a head
-    let mut rows: Vec<String> = rows.flat_map(row).collect();
-    rows.insert(rows.len().min(1), "|---|---|\n".to_owned());
+    let rows = rows.flat_map(|(name, value)| table_rows([name.to_owned()], &value, CELL_WIDTH));
+    let rows = table(rows.collect(), 2);
     let shown = match plan.trajectory {
         Some(_) => graph(drawn),
         None => "The views show own ship as if it followed the desired trajectory.".to_owned(),
     };
     let mut parts = vec![
         format!("### {}", headline(plan)),
-        rows.concat().trim_end().to_owned(),
+        rows,
         shown,
         claim(model),
         key(model),
     ];
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
+}
+
+/// The legs of the plan as a table of markdown; `None` where it has none.
+pub fn legs(plan: &PlanDocument) -> Option<String> {
+    let rows = plan.legs().into_iter().flat_map(|leg| {
+        let motion = &leg.motion;
+        let cells = [
+            clock(motion.start_time),
+            clock(motion.end_time()),
+            leg.course_figure(),
+            knots_figure(motion.speed),
+            format!("{:.0}", motion.length()),
+            leg.turn_words().unwrap_or("–".to_owned()),
+        ];
+        table_rows(cells, &leg.events.join("\n"), EVENT_WIDTH)
+    });
+    let rows: Vec<String> = rows.collect();
+    let head = "| from | to | course, ° | speed, kn | length, m | turn | what happens |\n";
+    (!rows.is_empty()).then(|| table([vec![head.to_owned()], rows].concat(), 7))
+}
+
+/// Rows of a table of markdown, with `last` behind the other cells. The viewer cuts lines that are
+/// too long, and a cell has one line: so there are as many rows as `last` needs.
+fn table_rows<const N: usize>(cells: [String; N], last: &str, width: usize) -> Vec<String> {
+    let last = broken(&last.replace('|', "\\|"), width, "");
+    let row = |(index, line): (usize, &str)| {
+        let first = |cell: &String| {
+            if index == 0 {
+                cell.clone()
+            } else {
+                String::new()
+            }
+        };
+        let cells = cells.each_ref().map(first);
+        format!("| {} | {line} |\n", cells.join(" | "))
+    };
+    let lines = if last.is_empty() {
+        vec![""]
+    } else {
+        last.lines().collect()
+    };
+    lines.into_iter().enumerate().map(row).collect()
+}
+
+/// Rows as one table, whose head is the first.
+fn table(mut rows: Vec<String>, columns: usize) -> String {
+    rows.insert(rows.len().min(1), format!("|{}\n", "---|".repeat(columns)));
+    rows.concat().trim_end().to_owned()
 }
 
 /// Puts the blocks of the targets before the others: a navigator looks for them first.

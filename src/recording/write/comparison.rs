@@ -15,7 +15,7 @@ use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
 use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
-use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, VOLUME, layout, path};
+use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, Method, Stroke};
 
@@ -130,7 +130,7 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
         }
     }
     log_curves(rec, &canvas, &candidates)?;
-    rec.log_summary(text(compared.table, &graphs))?;
+    rec.log_markdown(SUMMARY, text(compared.table, &graphs))?;
     layout::of_comparison(&canvas)
 }
 

@@ -18,7 +18,7 @@ use super::canvas::ViewModel;
 use super::views::{
     chart, curves, explored, geographic, land, rules, ships, space_time, summary, velocities,
 };
-use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
+use super::{DOCUMENT, EXPLORED, LEGS, SUMMARY, VOLUME, layout, path};
 use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
@@ -127,7 +127,12 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
     summary::log_broken(rec, model, plan)?;
-    rec.log_summary(summary::text(model, plan, drawn))?;
+    rec.log_markdown(SUMMARY, summary::text(model, plan, drawn))?;
+    let legs = summary::legs(plan);
+    let has_legs = legs.is_some();
+    if let Some(legs) = legs {
+        rec.log_markdown(LEGS, legs)?;
+    }
     rules::log_rules(rec, model)?;
-    layout::of_run(model)
+    layout::of_run(model, has_legs)
 }

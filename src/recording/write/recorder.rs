@@ -1,6 +1,6 @@
 //! Collects the chunks of a store, in the order in which they are logged.
 
-use crate::recording::{Logged, SUMMARY};
+use crate::recording::Logged;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::log::{Chunk, ChunkId};
 use rerun::{
@@ -25,9 +25,9 @@ impl Recorder {
         self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
     }
 
-    pub fn log_summary(&mut self, text: String) -> Logged {
+    pub fn log_markdown(&mut self, entity: &str, text: String) -> Logged {
         let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
-        self.log_static(SUMMARY, &text)
+        self.log_static(entity, &text)
     }
 
     /// Logs `style`, which holds at all times, and `columns` with a row per time.

@@ -8,7 +8,7 @@ use super::{Recorder, RecordingError, encoding_error, put};
 use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, ships};
-use crate::recording::{EVENTS, Logged, SIMULATION, TIMELINE, layout, path};
+use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 
 /// An alarm goes on where it is raised again within this many times between plans.
@@ -87,7 +87,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     } = *simulated;
     let model = ClosedLoop::new(scenario, document, plans);
     let text = format!("```\n{text}\n```\n\n{}", key(&model));
-    rec.log_summary(text)?;
+    rec.log_markdown(SUMMARY, text)?;
     land::log_on_chart(rec, &model.canvas)?;
     closed_loop::log_chart(rec, &model)?;
     closed_loop::log_curves(rec, &model)?;
