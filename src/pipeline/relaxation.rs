@@ -188,11 +188,7 @@ impl Relaxer<'_> {
     fn answer_of_one_search(&self) -> Attempt {
         let with_domain = self.scenario.compliance.shapes();
         let scale = if with_domain { 1.0 } else { 0.0 };
-        let mut first = self.attempt(
-            RelaxationLevel::Compliant,
-            &self.scales(scale),
-            self.scenario.max_risk,
-        );
+        let mut first = self.first(&self.scales(scale));
         let problem = self.problem(&first.obstacles);
         if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
             let none = first.planned.outcome.plan().is_none();
@@ -223,6 +219,25 @@ impl Relaxer<'_> {
         let relaxed = self.finished(with_domain, &relaxed).unwrap_or(relaxed);
         let why = (relaxed.level > RelaxationLevel::Compliant).then_some(why);
         Attempt { why, ..relaxed }
+    }
+
+    /// The plan that satisfies the whole request. Where a risk is accepted, it is the cheaper one of
+    /// a plan around the smaller sets and of a plan that takes no risk: the search may miss the
+    /// latter among the smaller sets.
+    fn first(&self, scales: &[f64]) -> Attempt {
+        let (level, risk) = (RelaxationLevel::Compliant, self.scenario.max_risk);
+        let mut first = self.attempt(level, scales, risk);
+        if risk == 0.0 || self.scenario.planner.facts().relaxes_domains_only {
+            return first;
+        }
+        let without = self.attempt(level, scales, 0.0).planned;
+        let cost = |planned: &Planned| planned.outcome.plan().map(|plan| plan.cost);
+        if let Some(least) = cost(&without)
+            && cost(&first.planned).is_none_or(|cost| least <= cost)
+        {
+            first.planned = without;
+        }
+        first
     }
 
     /// The answer of the first of [`Self::ATTEMPTS`] that has one.

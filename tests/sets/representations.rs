@@ -6,7 +6,7 @@ use searoom::document::PlanDocument;
 use searoom::frame::{Vector, radians_from_deg};
 use searoom::geometry::Ellipse;
 use searoom::obstacle::{LandObstacle, Obstacle};
-use searoom::pipeline::{self, Run};
+use searoom::pipeline::{self, RelaxationLevel, Run};
 use searoom::planner::space_time;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, Representation};
@@ -156,6 +156,37 @@ fn a_plan_that_may_take_more_risk_costs_no_more() {
             costs.windows(2).all(|c| c[1] < c[0] * 1.02),
             "not decreasing: {costs:?}"
         );
+    }
+}
+
+/// Where a risk is accepted, the plan that takes none is a candidate too.
+#[test]
+fn an_accepted_risk_never_makes_a_plan_dearer() {
+    let risks = [0.0, 0.1, 0.3, 0.6];
+    for compliance in [Compliance::None, Compliance::Shape, Compliance::Rules] {
+        let mut cheaper = 0;
+        for scenario in scenarios(6) {
+            let costs = risks.map(|max_risk| {
+                let mut changed = scenario.clone();
+                (changed.compliance, changed.max_risk) = (compliance, max_risk);
+                let run = pipeline::run(changed);
+                assert_claims("risk", &run);
+                let plan = run.planned.outcome.plan();
+                let complies = run.level == RelaxationLevel::Compliant;
+                plan.filter(|_| complies).map(|plan| plan.cost)
+            });
+            let Some(without) = costs[0] else { continue };
+            for cost in costs {
+                let cost = cost.expect("a plan that takes no risk is one that may");
+                assert!(
+                    cost <= without,
+                    "{}, {compliance:?}: {costs:?}",
+                    scenario.title
+                );
+            }
+            cheaper += usize::from(costs[3] < Some(0.9 * without));
+        }
+        assert!(cheaper >= 10, "{compliance:?}: {cheaper}");
     }
 }
 
