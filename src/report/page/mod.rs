@@ -271,7 +271,7 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
                                 } @else if let Some(section) = sections.get(index) {
                                     th scope="row" { a href=(format!("#s{section}")) { (cell.0) } }
                                 } @else {
-                                    th scope="row" { (cell.0) }
+                                    th scope="row" { span { (cell.0) } }
                                 }
                             }
                         }
