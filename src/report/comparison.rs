@@ -58,8 +58,18 @@ fn groups(entries: &[EntryDocument]) -> Vec<Vec<&EntryDocument>> {
     groups
 }
 
-/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part.
+/// How the name of a method ends that plans around ellipsoids.
+const ELLIPSOIDS: &str = ", ellipsoids";
+
+/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part, and
+/// `space-time, A* and Dijkstra, polytopes and ellipsoids` where each occurs with polytopes and with ellipsoids.
 pub(super) fn joined(methods: &[&str]) -> String {
+    let (round, other): (Vec<&str>, Vec<&str>) =
+        methods.iter().partition(|m| m.ends_with(ELLIPSOIDS));
+    let plain = round.iter().map(|m| m.trim_end_matches(ELLIPSOIDS));
+    if !other.is_empty() && plain.eq(other.iter().copied()) {
+        return format!("{}, polytopes and ellipsoids", joined(&other));
+    }
     let split: Vec<Vec<&str>> = methods.iter().map(|m| m.split(", ").collect()).collect();
     let first = &split[0];
     let differ = |part: &usize| split.iter().any(|m| m.get(*part) != first.get(*part));
@@ -89,7 +99,9 @@ pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let header = "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
                   clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks";
     let rows = groups.iter().map(|group| row(group));
-    let mut grid = Grid::new(header, 2..12, rows).breaking("method");
+    let mut grid = Grid::new(header, 2..12, rows)
+        .breaking("method", 22)
+        .breaking("breaks", 9);
     if is_sweep(entries) {
         grid.header.insert(2, "accepted\nrisk");
         grid.numbers.end += 1;
@@ -262,7 +274,7 @@ mod tests {
             ),
             (
                 &["space-time, A*", "space-time, A*, ellipsoids"],
-                "space-time, A* and space-time, A*, ellipsoids",
+                "space-time, A*, polytopes and ellipsoids",
             ),
             (
                 &["path-time", "optimal control"],

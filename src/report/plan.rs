@@ -179,7 +179,8 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
     };
     let header =
         "leg, from\n[s], to\n[s], course\n[°], speed\n[kn], length\n[m], turn, what happens";
-    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row)).breaking("what happens")
+    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row))
+        .breaking("what happens", 22)
 }
 
 /// Formats the line for the time of no return.

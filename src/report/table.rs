@@ -24,9 +24,6 @@ const FURTHER: [&str; 7] = [
     "J",
 ];
 
-/// Least width of a column whose lines are broken before another column is dropped, in characters.
-const BROKEN_WIDTH: usize = 22;
-
 /// Where a text is shown. The default is a file: no colour, and as wide as need be.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Display {
@@ -49,14 +46,15 @@ pub(super) type Styled = (String, Tone);
 
 const MISSING: &str = "–";
 
+#[derive(Clone)]
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
     /// Range of numeric columns.
     pub numbers: std::ops::Range<usize>,
     pub rows: Vec<Vec<Styled>>,
-    /// The column whose lines may be broken where the table is too wide.
-    breaking: Option<&'static str>,
+    /// The columns whose lines may be broken where the table is too wide, and their least widths.
+    breaking: Vec<(&'static str, usize)>,
 }
 
 impl Grid {
@@ -70,16 +68,14 @@ impl Grid {
             header: names.split(", ").collect(),
             numbers,
             rows: rows.into_iter().collect(),
-            breaking: None,
+            breaking: Vec::new(),
         }
     }
 
-    /// Allows lines of a column to be broken.
-    pub fn breaking(self, name: &'static str) -> Self {
-        Self {
-            breaking: Some(name),
-            ..self
-        }
+    /// Allows lines of a column to be broken, to no less than this width, after those before.
+    pub fn breaking(mut self, name: &'static str, least: usize) -> Self {
+        self.breaking.push((name, least));
+        self
     }
 
     /// Removes the column whose name has this first line, if there is one.
@@ -122,25 +118,32 @@ impl Grid {
     }
 
     /// The table with lines broken so that it fits; itself where it is too wide for that.
-    fn fitted(mut self, width: usize, display: Display) -> Result<Self, Self> {
-        let Some(excess) = self.width(display).checked_sub(width).filter(|n| *n > 0) else {
-            return Ok(self);
-        };
-        let is_it = |header: &&str| Some(*header) == self.breaking;
-        let Some(column) = self.header.iter().position(is_it) else {
-            return Err(self);
-        };
+    fn fitted(self, width: usize, display: Display) -> Result<Self, Self> {
+        let mut broken = self.clone();
+        for (name, least) in &self.breaking {
+            let excess = broken.width(display).saturating_sub(width);
+            if excess == 0 {
+                break;
+            }
+            if let Some(column) = self.header.iter().position(|header| header == name) {
+                broken.narrow(column, excess, *least);
+            }
+        }
+        match broken.width(display) <= width {
+            true => Ok(broken),
+            false => Err(self),
+        }
+    }
+
+    /// Makes a column narrower by breaking its lines.
+    fn narrow(&mut self, column: usize, by: usize, least: usize) {
         let cells = self.rows.iter().map(|row| &row[column].0);
         let widest = cells.flat_map(|cell| cell.lines()).map(display_width).max();
-        let room = widest.unwrap_or(0).saturating_sub(excess);
-        if room < BROKEN_WIDTH {
-            return Err(self);
-        }
+        let room = widest.unwrap_or(0).saturating_sub(by).max(least);
         for row in &mut self.rows {
             let lines = row[column].0.lines().map(|line| broken(line, room, "  "));
             row[column].0 = lines.collect::<Vec<_>>().join("\n");
         }
-        Ok(self)
     }
 
     fn table(&self, display: Display) -> Table {
