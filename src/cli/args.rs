@@ -155,6 +155,10 @@ pub struct PlanArgs {
     /// planner)
     #[arg(long)]
     pub no_return: bool,
+    /// Also find a cost that no motion can be below, and so how far the plan may be from the best
+    /// (takes some seconds)
+    #[arg(long)]
+    pub bound: bool,
     /// Write the legs: a file ending in .csv, .geojson or .rtz; the last two need an origin
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub route: Option<PathBuf>,

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use searoom::document::PlanDocument;
+use searoom::document::{LowerBoundDocument, PlanDocument};
 use searoom::pipeline::{NoReturn, Run};
 use searoom::report::page::HtmlReport;
 use searoom::report::{
-    RouteError, RouteFormat, legs_text, no_return_line, no_return_reason, plan_document_text,
-    write_atomically,
+    NO_BOUND, RouteError, RouteFormat, bound_line, legs_text, no_return_line, no_return_reason,
+    plan_document_text, write_atomically,
 };
+use searoom::study::bound::lower_bound;
 
 use super::args::PlanArgs;
 use super::input::files::{Found, shown};
@@ -35,7 +36,12 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             if args.no_return && no_return.is_none() {
                 output.note(&no_return_reason(&run));
             }
+            let bound = args.bound.then(|| lower_bound(&run)).flatten();
+            if args.bound && bound.is_none() {
+                output.note(&NO_BOUND);
+            }
             let document = PlanDocument {
+                lower_bound: bound.map(LowerBoundDocument::from),
                 time_of_no_return_s: no_return.map(NoReturn::time),
                 ..PlanDocument::of(&run)
             };
@@ -43,7 +49,12 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
                 let text = plan_document_text(&document, output.display);
                 let legs = legs_text(&document, output.display);
-                format!("{text}{}\n{legs}", line.unwrap_or_default())
+                let bound = bound_line(&document).map(|line| format!("\n{line}"));
+                format!(
+                    "{text}{}{}\n{legs}",
+                    bound.unwrap_or_default(),
+                    line.unwrap_or_default()
+                )
             });
             let written = output.written(write(&products, &scene.found, &run, &document));
             let routed = route.map_or(Ok(()), |route| route.write(&run, &document));

@@ -77,6 +77,14 @@ pub struct ViolationDocument {
     pub t_s: Option<f64>,
 }
 
+/// A space-time error that no motion can be below, and the grid on which it was found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LowerBoundDocument {
+    pub space_time_error_m2: f64,
+    pub cell_m: f64,
+    pub step_s: f64,
+}
+
 /// Costs of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CostDocument {

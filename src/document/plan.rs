@@ -16,9 +16,10 @@ use serde::{Deserialize, Serialize};
 use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::parts::{
-    CostDocument, EscapeDocument, MissionDocument, NodeDocument, ObstacleDocument, OwnShipDocument,
-    PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
-    StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
+    CostDocument, EscapeDocument, LowerBoundDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
+    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
+    TurnDocument, ViolationDocument,
 };
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
@@ -79,6 +80,8 @@ pub struct PlanDocument {
     pub safe: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_bound: Option<LowerBoundDocument>,
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
@@ -139,6 +142,7 @@ impl PlanDocument {
             verified: verified(run),
             safe: Some(run.safe()),
             time_of_no_return_s: None,
+            lower_bound: None,
             violations: (run.evaluation.as_ref())
                 .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
             cost: cost(run),

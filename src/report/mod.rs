@@ -21,7 +21,8 @@ pub use campaign::campaign_text;
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
 pub use plan::{
-    legs_text, no_return_line, no_return_reason, plan_document_text, plan_text, suite_table,
+    NO_BOUND, bound_line, legs_text, no_return_line, no_return_reason, plan_document_text,
+    plan_text, suite_table,
 };
 pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_text, simulations_line};

@@ -183,6 +183,28 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
         .breaking("what happens", 22)
 }
 
+/// The note where no lower bound is found.
+pub const NO_BOUND: &str =
+    "no bound: it is found for plans along segments that arrive and enter no set";
+
+/// Formats the line for the lower bound of the cost; `None` where there is none.
+pub fn bound_line(plan: &PlanDocument) -> Option<String> {
+    let least = plan.lower_bound?.space_time_error_m2;
+    let cost = plan.cost.as_ref()?.space_time_error_m2;
+    let above = match least > 0.0 {
+        true => format!(
+            "; the plan's is at most {:.0} % above the least",
+            100.0 * (cost / least - 1.0)
+        ),
+        false => String::new(),
+    };
+    let least = square_metres(least);
+    Some(format!(
+        "  {:<13}no motion around these sets has a J below {least} m²{above}",
+        "bound"
+    ))
+}
+
 /// Formats the line for the time of no return.
 pub fn no_return_line(found: NoReturn) -> String {
     let text = match found {

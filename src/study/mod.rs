@@ -2,5 +2,6 @@
 //! scenario.
 
 pub mod assess;
+pub mod bound;
 pub mod compare;
 pub mod lint;
