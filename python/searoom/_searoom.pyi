@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
@@ -20,10 +21,14 @@ __all__ = [
     "Scenario",
     "SearoomError",
     "Simulation",
+    "Specification",
     "__version__",
+    "_replay",
     "assess",
     "compare",
+    "merge",
     "plan",
+    "summarise",
     "verify",
 ]
 
@@ -172,6 +177,42 @@ class Simulation:
     def record(self) -> dict[str, Any]:
         """The simulation document so far."""
 
+@final
+class Specification:
+    """A checked specification of a campaign. It never changes."""
+
+    @staticmethod
+    def read(file: str | PathLike[str]) -> Specification:
+        """Reads a specification file (docs/campaigns.md). The error has every fault."""
+    @staticmethod
+    def parse(text: str, folder: str | PathLike[str] | None = None) -> Specification:
+        """Reads the text of a specification. Its scenario files are searched from `folder`, by
+        default from where the program runs."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def hash(self) -> str:
+        """SHA-256 of its text and of all that it names, in hexadecimal digits."""
+    @property
+    def text(self) -> str: ...
+    @property
+    def strata(self) -> list[str]:
+        """The names of the strata."""
+    @property
+    def _folder(self) -> Path:
+        """Where its scenario files are."""
+    def _prepare(self, out: str | PathLike[str]) -> None:
+        """Makes the folder of a campaign, or checks that it is of this specification."""
+    def _sail(
+        self, number: int, of: int, out: str | PathLike[str], threads: int | None
+    ) -> dict[str, int]:
+        """Sails the rows of a shard that are not in the folder yet. Ctrl-C finishes the rows under
+        way."""
+
 def plan(scenario: Scenario, *, previous: Plan | dict[str, Any] | str | PathLike[str] | None = None) -> Plan:
     """Plans a scenario.
 
@@ -198,3 +239,21 @@ def assess(
 
 def compare(scenario: Scenario, *, max_risks: ArrayLike | None = None) -> dict[str, Any]:
     """Every planner that applies and two baselines on one scenario, at each accepted risk."""
+
+def summarise(
+    folder: str | PathLike[str], *, allow_other_builds: bool = False
+) -> dict[str, Any]:
+    """Counts the rows of a campaign that are there, with bounds on each probability.
+
+    `folder` is that of the campaign. Returns the document of `searoom campaign summarise --json`.
+    """
+
+def merge(folder: str | PathLike[str], *, allow_other_builds: bool = False) -> Path:
+    """Joins all parts of a campaign as `campaign.parquet` in its folder, and returns that file.
+
+    Damaged, foreign, missing and double rows are refused; the error names them.
+    """
+
+def _replay(folder: str | PathLike[str], row: int) -> tuple[dict[str, Any], list[str] | None]:
+    """The simulation document of a row that is sailed again, and the columns of the kept row from
+    which it differs."""
