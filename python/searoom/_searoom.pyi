@@ -158,9 +158,14 @@ class Plan:
 
 @final
 class Simulation:
-    """A scenario that is sailed step by step in the closed loop."""
+    """A scenario that is sailed step by step in the closed loop.
 
-    def __new__(cls, scenario: Scenario, *, measured_delay: bool = False) -> Simulation: ...
+    With `commanded` own ship does not plan: it holds course and speed until `command`.
+    """
+
+    def __new__(
+        cls, scenario: Scenario, *, measured_delay: bool = False, commanded: bool = False
+    ) -> Simulation: ...
     @property
     def finished(self) -> bool: ...
     @property
@@ -170,6 +175,27 @@ class Simulation:
     @property
     def targets(self) -> dict[str, ShipState]:
         """The true states of the targets."""
+    @property
+    def estimates(self) -> dict[str, ShipState]:
+        """The states of the targets as own ship's sensors and tracker have them."""
+    @property
+    def desired(self) -> ShipState:
+        """Where the desired trajectory has own ship now."""
+    @property
+    def duration_s(self) -> float:
+        """The end of the simulation."""
+    @property
+    def max_speed_mps(self) -> float:
+        """The largest speed of a command."""
+    def contact(self, since_s: float = 0.0) -> bool:
+        """True where own hull has touched a target's, or land since `since_s`."""
+    def command(self, course_deg: float, speed_mps: float) -> None:
+        """From now on own ship turns to a course, the shorter way at its turning radius, and holds
+        course and speed. Only where `commanded`. The speed changes at once, as in plans."""
+    def clear_commands(self, commands: ArrayLike) -> NDArray[np.bool_]:
+        """For the command that own ship follows, and for each row of a course and a speed: true
+        where it keeps own ship clear of the hard set of every target, and of land, to the end of
+        the simulation. The first entry is that of the command that is followed."""
     def step(self) -> None:
         """Moves all ships on to the next step or event. Without effect once finished."""
     def run(self) -> None:
@@ -205,6 +231,8 @@ class Specification:
     @property
     def _folder(self) -> Path:
         """Where its scenario files are."""
+    def simulation(self, row: int, *, commanded: bool = False) -> Simulation:
+        """The simulation of a row, from 0 on. `commanded` is that of `Simulation`."""
     def _prepare(self, out: str | PathLike[str]) -> None:
         """Makes the folder of a campaign, or checks that it is of this specification."""
     def _sail(

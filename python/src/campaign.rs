@@ -10,7 +10,8 @@ use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use searoom::campaign::{
-    CampaignError, Done, Folder, Progress, Row, Shard, Specification as Checked, differing,
+    CampaignError, Done, Folder, Progress, Row, RowScenario, Shard, Specification as Checked,
+    differing,
 };
 use searoom::simulation::Simulation;
 
@@ -106,6 +107,18 @@ impl Specification {
         Ok((parse, (&self.inner.text, &self.folder)))
     }
 
+    /// The simulation of a row, from 0 on. `commanded` is that of `Simulation`.
+    #[pyo3(signature = (row, *, commanded = false))]
+    fn simulation(
+        &self,
+        py: Python,
+        row: u64,
+        commanded: bool,
+    ) -> PyResult<crate::simulation::Simulation> {
+        let drawn = drawn(&self.inner, row)?;
+        crate::simulation::Simulation::begun(py, drawn.scenario, false, commanded)
+    }
+
     /// Makes the folder of a campaign, or checks that it is of this specification.
     fn _prepare(&self, out: PathBuf) -> PyResult<()> {
         let file = self.folder.join("specification");
@@ -192,6 +205,15 @@ impl Specification {
     }
 }
 
+fn drawn(specification: &Checked, row: u64) -> PyResult<RowScenario> {
+    if row >= specification.rows {
+        let allowed = format!("a row from 0 to {}", specification.rows - 1);
+        return Err(argument("row", row, allowed));
+    }
+    let drawn = specification.scenario(row);
+    drawn.ok_or_else(|| argument("row", row, "a row of which a draw is of its class"))
+}
+
 fn opened(folder: &Path) -> PyResult<Folder> {
     Folder::open(folder).map_err(refused)
 }
@@ -234,13 +256,7 @@ pub fn _replay(
 ) -> PyResult<(Bound<PyAny>, Option<Vec<&'static str>>)> {
     let folder = opened(&folder)?;
     let specification = folder.specification().map_err(refused)?;
-    if row >= specification.rows {
-        let allowed = format!("a row from 0 to {}", specification.rows - 1);
-        return Err(argument("row", row, allowed));
-    }
-    let drawn = specification.scenario(row);
-    let drawn =
-        drawn.ok_or_else(|| argument("row", row, "a row of which a draw is of its class"))?;
+    let drawn = drawn(&specification, row)?;
     let begun = detached(py, || Simulation::new(drawn.scenario.clone(), false))?;
     let mut simulation = begun.map_err(|found| faults(None, &found))?;
     while !simulation.finished() {

@@ -1,6 +1,7 @@
 //! The closed loop: current, sensors, tracker, plan, guidance and vessel, step by step.
 
 mod behaviour;
+mod commanded;
 mod contact;
 mod cycle;
 mod guidance;
@@ -11,6 +12,8 @@ mod sensor;
 mod stream;
 mod tracker;
 mod vessel;
+
+pub use commanded::Command;
 
 use behaviour::TrueTarget;
 use contact::Clearance;
@@ -123,6 +126,16 @@ impl Simulation {
     ///
     /// The error holds every reason why the loop cannot sail the scenario.
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
+        let mut simulation = Self::begun(scenario, measured_delay)?;
+        simulation.observe();
+        simulation.cycle(0.0, "start".to_owned());
+        simulation.activate();
+        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
+        Ok(simulation)
+    }
+
+    /// Before the first plan: own ship holds course and speed.
+    fn begun(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let settings = &scenario.simulation;
         let duration = settings.duration.unwrap_or(scenario.horizon);
         let faults = faults(&scenario, duration);
@@ -163,7 +176,7 @@ impl Simulation {
             simulated.track.assume_anew();
             Some(simulated)
         });
-        let mut simulation = Self {
+        Ok(Self {
             targets: targets.collect(),
             own: Own::new(&scenario),
             active: Active {
@@ -190,12 +203,7 @@ impl Simulation {
             keep_plans: false,
             plans: Vec::new(),
             scenario,
-        };
-        simulation.observe();
-        simulation.cycle(0.0, "start".to_owned());
-        simulation.activate();
-        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
-        Ok(simulation)
+        })
     }
 
     /// Every reason why a scenario cannot be sailed, as [`Self::new`] returns them.
