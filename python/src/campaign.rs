@@ -44,10 +44,7 @@ impl Specification {
     fn read(py: Python, file: PathBuf) -> PyResult<Self> {
         let read = detached(py, || Checked::read(&file))?;
         let inner = read.map_err(|error| refused(error.into()))?;
-        let folder = file.parent().unwrap_or(&file).to_owned();
-        // workers run elsewhere
-        let folder = std::path::absolute(&folder).unwrap_or(folder);
-        Ok(Self { inner, folder })
+        Ok(Self::beside(inner, file.parent()))
     }
 
     /// Reads the text of a specification. Its scenario files are searched from `folder`, by default
@@ -55,11 +52,10 @@ impl Specification {
     #[staticmethod]
     #[pyo3(signature = (text, folder = None))]
     fn parse(py: Python, text: &str, folder: Option<PathBuf>) -> PyResult<Self> {
-        let folder = folder.unwrap_or_else(|| PathBuf::from("."));
-        let folder = std::path::absolute(&folder).unwrap_or(folder);
+        let folder = folder.unwrap_or_default();
         let read = detached(py, || Checked::parse(text, &folder))?;
         let inner = read.map_err(|found| faults(None, &found))?;
-        Ok(Self { inner, folder })
+        Ok(Self::beside(inner, Some(&folder)))
     }
 
     #[getter]
@@ -165,6 +161,14 @@ impl Specification {
 }
 
 impl Specification {
+    /// With an absolute folder: workers run elsewhere.
+    fn beside(inner: Checked, folder: Option<&Path>) -> Self {
+        let given = folder.filter(|folder| !folder.as_os_str().is_empty());
+        let given = given.unwrap_or(Path::new("."));
+        let folder = std::path::absolute(given).unwrap_or(given.to_owned());
+        Self { inner, folder }
+    }
+
     /// The work is done on another thread, so that this one hears of Ctrl-C.
     fn sail(
         &self,

@@ -45,7 +45,7 @@ def environment(**settings: Any) -> searoom.gym.Encounters:
 def sail(env: searoom.gym.Encounters, row: int, masked: bool) -> dict[str, Any]:
     """An agent that chooses at random among what is allowed, or among everything."""
     chooses = np.random.default_rng(row)
-    _, info = env.reset(seed=row, options={"row": row})
+    _, info = env.reset(seed=row, options={"row": row})  # a scenario has no rows
     shielded, total, over = info["shielded"], 0.0, False
     while not over:
         allowed = env.action_masks() if masked else np.ones(1 + len(env.alterations), bool)
@@ -167,3 +167,18 @@ def test_what_is_wrong_is_named() -> None:
     planned = searoom.Simulation(searoom.Scenario.read(GIVE_WAY))
     with pytest.raises(searoom.InputError, match="found one that plans"):
         planned.command(0.0, 1.0)
+
+
+def test_land_is_kept_clear_of_too() -> None:
+    file = ROOT / "scenarios/harbour/munkholmen.toml"
+    env = searoom.gym.Encounters(searoom.Scenario.read(file), courses_deg=[-90, 0, 90])
+    obeys = sail(env, 0, masked=True)
+    assert obeys["shielded"] and not obeys["contact"] and obeys["record"]["land"]["least_m"] > 0.0
+    env.reset(seed=0)
+    port = 3
+    assert env.alterations[port - 1].tolist() == [-90.0, 1.0] and not env.action_masks()[port]
+    over = contact = False
+    while not over:
+        _, _, contact, truncated, _ = env.step(port)
+        over = contact or truncated
+    assert contact and env.simulation.record()["land"]["grounded"]

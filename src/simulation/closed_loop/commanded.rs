@@ -3,7 +3,8 @@
 use super::{Active, INSTANT, Simulation};
 use crate::colregs::SteadyShip;
 use crate::evaluation::least_land_distance;
-use crate::frame::{Pose, heading_of, wrap};
+use crate::frame::{Pose, Vector, heading_of, wrap};
+use crate::geometry::Window;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::pipeline;
 use crate::scenario::{Fault, Memory, Scenario};
@@ -156,6 +157,17 @@ impl Simulation {
             .filter(|s| s.end_time() > since + INSTANT);
         let recent: Vec<Segment> = recent.map(|s| s.between(since, s.end_time())).collect();
         let own = &self.scenario.own_ship.hull;
+        let places = recent
+            .iter()
+            .flat_map(|s| [s.start.position, s.end().position]);
+        let places: Vec<Vector> = places.collect();
+        // an arc is within its own length of its ends
+        let length = recent.iter().map(Segment::length).fold(0.0, f64::max);
+        let reach = own.half_diagonal() + length;
+        let window = Window::around(&places).filter(|_| reach.is_finite());
+        if window.is_some_and(|window| land.map.pieces_within(&window.grown(reach)).is_empty()) {
+            return false;
+        }
         // negated so that a NaN is a contact
         !recent.is_empty() && !(least_land_distance(land.map.polygons(), &recent, own).0 > 0.0)
     }
