@@ -5,7 +5,7 @@ use crate::colregs::SteadyShip;
 use crate::evaluation::least_land_distance;
 use crate::frame::{Pose, Vector, heading_of, wrap};
 use crate::geometry::Window;
-use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline;
 use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::Motion;
@@ -92,7 +92,12 @@ impl Simulation {
     /// is clear stays so (docs/closed-loop.md). O(commands × sets).
     pub fn clear_commands(&mut self, commands: &[Command]) -> (bool, Vec<bool>) {
         self.observe();
-        let (sets, land) = self.hard_sets();
+        let sets = self.hard_sets();
+        // all of it: a command may lead anywhere, while a plan ends at the mission's end
+        let land = self.around_land.get_or_init(|| {
+            let map = self.scenario.land.as_ref().map(|land| &land.map);
+            pipeline::land_obstacle(&self.scenario, map.map_or(&[], |map| map.pieces()))
+        });
         let is_clear = |segments: &[Segment]| {
             segments.iter().all(|segment| {
                 let enters = |set: &Obstacle| set.first_contact(segment, TOUCH_M).is_some();
@@ -113,8 +118,8 @@ impl Simulation {
         (is_clear(&present), each.collect())
     }
 
-    /// The hard sets of the targets and of land, from t = 0 now.
-    fn hard_sets(&mut self) -> (Vec<Obstacle>, LandObstacle) {
+    /// The hard sets of the targets, from t = 0 now.
+    fn hard_sets(&mut self) -> Vec<Obstacle> {
         let mut scenario = self.scenario.clone();
         for (target, simulated) in scenario.targets.iter_mut().zip(&mut self.targets) {
             let ship = simulated.track.set_at(self.time, 0.0);
@@ -128,9 +133,7 @@ impl Simulation {
         scenario.desired = self.scenario.desired.remaining(self.time);
         scenario.memory = Memory::default();
         let sets = pipeline::sets(&scenario).into_iter();
-        let land = pipeline::land_within_reach(&scenario);
-        let land = pipeline::land_obstacle(&scenario, &land);
-        (sets.map(|sets| sets.hard).collect(), land)
+        sets.map(|sets| sets.hard).collect()
     }
 
     /// The hulls, and the names, of the targets as own ship knows them, at this time.
@@ -212,7 +215,7 @@ mod tests {
     fn straight_commands_are_clear_outside_the_velocity_obstacle() {
         let mut simulation = crossing(Behaviour::Constant);
         let own = simulation.own().pose;
-        let obstacle = simulation.hard_sets().0.remove(0);
+        let obstacle = simulation.hard_sets().remove(0);
         let regions = obstacle.velocity_obstacles(own.position, simulation.duration);
         let regions = regions.expect("polygons");
         let (mut inside, mut outside) = (0, 0);

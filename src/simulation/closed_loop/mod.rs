@@ -15,6 +15,8 @@ mod vessel;
 
 pub use commanded::Command;
 
+use std::sync::OnceLock;
+
 use behaviour::TrueTarget;
 use contact::Clearance;
 use cycle::Cycle;
@@ -25,6 +27,7 @@ use tracker::Track;
 
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
+use crate::obstacle::LandObstacle;
 use crate::planner::Minimises;
 use crate::scenario::{Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
@@ -83,6 +86,8 @@ pub struct Simulation {
     conduct: SailedDocument,
     keep_plans: bool,
     plans: Vec<PlanDocument>,
+    /// All land of the map, where commands are tested against it.
+    around_land: OnceLock<LandObstacle>,
 }
 
 /// One target: its true motion, its reports and its track.
@@ -202,6 +207,7 @@ impl Simulation {
             conduct: SailedDocument::default(),
             keep_plans: false,
             plans: Vec::new(),
+            around_land: OnceLock::new(),
             scenario,
         })
     }
