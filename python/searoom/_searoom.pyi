@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
@@ -20,10 +21,14 @@ __all__ = [
     "Scenario",
     "SearoomError",
     "Simulation",
+    "Specification",
     "__version__",
+    "_replay",
     "assess",
     "compare",
+    "merge",
     "plan",
+    "summarise",
     "verify",
 ]
 
@@ -153,9 +158,14 @@ class Plan:
 
 @final
 class Simulation:
-    """A scenario that is sailed step by step in the closed loop."""
+    """A scenario that is sailed step by step in the closed loop.
 
-    def __new__(cls, scenario: Scenario, *, measured_delay: bool = False) -> Simulation: ...
+    With `commanded` own ship does not plan: it holds course and speed until `command`.
+    """
+
+    def __new__(
+        cls, scenario: Scenario, *, measured_delay: bool = False, commanded: bool = False
+    ) -> Simulation: ...
     @property
     def finished(self) -> bool: ...
     @property
@@ -165,12 +175,71 @@ class Simulation:
     @property
     def targets(self) -> dict[str, ShipState]:
         """The true states of the targets."""
+    @property
+    def estimates(self) -> dict[str, ShipState]:
+        """The states of the targets as own ship's sensors and tracker have them."""
+    @property
+    def desired(self) -> ShipState:
+        """Where the desired trajectory has own ship now."""
+    @property
+    def duration_s(self) -> float:
+        """The end of the simulation."""
+    @property
+    def max_speed_mps(self) -> float:
+        """The largest speed of a command."""
+    def contact(self, since_s: float = 0.0) -> bool:
+        """True where own hull has touched a target's, or land since `since_s`."""
+    def command(self, course_deg: float, speed_mps: float) -> None:
+        """From now on own ship turns to a course, the shorter way at its turning radius, and holds
+        course and speed. Only where `commanded`. The speed changes at once, as in plans."""
+    def clear_commands(self, commands: ArrayLike) -> NDArray[np.bool_]:
+        """For the command that own ship follows, and for each row of a course and a speed: true
+        where it keeps own ship clear of the hard set of every target, and of land, to the end of
+        the simulation. The first entry is that of the command that is followed."""
     def step(self) -> None:
         """Moves all ships on to the next step or event. Without effect once finished."""
     def run(self) -> None:
         """Steps until it is finished. Ctrl-C interrupts between two steps."""
     def record(self) -> dict[str, Any]:
         """The simulation document so far."""
+
+@final
+class Specification:
+    """A checked specification of a campaign. It never changes."""
+
+    @staticmethod
+    def read(file: str | PathLike[str]) -> Specification:
+        """Reads a specification file (docs/campaigns.md). The error has every fault."""
+    @staticmethod
+    def parse(text: str, folder: str | PathLike[str] | None = None) -> Specification:
+        """Reads the text of a specification. Its scenario files are searched from `folder`, by
+        default from where the program runs."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def hash(self) -> str:
+        """SHA-256 of its text and of all that it names, in hexadecimal digits."""
+    @property
+    def text(self) -> str: ...
+    @property
+    def strata(self) -> list[str]:
+        """The names of the strata."""
+    @property
+    def _folder(self) -> Path:
+        """Where its scenario files are."""
+    def simulation(self, row: int, *, commanded: bool = False) -> Simulation:
+        """The simulation of a row, from 0 on. `commanded` is that of `Simulation`."""
+    def _prepare(self, out: str | PathLike[str]) -> None:
+        """Makes the folder of a campaign, or checks that it is of this specification."""
+    def _sail(
+        self, number: int, of: int, out: str | PathLike[str], threads: int | None
+    ) -> dict[str, int]:
+        """Sails the rows of a shard that are not in the folder yet. Ctrl-C finishes the rows under
+        way."""
 
 def plan(scenario: Scenario, *, previous: Plan | dict[str, Any] | str | PathLike[str] | None = None) -> Plan:
     """Plans a scenario.
@@ -198,3 +267,21 @@ def assess(
 
 def compare(scenario: Scenario, *, max_risks: ArrayLike | None = None) -> dict[str, Any]:
     """Every planner that applies and two baselines on one scenario, at each accepted risk."""
+
+def summarise(
+    folder: str | PathLike[str], *, allow_other_builds: bool = False
+) -> dict[str, Any]:
+    """Counts the rows of a campaign that are there, with bounds on each probability.
+
+    `folder` is that of the campaign. Returns the document of `searoom campaign summarise --json`.
+    """
+
+def merge(folder: str | PathLike[str], *, allow_other_builds: bool = False) -> Path:
+    """Joins all parts of a campaign as `campaign.parquet` in its folder, and returns that file.
+
+    Damaged, foreign, missing and double rows are refused; the error names them.
+    """
+
+def _replay(folder: str | PathLike[str], row: int) -> tuple[dict[str, Any], list[str] | None]:
+    """The simulation document of a row that is sailed again, and the columns of the kept row from
+    which it differs."""

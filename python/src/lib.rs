@@ -1,5 +1,6 @@
 //! The native part of the Python package `searoom`. `searoom/_searoom.pyi` describes it.
 
+mod campaign;
 mod error;
 mod plan;
 mod scenario;
@@ -16,6 +17,7 @@ use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint};
 use searoom::study::compare::{Entry, candidates, methods};
 use searoom::verification::{is_simulation, verified_plan, verify, verify_simulations};
 
+use campaign::{_replay, Specification, py_merge, py_summarise};
 use error::{
     DocumentError, InputError, InternalError, NoPlanError, SearoomError, argument, detached,
 };
@@ -170,8 +172,9 @@ fn py_compare<'py>(
 mod _searoom {
     #[pymodule_export]
     use super::{
-        DocumentError, InputError, InternalError, NoPlanError, Plan, Scenario, SearoomError,
-        Simulation, py_assess, py_compare, py_plan, py_verify,
+        _replay, DocumentError, InputError, InternalError, NoPlanError, Plan, Scenario,
+        SearoomError, Simulation, Specification, py_assess, py_compare, py_merge, py_plan,
+        py_summarise, py_verify,
     };
 
     #[pymodule_export]

@@ -5,6 +5,6 @@ mod closed_loop;
 #[path = "../../tests/campaigns/encounter_generator.rs"]
 mod encounter_generator;
 
-pub use closed_loop::Simulation;
+pub use closed_loop::{Command, Simulation};
 #[cfg(test)]
 pub(crate) use encounter_generator::{EncounterKind, Placement, random_encounter, random_traffic};

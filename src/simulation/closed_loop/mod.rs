@@ -1,6 +1,7 @@
 //! The closed loop: current, sensors, tracker, plan, guidance and vessel, step by step.
 
 mod behaviour;
+mod commanded;
 mod contact;
 mod cycle;
 mod guidance;
@@ -12,6 +13,10 @@ mod stream;
 mod tracker;
 mod vessel;
 
+pub use commanded::Command;
+
+use std::sync::OnceLock;
+
 use behaviour::TrueTarget;
 use contact::Clearance;
 use cycle::Cycle;
@@ -22,6 +27,7 @@ use tracker::Track;
 
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
+use crate::obstacle::LandObstacle;
 use crate::planner::Minimises;
 use crate::scenario::{Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings};
 use crate::target::ShipTrack;
@@ -80,6 +86,8 @@ pub struct Simulation {
     conduct: SailedDocument,
     keep_plans: bool,
     plans: Vec<PlanDocument>,
+    /// All land of the map, where commands are tested against it.
+    around_land: OnceLock<LandObstacle>,
 }
 
 /// One target: its true motion, its reports and its track.
@@ -123,6 +131,16 @@ impl Simulation {
     ///
     /// The error holds every reason why the loop cannot sail the scenario.
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
+        let mut simulation = Self::begun(scenario, measured_delay)?;
+        simulation.observe();
+        simulation.cycle(0.0, "start".to_owned());
+        simulation.activate();
+        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
+        Ok(simulation)
+    }
+
+    /// Before the first plan: own ship holds course and speed.
+    fn begun(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let settings = &scenario.simulation;
         let duration = settings.duration.unwrap_or(scenario.horizon);
         let faults = faults(&scenario, duration);
@@ -163,7 +181,7 @@ impl Simulation {
             simulated.track.assume_anew();
             Some(simulated)
         });
-        let mut simulation = Self {
+        Ok(Self {
             targets: targets.collect(),
             own: Own::new(&scenario),
             active: Active {
@@ -189,13 +207,9 @@ impl Simulation {
             conduct: SailedDocument::default(),
             keep_plans: false,
             plans: Vec::new(),
+            around_land: OnceLock::new(),
             scenario,
-        };
-        simulation.observe();
-        simulation.cycle(0.0, "start".to_owned());
-        simulation.activate();
-        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
-        Ok(simulation)
+        })
     }
 
     /// Every reason why a scenario cannot be sailed, as [`Self::new`] returns them.
