@@ -4,6 +4,9 @@ use searoom::colregs::Role;
 use searoom::pipeline::{self, Run};
 use searoom::scenario::Scenario;
 
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
+use crate::campaigns::meeting;
+
 fn run(text: &str) -> Run {
     pipeline::run(Scenario::parse(text).expect("valid"))
 }
@@ -25,6 +28,23 @@ fn no_rule_is_broken_where_none_need_be() {
         for report in run.judged_compliance().iter().flatten() {
             let broken: Vec<_> = report.broken().collect();
             assert!(broken.is_empty(), "{title}: {broken:?}");
+        }
+    }
+}
+
+/// The target is on own starboard beam, near, and on nearly the same course.
+#[test]
+fn a_turn_at_less_speed_where_neither_alone_keeps_the_rules() {
+    for seed in [104, 193, 742, 1272] {
+        let run = pipeline::run(meeting(EncounterKind::GiveWay, seed, &Meeting::NEAR));
+        let plan = run.planned.outcome.plan().expect("a plan");
+        let mut segments = plan.trajectory.segments().iter();
+        assert!(
+            segments.any(|s| s.turn_rate < 0.0 && s.speed <= 2.5),
+            "{seed}"
+        );
+        for report in run.judged_compliance().iter().flatten() {
+            assert_eq!(report.broken().count(), 0, "{seed} {report:?}");
         }
     }
 }

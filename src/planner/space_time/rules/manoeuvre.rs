@@ -6,6 +6,8 @@
 //! hold ─► half speed or less ───────────► passed ─► follow the route
 //! ```
 //!
+//! Where neither is clear, the turn is made at half speed or less.
+//!
 //! A manoeuvre has at most five parameters. For the latest departure that has a clear manoeuvre,
 //! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few
 //! changes of speed by construction. A manoeuvre under way keeps the parameters that are done; the
@@ -46,7 +48,7 @@ const ENDING_STRIDE: usize = 2;
 const BACK: [f64; 3] = [0.3, 0.6, 1.0];
 
 /// Departures, as fractions of the time until the latest one.
-const LEAVE: [f64; 3] = [1.0, 0.6, 0.2];
+const LEAVE: [f64; 4] = [1.0, 0.6, 0.2, 0.0];
 
 /// Seconds. The first alteration of a ship that meets a risk follows at once.
 const REACT_S: f64 = 20.0;
@@ -179,6 +181,8 @@ pub(super) struct Manoeuvres<'s, 'a> {
     clock: Clock,
     /// True for a target that is not passed nearer than a length, Rule 8(d).
     keeps_a_length: fn(&Passing) -> bool,
+    /// True where turns are made at half speed or less too.
+    slows_to_turn: bool,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     unit: f64,
 }
@@ -224,6 +228,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             passing: passing.collect(),
             clock,
             keeps_a_length: FROM_ALL,
+            slows_to_turn: false,
             unit: (radius / ManoeuvreSpeeds::of(context.problem).normal / NORMAL_TURN_S).max(1.0),
         }
     }
@@ -315,6 +320,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         &mut self,
         find: impl Fn(&Self) -> Option<Found>,
     ) -> Option<Found> {
+        let problem = self.problem();
+        let may_slow = problem.duty().may_slow && problem.under_way.is_none();
         let mut tried = usize::MAX;
         for keeps_a_length in [FROM_ALL, FROM_KEPT_CLEAR, FROM_NONE] {
             let number = self.passing.iter().filter(|p| keeps_a_length(p)).count();
@@ -323,9 +330,15 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
             tried = number;
             self.keeps_a_length = keeps_a_length;
-            let found = find(self);
-            if found.is_some() || self.clock.is_up() {
-                return found;
+            for slows_to_turn in [false, true] {
+                if slows_to_turn && !may_slow {
+                    break;
+                }
+                self.slows_to_turn = slows_to_turn;
+                let found = find(self);
+                if found.is_some() || self.clock.is_up() {
+                    return found;
+                }
             }
         }
         None
@@ -433,26 +446,26 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let ordered = ManoeuvreSpeeds::of(problem);
         let may_speed_up = (problem.encountered.iter()).any(|e| e.role.duties().may_speed_up);
         let faster = (may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
+        // half of the desired speed, also where the ship cannot keep just that
+        let legs = problem.desired.legs().iter().map(|leg| leg.speed);
+        let desired = legs.fold(0.0, f64::max).min(ordered.normal);
+        let slow = APPARENT_SPEED * desired * (1.0 + 1e-9);
+        let slow = own.moving_speeds().filter(|u| duty.may_slow && *u <= slow);
+        let turns = TURNS.map(|turn| turn * APPARENT_TURN);
+        let asides = ASIDE_S.map(|aside| aside * self.unit);
         let mut all: Vec<FirstAlteration> = Vec::new();
-        for speed in std::iter::once(ordered.normal).chain(faster) {
+        let turning = std::iter::once(ordered.normal).chain(faster);
+        for speed in turning.chain(slow.clone().filter(|_| self.slows_to_turn)) {
             for side in duty.sides() {
                 if duty.stands_on && *side == Side::Port {
                     continue;
                 }
-                for turn in TURNS.map(|turn| turn * APPARENT_TURN * side.turn_sign()) {
-                    let aside = ASIDE_S.map(|aside| aside * self.unit).into_iter();
-                    all.extend(aside.map(|aside| FirstAlteration::Turn { turn, aside, speed }));
+                for turn in turns.map(|turn| turn * side.turn_sign()) {
+                    all.extend(asides.map(|aside| FirstAlteration::Turn { turn, aside, speed }));
                 }
             }
         }
-        if duty.may_slow {
-            // half of the desired speed, also where the ship cannot keep just that
-            let legs = problem.desired.legs().iter().map(|leg| leg.speed);
-            let desired = legs.fold(0.0, f64::max).min(ordered.normal);
-            let slow = APPARENT_SPEED * desired * (1.0 + 1e-9);
-            let speeds = own.moving_speeds().filter(|u| *u <= slow);
-            all.extend(speeds.map(|speed| FirstAlteration::Slow { speed }));
-        }
+        all.extend(slow.map(|speed| FirstAlteration::Slow { speed }));
         all
     }
 
