@@ -1,5 +1,6 @@
 //! Bounds on a probability from counts.
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use statrs::function::beta::{beta_reg, ln_beta};
 
 /// Steps of a bisection: more than a double has bits.
@@ -66,6 +67,25 @@ pub fn anytime(count: u64, trials: u64, confidence: f64) -> [f64; 2] {
         1.0
     };
     [low, high]
+}
+
+/// Mean of independent estimates, its standard error, and its interval by Student's t
+/// distribution.
+///
+/// The interval is that of the logarithm of the mean (delta method): never below zero, and wider
+/// above. It assumes that the mean is about normal. From 0 to 1 for fewer than two estimates.
+pub(super) fn mean_interval(estimates: &[f64], confidence: f64) -> (f64, f64, [f64; 2]) {
+    let n = estimates.len() as f64;
+    let mean = estimates.iter().sum::<f64>() / n;
+    let squares = estimates.iter().map(|x| (x - mean).powi(2));
+    let error = (squares.sum::<f64>() / (n - 1.0) / n).sqrt();
+    let Ok(student) = StudentsT::new(0.0, 1.0, n - 1.0) else {
+        return (mean, f64::INFINITY, [0.0, 1.0]);
+    };
+    let level = f64::midpoint(1.0, confidence);
+    let quantile = edge(0.0, 1e6, |x| student.cdf(x) < level);
+    let factor = (quantile * error / mean).exp();
+    (mean, error, [mean / factor, (mean * factor).min(1.0)])
 }
 
 #[cfg(test)]
@@ -136,6 +156,18 @@ mod tests {
             assert!((mirrored[0] - (1.0 - high)).abs() < 1e-9 && mirrored[1] == 1.0);
         }
         assert_eq!(anytime(0, 0, 0.95), [0.0, 1.0]);
+    }
+
+    /// Quantile of a table: 2.776 for four degrees of freedom.
+    #[test]
+    fn the_interval_of_a_mean_is_that_of_students_distribution() {
+        let (mean, error, [low, high]) = mean_interval(&[0.1, 0.2, 0.3, 0.4, 0.5], 0.95);
+        near(mean, 0.3);
+        near(error, (0.025_f64 / 5.0).sqrt());
+        let factor = (2.776_445_105_2 * error / mean).exp();
+        near(high, (mean * factor).min(1.0));
+        near(low, mean / factor);
+        assert_eq!(mean_interval(&[0.5], 0.95).2, [0.0, 1.0]);
     }
 
     /// 400 runs of up to 500 trials, watched after each: at most one in 20 may leave the interval,

@@ -57,12 +57,17 @@ pub enum PartError {
     OtherColumns(String),
 }
 
+/// The version of the program, and a hash of its sources.
+pub(super) fn build() -> String {
+    concat!(env!("CARGO_PKG_VERSION"), "+", env!("SEAROOM_SOURCES")).to_owned()
+}
+
 impl Header {
     /// Of this build.
     pub fn new(hash: &str, rows: Range<u64>) -> Self {
         Self {
             hash: hash.to_owned(),
-            build: env!("CARGO_PKG_VERSION").to_owned(),
+            build: build(),
             rows,
         }
     }

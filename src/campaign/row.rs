@@ -280,8 +280,8 @@ impl<'a> Sailed<'a> {
 pub struct Row {
     /// One cell for each of [`COLUMNS`].
     pub cells: Vec<Cell>,
-    /// The document of a row that somebody has to look at: with a contact, a cycle without a plan,
-    /// or a broken rule.
+    /// The document of a row that somebody has to look at: with a contact, a cycle without a plan
+    /// or with one that is not safe, or a broken rule.
     pub document: Option<Box<SimulationDocument>>,
 }
 
@@ -289,14 +289,25 @@ impl Row {
     /// Sails a row to its end. A row that cannot be drawn, or at which the program fails, has the
     /// outcome "fault".
     pub fn sail(specification: &Specification, row: u64) -> Self {
-        let begun = thread_seconds();
-        let sail = || {
-            let scenario = specification.scenario(row)?;
-            let mut simulation = Simulation::new(scenario.scenario.clone(), false).ok()?;
+        Self::sail_by(specification, row, |scenario| {
+            let mut simulation = Simulation::new(scenario, false).ok()?;
             while !simulation.finished() {
                 simulation.step();
             }
-            Some((scenario, simulation.record()))
+            Some(simulation.record())
+        })
+    }
+
+    fn sail_by(
+        specification: &Specification,
+        row: u64,
+        simulate: impl Fn(Scenario) -> Option<SimulationDocument>,
+    ) -> Self {
+        let begun = thread_seconds();
+        let sail = || {
+            let drawn = specification.scenario(row)?;
+            let document = simulate(drawn.scenario.clone())?;
+            Some((drawn, document))
         };
         // a fault of one row in a million must not end the others; `replay` shows where it is
         let sailed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(sail));
@@ -325,7 +336,8 @@ impl Row {
             cells: COLUMNS.iter().map(|column| column.cell(&sailed)).collect(),
             document: document.map(Box::new).filter(|document| {
                 let conduct = &document.conduct;
-                document.contact || conduct.without_plan > 0 || !conduct.breaks.is_empty()
+                let without_safe_plan = conduct.without_plan + conduct.unsafe_plans > 0;
+                document.contact || without_safe_plan || !conduct.breaks.is_empty()
             }),
         }
     }
@@ -343,5 +355,25 @@ fn thread_seconds() -> f64 {
         use std::time::{SystemTime, UNIX_EPOCH};
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         since.map_or(0.0, |since| since.as_secs_f64())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_at_which_the_program_panics_is_a_fault() {
+        let text = "name = 'one'\nseed = 1\nrows = 4\n[[strata]]\nname = 'a'\n\
+                    scenario = 'scenarios/colregs/head-on.toml'\n";
+        let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let specification = Specification::parse(text, here).expect("a specification");
+        let row = Row::sail_by(&specification, 3, |_| panic!("on purpose"));
+        let word = |word: &str| Cell::Word(Some(word.to_owned()));
+        assert_eq!(row.cells[column("outcome")], word(FAULT));
+        assert_eq!(row.cells[column("stratum")], word("a"));
+        assert_eq!(row.cells[0], Cell::Count(Some(3)));
+        assert_eq!(row.cells[column("contact")], Cell::Truth(None));
+        assert_eq!((row.cells.len(), row.document), (COLUMNS.len(), None));
     }
 }

@@ -131,14 +131,22 @@ impl Specification {
     pub fn scenario(&self, row: u64) -> Option<RowScenario> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(row);
-        let stratum = self.stratum(row);
-        let mut scenario = stratum.scenario.clone();
-        scenario.title = format!("{}, row {row}", stratum.name);
+        let mut drawn = self.stratum(row).draw(&mut rng)?;
+        drawn.scenario.title += &format!(", row {row}");
+        Some(drawn)
+    }
+}
+
+impl Stratum {
+    /// A scenario of this stratum; `None` where 10,000 draws are of another class.
+    pub(super) fn draw(&self, rng: &mut impl Rng) -> Option<RowScenario> {
+        let mut scenario = self.scenario.clone();
+        scenario.title.clone_from(&self.name);
         // a number of a document has 53 bits
         scenario.simulation.seed = rng.random::<u64>() >> 12;
         let mut redrawn = 0;
-        if let Some(drawn) = &stratum.drawn {
-            let (ship, replaced) = drawn.encounter.draw(&scenario.own_ship, &mut rng)?;
+        if let Some(drawn) = &self.drawn {
+            let (ship, replaced) = drawn.encounter.draw(&scenario.own_ship, rng)?;
             redrawn = replaced;
             scenario.targets = vec![drawn.target(ship)];
         }

@@ -16,7 +16,7 @@ use crate::document::{
 use crate::input::{Fault, InputError};
 use crate::text::counted;
 
-const CONFIDENCE: f64 = 0.95;
+pub(super) const CONFIDENCE: f64 = 0.95;
 
 /// Rows that a summary names.
 const WORST: usize = 10;
@@ -259,7 +259,7 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
     let all = group(&|_| true, "all", None);
     Ok(CampaignDocument {
         format: CAMPAIGN_FORMAT.to_owned(),
-        build: env!("CARGO_PKG_VERSION").to_owned(),
+        build: super::part::build(),
         campaign: index.name.clone(),
         specification: index.hash.clone(),
         rows: index.rows,
@@ -275,4 +275,36 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
         worst,
         timing: CampaignTimingDocument { cpu_s },
     })
+}
+
+/// The finite values of some columns of numbers in each stratum, in order, of rows that were
+/// sailed; of two columns, the first over the second.
+pub fn distributions(
+    folder: &Folder,
+    other_builds: bool,
+    of: &[(&str, Option<&str>)],
+) -> Result<Vec<Vec<Vec<f64>>>, CampaignError> {
+    let strata = &folder.index.strata;
+    let mut values = vec![vec![Vec::new(); strata.len()]; of.len()];
+    sound(folder, other_builds, |part| {
+        for row in &part.rows {
+            let is_own = |(name, _): &(String, String)| row[column("stratum")] == word(name);
+            let Some(own) = strata.iter().position(is_own) else {
+                continue;
+            };
+            let number = |name: &str| match row[column(name)] {
+                Cell::Number(Some(number)) => number,
+                _ => f64::NAN,
+            };
+            for (values, (name, over)) in values.iter_mut().zip(of) {
+                let value = number(name) / over.map_or(1.0, number);
+                if value.is_finite() {
+                    values[own].push(value);
+                }
+            }
+        }
+    })?;
+    let each = values.iter_mut().flatten();
+    each.for_each(|values| values.sort_by(f64::total_cmp));
+    Ok(values)
 }

@@ -50,13 +50,14 @@ pub use verification::*;
 pub type MakeSchema = fn() -> Schema;
 
 /// The JSON schemas of the documents, by the command that prints each with `--json`.
-pub const SCHEMAS: [(&str, MakeSchema); 10] = [
+pub const SCHEMAS: [(&str, MakeSchema); 11] = [
     ("plan", schema::<PlanDocument>),
     ("suite", schema::<SuiteDocument>),
     ("lint", schema::<LintDocument>),
     ("compare", schema::<ComparisonDocument>),
     ("simulate", schema::<SimulatedDocument>),
     ("campaign", schema::<CampaignDocument>),
+    ("campaign-rare", schema::<RareContactDocument>),
     ("assess", schema::<AssessmentDocument>),
     ("check", schema::<CheckDocument>),
     ("verify", schema::<VerificationDocument>),

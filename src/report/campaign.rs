@@ -1,7 +1,9 @@
 //! Text of the summary of a campaign.
 
 use super::table::{Display, Grid, Styled, Tone, or_dash, plain};
-use crate::document::{CampaignDocument, GroupDocument, ShareDocument};
+use crate::document::{
+    CampaignDocument, GroupDocument, RareContactDocument, ShareDocument, WorstRowDocument,
+};
 use crate::text::{counted, tenths};
 
 /// Formats the counts of all rows, of classes with several strata and of strata, then the bounds,
@@ -49,7 +51,7 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
 }
 
 /// Groups with their names, without classes of one stratum.
-fn groups(summary: &CampaignDocument) -> Vec<(String, &GroupDocument)> {
+pub(super) fn groups(summary: &CampaignDocument) -> Vec<(String, &GroupDocument)> {
     let all = std::iter::once(("all".to_owned(), &summary.all));
     let has_several = |class: &&GroupDocument| {
         let mut own = summary.strata.iter().filter(|g| g.class == class.class);
@@ -61,7 +63,7 @@ fn groups(summary: &CampaignDocument) -> Vec<(String, &GroupDocument)> {
     all.chain(classes).chain(strata).collect()
 }
 
-fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
+pub(super) fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
     let count = |share: &ShareDocument, tone| {
         let tone = if share.count > 0 { tone } else { Tone::Plain };
         (share.count.to_string(), tone)
@@ -89,7 +91,7 @@ fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
     Grid::new(header, 1..12, rows)
 }
 
-fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
+pub(super) fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
     let interval = |[low, high]: [f64; 2]| -> Styled {
         // rounded outwards
         let percent = |share: f64, round: fn(f64) -> f64| round(share * 1e5) / 1e3;
@@ -105,4 +107,67 @@ fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
     let header = "stratum, contact\nexact, contact\nanytime, no plan\nexact, no plan\nanytime, \
                   rule broken\nexact, rule broken\nanytime";
     Grid::new(header, 1..7, rows)
+}
+
+/// The rows with the least clearance, each with the command that sails it again.
+pub(super) fn worst_grid(worst: &[WorstRowDocument], folder: &str) -> Grid {
+    let rows = worst.iter().map(|row| {
+        let clearance = match row.contact {
+            true => ("CONTACT".to_owned(), Tone::Bad),
+            false => plain(tenths(row.clearance_m)),
+        };
+        let number = row.row;
+        let again = format!("searoom campaign replay {folder} --row {number} --rrd {number}.rrd");
+        vec![
+            plain(number.to_string()),
+            plain(row.stratum.clone()),
+            clearance,
+            plain(again),
+        ]
+    });
+    Grid::new("row, stratum, clearance [m], command", 2..3, rows)
+}
+
+/// Formats the probability, the levels, and what it cost.
+pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> String {
+    let confidence = 100.0 * found.confidence;
+    let [low, high] = found.interval;
+    let replicas = found.replicas.len();
+    let spent = found.pilot_s + found.replicas_s;
+    let thousands = |seconds: f64| format!("{:.1} thousand simulated seconds", seconds / 1e3);
+    let levels = found.levels.iter().map(|level| {
+        let percent = level.fraction.map(|f| format!("{:.2}", 100.0 * f));
+        let distance = match level.distance_m > 0.0 {
+            true => tenths(level.distance_m),
+            false => "contact".to_owned(),
+        };
+        vec![plain(distance), or_dash(percent)]
+    });
+    let mut remarks = match (found.plain_rows, found.plain_s) {
+        (Some(rows), Some(seconds)) => format!(
+            "Plain rows for the same standard error: {rows:.0}, {}: {:.1} times as many.",
+            thousands(seconds),
+            seconds / spent
+        ),
+        _ => "No replica had a contact: the upper end is that of the first level.".to_owned(),
+    };
+    if found.standard_error * (replicas as f64).sqrt() > found.contact {
+        remarks += "\nReplicas differ by more than their mean: the interval may be too narrow, and \
+                       more trajectories are needed.";
+    }
+    [
+        format!(
+            "{}, {}: P(contact) = {:.3e}, {confidence:.0} % confidence: {low:.2e} to {high:.2e}",
+            found.campaign, found.stratum, found.contact
+        ),
+        Grid::new("distance [m], reached [%]", 0..2, levels).text(display),
+        format!(
+            "{} of {} trajectories from each level; {}, of which {:.1} for the levels.\n{remarks}",
+            counted(replicas, "replica"),
+            found.trajectories,
+            thousands(spent),
+            found.pilot_s / 1e3,
+        ),
+    ]
+    .join("\n\n")
 }

@@ -17,7 +17,7 @@ pub use crate::output::{WriteError, write_atomically};
 pub use crate::pipeline::Verdict;
 pub use crate::text::{broken, counted, printable, printable_lines};
 pub use assessment::assessment_text;
-pub use campaign::campaign_text;
+pub use campaign::{campaign_text, rare_contacts_text};
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
 pub use lint::lint_text;
 pub use plan::{

@@ -236,16 +236,19 @@ fn foreign_missing_and_double_rows_are_named() {
         "rows 0 to 2 in | and in | every row once; delete one",
     );
     fs::remove_file(&file).expect("removed");
-    // of another build
+    // of another build of the same version
     let mut other = Part::read(&part(&names[2])).expect("whole");
-    other.header.build = "0.0.9".to_owned();
+    let version = format!("{}+", env!("CARGO_PKG_VERSION"));
+    assert!(other.header.build.starts_with(&version));
+    let build = std::mem::replace(&mut other.header.build, format!("{version}0123"));
+    let of_other = format!("rows of searoom {version}0123");
     other.write(&part(&names[2]), "1/1").expect("written");
-    says(&said(2), "rows of searoom 0.0.9 | --allow-other-builds");
+    says(&said(2), &format!("{of_other} | --allow-other-builds"));
     let sail = format!("campaign run {folder}/spec.toml --out {folder}/out");
-    says(&stderr(&run(&sail).code(2)), "rows of searoom 0.0.9");
+    says(&stderr(&run(&sail).code(2)), &of_other);
     run(&format!("{merge} --allow-other-builds")).success();
     // of another specification
-    other.header.build = env!("CARGO_PKG_VERSION").to_owned();
+    other.header.build = build;
     other.header.hash = "0123456789abcdef".to_owned();
     other.write(&part(&names[2]), "1/1").expect("written");
     says(&said(2), "rows of the specification 0123456789ab");
@@ -359,7 +362,7 @@ fn documents_of_rows_with_a_fault_are_kept() {
     };
     let looked_at: Vec<String> = (parts[0].rows.iter().enumerate())
         .filter(|(_, row)| {
-            ["contact", "no_plan", "broken"]
+            ["contact", "no_plan", "unsafe_plans", "broken"]
                 .iter()
                 .any(|name| yes(row, name))
         })
@@ -377,6 +380,94 @@ fn documents_of_rows_with_a_fault_are_kept() {
     says(
         &text,
         "small: 40 of 40 rows | crossing | seen by AIS | anytime | Least clearance",
+    );
+}
+
+/// A ship too slow to plan is refused when its row is drawn, which is late.
+#[test]
+fn rows_that_cannot_be_sailed_are_faults_that_are_named() {
+    let folder = folder();
+    let slow = SPECIFICATION
+        .replace(
+            "speed_mps = 6\n",
+            "speed_mps = { from = 0.05, to = 0.25 }\n",
+        )
+        .replace(
+            "class = \"head-on\"",
+            "class = \"overtaking\"\nbehaviour = { kind = \"mutual\" }",
+        );
+    folder.write("spec.toml", slow);
+    let words = format!("campaign run {folder}/spec.toml --out {folder}/out");
+    let text = stdout(&run(&words).code(3));
+    let parts = parts(&folder, "out");
+    let is_fault = |row: &&Vec<Cell>| row[column("outcome")] == Cell::Word(Some("fault".into()));
+    let faults: Vec<&Vec<Cell>> = parts[0].rows.iter().filter(is_fault).collect();
+    assert!(!faults.is_empty() && faults.len() < 10, "{}", faults.len());
+    says(
+        &text,
+        &format!("40 rows sailed | failed at {} of them", faults.len()),
+    );
+    let summary = stdout(&run(&format!("campaign summarise {folder}/out")).success());
+    says(&summary, &format!("NOT COUNTED: {} row", faults.len()));
+    let Cell::Count(Some(row)) = faults[0][0] else {
+        panic!("a row has a number");
+    };
+    let replay = run(&format!("campaign replay {folder}/out --row {row}"));
+    let why = format!("row {row}: targets[0].behaviour: found | allowed: a speed of at least");
+    says(&stderr(&replay.code(2)), &why);
+}
+
+#[test]
+fn a_report_has_distributions_and_the_command_of_each_worst_row() {
+    let folder = folder();
+    sail(&folder, "out", 1, 2);
+    let words = format!("campaign summarise {folder}/out --report {folder}/page --json");
+    let summary = json(&words);
+    let figures = (1..=3).map(|n| format!("campaign-{n}.svg"));
+    let files: Vec<String> = figures.chain(["index.html".to_owned()]).collect();
+    assert_eq!(folder.names("page"), files);
+    let page = fs::read_to_string(folder.path().join("page/index.html")).expect("written");
+    for row in summary["worst"].as_array().expect("rows") {
+        let command = format!("campaign replay {folder}/out --row {} --rrd", row["row"]);
+        says(&page, &command);
+    }
+    let again = fs::read(folder.path().join("page/campaign-1.svg")).expect("written");
+    run(&words).success();
+    let drawn = fs::read(folder.path().join("page/campaign-1.svg")).expect("written");
+    assert!(again == drawn && String::from_utf8_lossy(&drawn).contains("crossing"));
+}
+
+#[test]
+fn rare_contacts_are_estimated_alike_each_time() {
+    let folder = folder();
+    let ram = SPECIFICATION.replace("factor = 1.5", "factor = 8, every_s = 10");
+    folder.write("spec.toml", ram);
+    let rare = format!("campaign rare {folder}/spec.toml");
+    let words = format!("{rare} --stratum crossing --trajectories 10 --replicas 5");
+    let found = json(&format!("{words} --json"));
+    assert_eq!(found, json(&format!("{words} --json")));
+    let number = |key: &str| found[key].as_f64().expect("a number");
+    assert!(number("replicas_s") > 0.0 && number("contact") <= 1.0);
+    let levels = found["levels"].as_array().expect("levels");
+    let distances = levels
+        .iter()
+        .map(|l| l["distance_m"].as_f64().expect("metres"));
+    let distances: Vec<f64> = distances.collect();
+    assert!(
+        distances.windows(2).all(|pair| pair[0] > pair[1]),
+        "{distances:?}"
+    );
+    assert_eq!(distances.last(), Some(&0.0));
+    let text = stdout(&run(&words).success());
+    says(
+        &text,
+        "small, crossing: P(contact) = | distance [m] | 5 replicas of 10 trajectories",
+    );
+    let names = "--stratum: found | allowed: one of [\"crossing\", \"seen by AIS\", \"a file\"]";
+    says(&stderr(&run(&rare).code(2)), names);
+    says(
+        &stderr(&run(&format!("{rare} --stratum other")).code(2)),
+        names,
     );
 }
 

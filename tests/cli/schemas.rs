@@ -171,6 +171,12 @@ fn other_documents_fit_their_schemas() {
             format!("campaign summarise {sailed_campaign} --json"),
         ),
         (
+            "campaign-rare",
+            format!(
+                "campaign rare {rows} --stratum crossing --trajectories 10 --replicas 5 --json"
+            ),
+        ),
+        (
             "assess",
             "assess scenarios/uncertainty/changing-ellipses.toml --json".to_owned(),
         ),

@@ -1,23 +1,30 @@
 //! `searoom campaign`: many random encounters, sailed in parts.
 
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use anyhow::{Context, anyhow, bail};
 use clap::{Args, Subcommand, ValueHint};
 use indicatif::ProgressStyle;
 use searoom::campaign::{
-    Folder, Progress, Row, Shard, Specification, differing, merge, run, summarise,
+    Effort, Folder, Progress, Row, Shard, Specification, differing, distributions, merge,
+    rare_contacts, run, summarise,
 };
-use searoom::report::{campaign_text, simulation_text, write_atomically};
+use searoom::document::CampaignDocument;
+use searoom::report::page::HtmlReport;
+use searoom::report::{campaign_text, rare_contacts_text, simulation_text, write_atomically};
 use searoom::simulation::Simulation;
 
 use super::input::files::Found;
 use super::output::products::{Products, Wanted, make_parent};
 use super::output::status::ExitStatus;
 use super::output::{Output, json};
+use super::runner::guarded;
 use super::simulate::catch_interrupt;
+
+/// Fraction of trajectories that go on to the next level: near the best, a fifth, for many levels.
+const FRACTION: f64 = 0.2;
 
 #[derive(Debug, Args)]
 pub struct CampaignArgs {
@@ -35,6 +42,8 @@ pub enum CampaignCommand {
     Summarise(SummariseArgs),
     /// Sails a row again, and compares it with the one that is there
     Replay(ReplayArgs),
+    /// Estimates the probability of a contact that is too rare for rows (multilevel splitting)
+    Rare(RareArgs),
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +76,9 @@ pub struct MergeArgs {
 pub struct SummariseArgs {
     #[command(flatten)]
     pub parts: MergeArgs,
+    /// Write a report for a browser, index.html and its figures, into this folder
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub report: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -86,6 +98,29 @@ pub struct ReplayArgs {
     /// Write a Rerun recording
     #[arg(long, value_name = "FILE.rrd", value_hint = ValueHint::FilePath)]
     pub rrd: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct RareArgs {
+    /// The specification (docs/campaigns.md)
+    #[arg(value_name = "SPEC.toml", value_hint = ValueHint::FilePath)]
+    pub specification: PathBuf,
+    /// The stratum; the only one by default
+    #[arg(long, value_name = "NAME")]
+    pub stratum: Option<String>,
+    /// Trajectories that begin at each level
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = whole(10..=100_000))]
+    pub trajectories: u64,
+    /// Independent estimates
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = whole(5..=10_000))]
+    pub replicas: u64,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn whole(range: std::ops::RangeInclusive<u64>) -> clap::builder::RangedU64ValueParser {
+    clap::value_parser!(u64).range(range)
 }
 
 fn shard(word: &str) -> Result<Shard, String> {
@@ -108,10 +143,15 @@ pub fn campaign(command: &CampaignCommand, output: &Output) -> anyhow::Result<Ex
         CampaignCommand::Summarise(args) => {
             let folder = Folder::open(&args.parts.folder)?;
             let summary = summarise(&folder, args.parts.allow_other_builds)?;
+            if let Some(file) = &args.report {
+                write_report(args, &folder, &summary, file)?;
+                output.wrote(&file.join("index.html"));
+            }
             let text = || campaign_text(&summary, output.display);
             Ok(output.show(args.json, &summary, text))
         }
         CampaignCommand::Replay(args) => replay(args, output),
+        CampaignCommand::Rare(args) => rare(args, output),
     }
 }
 
@@ -155,6 +195,41 @@ fn sail(args: &RunArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         (false, _) => ExitStatus::InternalFault,
     };
     Ok(shown.max(status))
+}
+
+/// Distributions of a report: title and axis, and the columns of rows, the first over the second.
+const DISTRIBUTIONS: [(&str, &str); 3] = [
+    ("Least clearance", "Least distance of the hulls [m]"),
+    (
+        "Lead of the first manoeuvre",
+        "Time before the closest approach [s]",
+    ),
+    ("Space-time error", "J sailed / J of the first plan"),
+];
+const COLUMNS: [(&str, Option<&str>); 3] = [
+    ("clearance_m", None),
+    ("lead_s", None),
+    ("sailed_cost_m2", Some("planned_cost_m2")),
+];
+
+fn write_report(
+    args: &SummariseArgs,
+    folder: &Folder,
+    summary: &CampaignDocument,
+    into: &Path,
+) -> anyhow::Result<()> {
+    let values = distributions(folder, args.parts.allow_other_builds, &COLUMNS)?;
+    let named = DISTRIBUTIONS.into_iter().zip(values);
+    let values: Vec<_> = named
+        .map(|((title, axis), values)| (title, axis, values))
+        .collect();
+    let mut report = HtmlReport::new();
+    report.add_campaign(summary, &values, &args.parts.folder.display().to_string());
+    let lead = format!(
+        "{} of {} rows of the specification {}.",
+        summary.rows_there, summary.rows, summary.specification
+    );
+    Ok(report.write(into, &summary.campaign, &lead)?)
 }
 
 fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
@@ -227,4 +302,31 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         },
     };
     Ok(status.max(written).max(compared))
+}
+
+fn rare(args: &RareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    let specification = Specification::read(&args.specification)?;
+    let names: Vec<&str> = specification.strata.iter().map(|s| &*s.name).collect();
+    let name = match (&args.stratum, names.as_slice()) {
+        (Some(name), _) => name,
+        (None, [only]) => *only,
+        (None, _) => bail!("--stratum: found none; allowed: one of {names:?}"),
+    };
+    let effort = Effort {
+        trajectories: args.trajectories as usize,
+        replicas: args.replicas as usize,
+        fraction: FRACTION,
+    };
+    // the pilot run is one step
+    let bar = output.progress(effort.replicas + 1);
+    let found = guarded(|| rare_contacts(&specification, name, &effort, &|| bar.inc(1)));
+    bar.finish_and_clear();
+    match found {
+        Err(fault) => Ok(output.fault(&format_args!("{name}: {fault}"))),
+        Ok(None) => bail!("--stratum: found {name:?}; allowed: one of {names:?}"),
+        Ok(Some(found)) => {
+            let text = || rare_contacts_text(&found, output.display);
+            Ok(output.show(args.json, &found, text))
+        }
+    }
 }

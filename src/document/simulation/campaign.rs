@@ -97,3 +97,46 @@ pub struct WorstRowDocument {
     pub clearance_m: f64,
     pub contact: bool,
 }
+
+/// Format name of an estimate of rare contacts.
+pub const RARE_FORMAT: &str = "searoom-campaign-rare/1";
+
+/// Probability of a contact in a stratum, by multilevel splitting.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RareContactDocument {
+    pub format: String,
+    pub build: String,
+    pub campaign: String,
+    /// Hash of the specification.
+    pub specification: String,
+    pub stratum: String,
+    /// Trajectories that begin at each level of a replica.
+    pub trajectories: usize,
+    /// Confidence of the interval.
+    pub confidence: f64,
+    /// Probability that hulls meet in a row: the mean of the replicas.
+    pub contact: f64,
+    pub interval: [f64; 2],
+    pub standard_error: f64,
+    /// Independent estimates.
+    pub replicas: Vec<f64>,
+    /// The levels in their order; the last is a contact.
+    pub levels: Vec<RareLevelDocument>,
+    /// Simulated seconds of the run that fixes the levels.
+    pub pilot_s: f64,
+    /// Simulated seconds of all replicas.
+    pub replicas_s: f64,
+    /// Plain rows for the same standard error; null without a contact.
+    pub plain_rows: Option<f64>,
+    /// Simulated seconds of these.
+    pub plain_s: Option<f64>,
+}
+
+/// A level of multilevel splitting.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RareLevelDocument {
+    /// Distance from a contact, metres.
+    pub distance_m: f64,
+    /// Fraction of the trajectories from the level before that reach it; null where none began.
+    pub fraction: Option<f64>,
+}

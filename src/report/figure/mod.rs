@@ -4,6 +4,7 @@
 //! lightness increases with the value, so fields remain readable in greyscale print.
 
 mod assessment;
+mod campaign;
 mod comparison;
 mod field;
 mod forces;
@@ -17,6 +18,7 @@ mod sections;
 mod simulation;
 
 pub use assessment::assessment_figure;
+pub(super) use campaign::distribution_panel;
 pub use comparison::comparison_figure;
 pub(super) use comparison::{comparison_panels, diagram_panels};
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};

@@ -9,9 +9,11 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::campaign::{bounds, counts, groups, worst_grid};
 use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
-    Figure, Panel, Style, comparison_panels, diagram_panels, plan_panels, simulation_panel,
+    Figure, Panel, Style, comparison_panels, diagram_panels, distribution_panel, plan_panels,
+    simulation_panel,
 };
 use super::plan::{TIME_COLUMN, legs_grid, suite_grid};
 use super::simulation::{
@@ -20,8 +22,8 @@ use super::simulation::{
 };
 use super::table::{Grid, Styled, Tone, verdict};
 use crate::document::{
-    PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteRunDocument, TIME_LINE,
-    headline, plan_lines,
+    CampaignDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument,
+    SuiteRunDocument, TIME_LINE, headline, plan_lines,
 };
 use crate::output::{WriteError, write_atomically};
 use crate::pipeline::Run;
@@ -144,6 +146,43 @@ impl HtmlReport {
                 h3 { "Alarms" }
                 ul { @for line in alarm_lines(simulation) { li { (line) } } }
             }
+        });
+    }
+
+    /// Adds the summary of a campaign: counts, bounds, distributions, and the worst rows.
+    ///
+    /// `values` has the title and the axis of each distribution, and its values in each stratum, in
+    /// order. `folder` is where the campaign is, for commands.
+    pub fn add_campaign(
+        &mut self,
+        summary: &CampaignDocument,
+        values: &[(&str, &str, Vec<Vec<f64>>)],
+        folder: &str,
+    ) {
+        let panels = values.iter().map(|(title, axis, values)| {
+            let names = summary.strata.iter().map(|stratum| stratum.name.as_str());
+            let strata: Vec<_> = names.zip(values.iter().map(Vec::as_slice)).collect();
+            distribution_panel(title, axis, &strata)
+        });
+        let subject = Subject {
+            stem: "campaign".to_owned(),
+            ..Subject::default()
+        };
+        let figures = self.draw(&subject, panels.collect());
+        let groups = groups(summary);
+        let confidence = 100.0 * summary.confidence;
+        self.section(html! {
+            h2 { "Rows" }
+            (table(counts(&groups).without("late"), &[]))
+            h2 { "Probabilities in percent" }
+            p.quiet {
+                (format!("{confidence:.0} % confidence; \"anytime\" holds for a run that is watched."))
+            }
+            (table(bounds(&groups), &[]))
+            h2 { "Distributions" }
+            (figures)
+            h2 { "Least clearance" }
+            (table(worst_grid(&summary.worst, folder), &[]))
         });
     }
 

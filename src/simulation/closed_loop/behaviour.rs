@@ -51,6 +51,11 @@ impl TrueTarget {
         }
     }
 
+    /// Draws anew what is chosen from now on.
+    pub fn reseed(&mut self, name: &str, seed: u64) {
+        self.rng = stream(seed, Purpose::Behaviour, name);
+    }
+
     /// Chooses course and speed from `time` until `time + step`. O(1), or O(log points) on a track.
     pub fn steer(&mut self, time: f64, step: f64, own: &SteadyShip) {
         let (heading, speed) = (self.file.pose.heading, self.file.speed);

@@ -65,7 +65,7 @@ const SHORT_STEP: f64 = 1e-6;
 /// assert!(sailed.safe && sailed.arrived && sailed.targets[0].least_clearance_m > Some(20.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Simulation {
     scenario: Scenario,
     measured_delay: bool,
@@ -91,7 +91,7 @@ pub struct Simulation {
 }
 
 /// One target: its true motion, its reports and its track.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Simulated {
     name: String,
     truth: TrueTarget,
@@ -109,7 +109,7 @@ struct Simulated {
 }
 
 /// A plan that own ship follows from some time on.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Active {
     start: f64,
     trajectory: Trajectory,
@@ -249,6 +249,53 @@ impl Simulation {
         self.targets
             .iter()
             .map(|target| (target.name.as_str(), target.truth.now))
+    }
+
+    /// Draws anew all that is random from now on. What was drawn before stays: places, sizes,
+    /// whether a target gives way, the present part of a current, reports that are under way.
+    pub(crate) fn reseed(&mut self, seed: u64) {
+        self.own.reseed(seed);
+        for target in &mut self.targets {
+            target.truth.reseed(&target.name, seed);
+            target.sensor.reseed(&target.name, seed);
+            if let Some(mutual) = &mut target.mutual {
+                mutual.reseed(seed);
+            }
+        }
+    }
+
+    /// How far a contact of hulls is: the least distance of the hulls, in metres, from now on, if
+    /// own ship keeps to its plan and the target holds course and speed, with `per_second` metres
+    /// added for each second until then. Zero after a contact, and never before.
+    /// Sampled: O(distance / `per_second`) for each target.
+    pub(crate) fn distance_from_contact(&self, per_second: f64) -> f64 {
+        if self.targets.iter().any(|t| t.clearance.is_contact()) {
+            return 0.0;
+        }
+        let (plan, hull) = (&self.active, self.scenario.own_ship.hull);
+        let in_plan = self.time - plan.start;
+        let now = self.own.pose(&plan.trajectory, in_plan);
+        let planned = plan.trajectory.pose_at(in_plan);
+        let mut least = f64::INFINITY;
+        for target in &self.targets {
+            let ship = target.truth.now;
+            let reach = hull.half_diagonal() + target.truth.hull.half_diagonal();
+            let mut ahead = 0.0;
+            while ahead * per_second < least {
+                let mut own = plan.trajectory.pose_at(in_plan + ahead);
+                own.position += now.position - planned.position;
+                let mut pose = ship.pose;
+                pose.position += ship.velocity() * ahead;
+                // centres are farther apart than hulls
+                if (pose.position - own.position).norm() - reach + ahead * per_second < least {
+                    let hulls = [hull.polygon(&own), target.truth.hull.polygon(&pose)];
+                    let apart = hulls[0].separation(&hulls[1]).max(0.0);
+                    least = least.min(apart + ahead * per_second);
+                }
+                ahead += self.settings().step;
+            }
+        }
+        least.max(f64::MIN_POSITIVE)
     }
 
     /// True at the end of the plan that own ship follows, and at the end of the simulation.

@@ -15,7 +15,7 @@ const SPEEDS: [f64; 2] = [0.5, 1.0];
 pub(super) const NO_WAY: f64 = 0.1;
 
 /// The closed loop of a target, whose only target is own ship.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct MutualTarget(Box<Simulation>);
 
 /// The loops of the targets that have one, in the scenario's order.
@@ -84,6 +84,11 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
 }
 
 impl MutualTarget {
+    /// Draws anew what is random from now on.
+    pub fn reseed(&mut self, seed: u64) {
+        self.0.reseed(seed);
+    }
+
     /// Sees own ship, plans where a plan is due, and sets course and speed of the target for a step
     /// so that it is on its plan at the end. At the end of its plan it keeps both.
     pub fn steer(&mut self, ship: &mut SteadyShip, own: &SteadyShip, step: f64) {

@@ -48,6 +48,11 @@ impl Own {
         }
     }
 
+    /// Draws anew how the current goes on.
+    pub fn reseed(&mut self, seed: u64) {
+        self.rng = stream(seed, Purpose::Current, "current");
+    }
+
     /// Own ship's pose, `time` seconds after the start of its plan.
     pub fn pose(&self, plan: &Trajectory, time: f64) -> Pose {
         self.state

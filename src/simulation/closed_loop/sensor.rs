@@ -50,6 +50,11 @@ impl TargetSensor {
         }
     }
 
+    /// Draws anew the errors and the gaps of later reports.
+    pub fn reseed(&mut self, name: &str, seed: u64) {
+        self.rng = stream(seed, Purpose::Sensor, name);
+    }
+
     /// Measures the target where a report is due at `time`, seconds; returns those that arrive.
     pub fn reports(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
         if time >= self.next - INSTANT {
