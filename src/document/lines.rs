@@ -165,7 +165,7 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
             let role = role.map_or("unknown", |e| &e.role);
-            format!("the rules: no plan complies with them as {role} to '{target}'")
+            format!("the rules: no plan complies with them with own ship {role} to '{target}'")
         }
     };
     ("relaxes", text)
@@ -247,24 +247,22 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
 /// Own ship's role on the desired trajectory, and its roles along the plan where these differ.
 fn roles(encounter: &EncounterDocument) -> String {
     let role = match encounter.role.as_str() {
-        "none" => "no role",
-        "static" => "at rest, so without a role",
-        role => role,
+        "none" => "no role".to_owned(),
+        "static" => "at rest, so without a role".to_owned(),
+        // as a bare word it would read as the duty of the target
+        role => format!("own ship is {role}"),
     };
     let Some(conduct) = &encounter.conduct else {
-        return role.to_owned();
+        return role;
     };
     let along = conduct.roles.iter();
     let along = along.map(|r| format!("{} from {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
-    let along: Vec<String> = along.collect();
+    let along = format!("own ship is {}", along.collect::<Vec<_>>().join(", "));
     let first = conduct.roles.first().map(|role| role.role.as_str());
     match first {
-        Some(first) if first == encounter.role => along.join(", "),
-        Some(_) => format!(
-            "{role} on the desired trajectory; on the plan {}",
-            along.join(", ")
-        ),
-        None if ["none", "static"].contains(&encounter.role.as_str()) => role.to_owned(),
+        Some(first) if first == encounter.role => along,
+        Some(_) => format!("{role} on the desired trajectory; on the plan {along}"),
+        None if ["none", "static"].contains(&encounter.role.as_str()) => role,
         None => format!("{role} on the desired trajectory, no role on the plan"),
     }
 }

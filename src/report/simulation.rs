@@ -120,7 +120,7 @@ pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             or_dash((!broken.is_empty()).then(|| broken.join(" "))),
         ]
     });
-    let header = "target, behaviour, role, clearance\n[m], at\n[s], acts before\n[s], \
+    let header = "target, behaviour, own\nrole, clearance\n[m], at\n[s], acts before\n[s], \
                   outside\nits set, breaks";
     Grid::new(header, 3..7, rows)
 }

@@ -161,7 +161,7 @@ fn all_ships_are_marked_at_the_times_asked_for() {
     for (time, count) in [(">1:40<", 1), (">3:20<", 2), (", 2:33<", 1), (">2:00<", 0)] {
         assert_eq!(svg.matches(time).count(), count, "{time}");
     }
-    for first in [">own ship, 0:00<", ">target, give-way, 1:40<"] {
+    for first in [">own ship, 0:00<", ">target, 1:40<"] {
         assert!(svg.contains(first), "{first}");
     }
 }
