@@ -244,6 +244,7 @@ pub struct ImportArgs {
 #[command(
     mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines")),
     mut_arg("search", |arg| arg.help("Only this search")),
+    mut_arg("panels", |arg| arg.hide(true)),
     mut_arg("rrd", |arg| arg.help(
         "Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, \
          or a folder"
