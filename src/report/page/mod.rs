@@ -9,7 +9,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::campaign::{bounds, counts, groups, worst_grid};
+use super::campaign::{CLEARANCES, bounds, clearances, counts, groups, worst_grid};
 use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
     Figure, Panel, Style, comparison_panels, diagram_panels, distribution_panel, plan_panels,
@@ -182,6 +182,8 @@ impl HtmlReport {
             h2 { "Distributions" }
             (figures)
             h2 { "Least clearance" }
+            p.quiet { (CLEARANCES) }
+            (table(clearances(&groups), &[]))
             (table(worst_grid(&summary.worst, folder), &[]))
         });
     }
