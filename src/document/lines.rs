@@ -11,6 +11,7 @@ use super::{
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
+use crate::planner::SearchKind;
 use crate::text::{counted, knots, printable, rounded, signed, square_metres, tenths};
 
 const LISTED: usize = 3;
@@ -65,7 +66,11 @@ fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {
 pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
-    add("planner", format!("{}, {}", plan.planner, plan.search));
+    let search = SearchKind::WORDS
+        .iter()
+        .find(|(word, _)| *word == plan.search);
+    let search = search.map_or(&*plan.search, |(_, search)| search.label());
+    add("planner", format!("{}, {search}", plan.planner));
     if let Some(reason) = &plan.reason {
         add("reason", reason.clone());
     }
