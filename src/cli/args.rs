@@ -552,7 +552,8 @@ fn velocity(text: &str) -> Result<[f64; 2], String> {
 }
 
 fn time(text: &str) -> Result<f64, String> {
-    rows::option(text, &rows::TIME).map(|[time]| time)
+    let allowed = "seconds from 0 to 1000000";
+    number(text, |time| (0.0..=1e6).contains(&time), allowed)
 }
 
 /// One of these words, which the help lists and shells complete.

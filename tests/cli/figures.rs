@@ -270,7 +270,7 @@ fn options_of_figures_are_refused_by_name() {
         plan {head_on} --quiet --figure DIR/a.svg --times 0,9999 | --times: found 9999 s | from 0 to
         simulate {head_on} --quiet --figure DIR/a.svg --times 9999 | --times: found 9999 s | from 0 to
         compare {head_on} --quiet --figure DIR/a.svg --times 9999 | --times: found 9999 s | from 0 to
-        plan {head_on} --quiet --figure DIR/a.svg --times -1 | --times | -1
+        plan {head_on} --quiet --figure DIR/a.svg --times -1 | --times | '-1' | seconds from 0 to
         plan {head_on} --size 100x100 | --figure
         plan {head_on} --panels | --figure
         plan {head_on} --quiet --figure DIR/a.svg --panels --times 1,2,3,4,5,6,7 | --panels: found 7
