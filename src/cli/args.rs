@@ -244,6 +244,7 @@ pub struct ImportArgs {
 #[command(
     mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines")),
     mut_arg("search", |arg| arg.help("Only this search")),
+    mut_arg("panels", |arg| arg.hide(true)),
     mut_arg("rrd", |arg| arg.help(
         "Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, \
          or a folder"
@@ -551,7 +552,8 @@ fn velocity(text: &str) -> Result<[f64; 2], String> {
 }
 
 fn time(text: &str) -> Result<f64, String> {
-    rows::option(text, &rows::TIME).map(|[time]| time)
+    let allowed = "seconds from 0 to 1000000";
+    number(text, |time| (0.0..=1e6).contains(&time), allowed)
 }
 
 /// One of these words, which the help lists and shells complete.

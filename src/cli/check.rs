@@ -1,6 +1,7 @@
 //! `searoom check`: reads and checks scenarios without planning.
 
 use searoom::document::{CheckDocument, CheckedDocument, FaultDocument};
+use searoom::scenario::Scenario;
 
 use super::args::CheckArgs;
 use super::input::files::Refused;
@@ -16,7 +17,10 @@ pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
     let mut noted: Vec<(String, Vec<Noted>)> = Vec::new();
     for scene in scenes::open(&args.paths, &args.assumed, output) {
         let made = scene.and_then(|scene| Ok((scene.scenario()?, scene)));
-        match made {
+        match made.map(|(mut made, scene)| {
+            made.notes.extend(wide_hulls(&made.scenario));
+            (made, scene)
+        }) {
             Ok((made, scene)) if args.json => document.files.push(CheckedDocument {
                 file: scene.found.file.display().to_string(),
                 scenario: Some(made.scenario.title),
@@ -45,6 +49,18 @@ pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
         true => status.max(output.document(&document)),
         false => status,
     }
+}
+
+/// Hulls that are wider than long: length and beam may be exchanged.
+fn wide_hulls(scenario: &Scenario) -> impl Iterator<Item = String> {
+    let own = [("own_ship", scenario.own_ship.hull)].into_iter();
+    let ships =
+        (scenario.targets.iter()).filter_map(|target| Some((&*target.name, target.ship()?.hull)));
+    let wide = own.chain(ships).filter(|(_, hull)| hull.beam > hull.length);
+    wide.map(|(name, hull)| {
+        let (beam, length) = (hull.beam, hull.length);
+        format!("{name}: beam_m, {beam}, is greater than length_m, {length}")
+    })
 }
 
 fn wrong(refused: Refused) -> CheckedDocument {

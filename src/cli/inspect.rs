@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
-use comfy_table::{ContentArrangement, Table, presets};
 use searoom::document::{
     InspectionDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument,
-    TimelineContents,
 };
 use searoom::recording::{EntityTable, Recorded};
-use searoom::report::{Display, comparison_table, plan_document_text, simulation_text};
+use searoom::report::{
+    Display, comparison_table, entities_table, plan_document_text, simulation_text, timelines_text,
+};
 use serde_json::Value;
 
 use super::args::InspectArgs;
@@ -103,13 +103,6 @@ struct Contents {
 }
 
 /// A timeline with its range, to the millisecond.
-fn range(timeline: &TimelineContents) -> String {
-    let milliseconds = |time: f64| (time * 1e3).round() / 1e3;
-    let [first, last] = [timeline.first, timeline.last].map(milliseconds);
-    let text = format!("{} {first} to {last} {}", timeline.name, timeline.unit);
-    text.trim_end().to_owned()
-}
-
 impl Contents {
     fn of(file: &Path, recorded: &Recorded) -> Self {
         let parsed = |text: Option<String>| -> Value {
@@ -174,35 +167,10 @@ impl Contents {
             (None, None, None) => "no plan document in it".to_owned(),
         });
         lines.push(String::new());
-        let timelines = list(&self.document.timelines, "none");
+        let timelines = timelines_text(&self.document.timelines, "none");
         lines.push(format!("Timelines: {timelines}"));
         lines.push(format!("Entities: {}", self.document.entities.len()));
-        let mut table = Table::new();
-        table
-            .load_style(presets::UTF8_HORIZONTAL_ONLY)
-            .set_content_arrangement(ContentArrangement::Disabled)
-            .set_header(["entity", "rows", "times", "components"])
-            .force_no_tty();
-        table.style_mut().row_separator = presets::NOTHING.row_separator;
-        for entity in &self.document.entities {
-            let short = |c: &String| c.rsplit(':').next().unwrap_or(c).to_owned();
-            let components: Vec<String> = entity.components.iter().map(short).collect();
-            table.add_row([
-                entity.path.clone(),
-                entity.rows.to_string(),
-                list(&entity.timelines, "always"),
-                components.join(", "),
-            ]);
-        }
-        lines.push(table.trim_fmt());
+        lines.push(entities_table(&self.document.entities, display));
         lines.join("\n")
     }
-}
-
-fn list(timelines: &[TimelineContents], none: &str) -> String {
-    if timelines.is_empty() {
-        return none.to_owned();
-    }
-    let texts: Vec<String> = timelines.iter().map(range).collect();
-    texts.join(", ")
 }

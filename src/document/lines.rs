@@ -11,6 +11,7 @@ use super::{
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
+use crate::planner::SearchKind;
 use crate::text::{counted, knots, printable, rounded, signed, square_metres, tenths};
 
 const LISTED: usize = 3;
@@ -65,7 +66,11 @@ fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {
 pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
-    add("planner", format!("{}, {}", plan.planner, plan.search));
+    let search = SearchKind::WORDS
+        .iter()
+        .find(|(word, _)| *word == plan.search);
+    let search = search.map_or(&*plan.search, |(_, search)| search.label());
+    add("planner", format!("{}, {search}", plan.planner));
     if let Some(reason) = &plan.reason {
         add("reason", reason.clone());
     }
@@ -165,7 +170,7 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
             let role = role.map_or("unknown", |e| &e.role);
-            format!("the rules: no plan complies with them as {role} to '{target}'")
+            format!("the rules: no plan complies with them with own ship {role} to '{target}'")
         }
     };
     ("relaxes", text)
@@ -247,24 +252,22 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
 /// Own ship's role on the desired trajectory, and its roles along the plan where these differ.
 fn roles(encounter: &EncounterDocument) -> String {
     let role = match encounter.role.as_str() {
-        "none" => "no role",
-        "static" => "at rest, so without a role",
-        role => role,
+        "none" => "no role".to_owned(),
+        "static" => "at rest, so without a role".to_owned(),
+        // as a bare word it would read as the duty of the target
+        role => format!("own ship is {role}"),
     };
     let Some(conduct) = &encounter.conduct else {
-        return role.to_owned();
+        return role;
     };
     let along = conduct.roles.iter();
     let along = along.map(|r| format!("{} from {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
-    let along: Vec<String> = along.collect();
+    let along = format!("own ship is {}", along.collect::<Vec<_>>().join(", "));
     let first = conduct.roles.first().map(|role| role.role.as_str());
     match first {
-        Some(first) if first == encounter.role => along.join(", "),
-        Some(_) => format!(
-            "{role} on the desired trajectory; on the plan {}",
-            along.join(", ")
-        ),
-        None if ["none", "static"].contains(&encounter.role.as_str()) => role.to_owned(),
+        Some(first) if first == encounter.role => along,
+        Some(_) => format!("{role} on the desired trajectory; on the plan {along}"),
+        None if ["none", "static"].contains(&encounter.role.as_str()) => role,
         None => format!("{role} on the desired trajectory, no role on the plan"),
     }
 }

@@ -413,7 +413,7 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
             .and_then(|t| t.parse::<f64>().ok());
         assert!((1.0..300.0).contains(&time.expect("a time")), "{reason}");
         let known = [
-            "its ship domain (head-on, Rule 14)",
+            "its ship domain (own ship head-on, Rule 14)",
             "hulls and a margin of 20 m",
         ];
         assert!(known.contains(&limit), "{reason}");

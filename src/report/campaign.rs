@@ -6,6 +6,10 @@ use crate::document::{
 };
 use crate::text::{counted, tenths};
 
+/// What the table of [`clearances`] shows.
+pub(super) const CLEARANCES: &str =
+    "Least clearance of the rows in metres: the smallest, and the quantiles at 1, 5 and 50 %.";
+
 /// Formats the counts of all rows, of classes with several strata and of strata, then the bounds,
 /// and the rows with the least clearance.
 pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
@@ -17,6 +21,8 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
             summary.campaign, summary.rows_there, summary.rows, summary.timing.cpu_s
         ),
         counts(&groups).text(display),
+        CLEARANCES.to_owned(),
+        clearances(&groups).text(display),
         format!(
             "Probabilities in percent, {confidence:.0} % confidence; \"anytime\" holds for a run that \
              is watched."
@@ -58,7 +64,7 @@ pub(super) fn groups(summary: &CampaignDocument) -> Vec<(String, &GroupDocument)
         own.nth(1).is_some()
     };
     let classes = summary.classes.iter().filter(has_several);
-    let classes = classes.map(|g| (format!("class {}", g.name), g));
+    let classes = classes.map(|g| (format!("all of class {}", g.name), g));
     let strata = summary.strata.iter().map(|g| (g.name.clone(), g));
     all.chain(classes).chain(strata).collect()
 }
@@ -69,11 +75,7 @@ pub(super) fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
         (share.count.to_string(), tone)
     };
     let rows = groups.iter().map(|(name, group)| {
-        let quantiles = group.clearance_m.as_ref();
-        let quantiles =
-            quantiles.map(|q| [q.least, q.percent_1, q.percent_5, q.median].map(tenths));
-        let quantiles = quantiles.map_or([None, None, None, None], |all| all.map(Some));
-        let mut cells = vec![
+        vec![
             plain(name.clone()),
             plain(group.rows.to_string()),
             count(&group.contact, Tone::Bad),
@@ -82,13 +84,23 @@ pub(super) fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
             count(&group.outside_sets, Tone::Fair),
             count(&group.rule_broken, Tone::Fair),
             count(&group.timing.late, Tone::Fair),
-        ];
-        cells.extend(quantiles.map(or_dash));
-        cells
+        ]
     });
-    let header = "stratum, rows, contact, no\nplan, unsafe\nplan, left\nits set, rule\nbroken, \
-                  late, clearance\nleast [m], 1 %\n[m], 5 %\n[m], 50 %\n[m]";
-    Grid::new(header, 1..12, rows)
+    let header =
+        "stratum, rows, contact, no\nplan, unsafe\nplan, left\nits set, rule\nbroken, late";
+    Grid::new(header, 1..8, rows).breaking("stratum", 20)
+}
+
+pub(super) fn clearances(groups: &[(String, &GroupDocument)]) -> Grid {
+    let rows = groups.iter().map(|(name, group)| {
+        let quantiles = group.clearance_m.as_ref();
+        let quantiles =
+            quantiles.map(|q| [q.least, q.percent_1, q.percent_5, q.median].map(tenths));
+        let quantiles = quantiles.map_or([None, None, None, None], |all| all.map(Some));
+        let cells = quantiles.map(or_dash).into_iter();
+        std::iter::once(plain(name.clone())).chain(cells).collect()
+    });
+    Grid::new("stratum, smallest, 1 %, 5 %, 50 %", 1..5, rows).breaking("stratum", 20)
 }
 
 pub(super) fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
@@ -106,7 +118,10 @@ pub(super) fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
     });
     let header = "stratum, contact\nexact, contact\nanytime, no plan\nexact, no plan\nanytime, \
                   rule broken\nexact, rule broken\nanytime";
-    Grid::new(header, 1..7, rows)
+    let grid = Grid::new(header, 1..7, rows);
+    let columns = grid.header.clone();
+    let grid = (columns[1..].iter()).fold(grid, |grid, name| grid.breaking(name, 8));
+    grid.breaking("stratum", 12)
 }
 
 /// The rows with the least clearance, each with the command that sails it again.

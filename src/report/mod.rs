@@ -5,6 +5,7 @@ mod assessment;
 mod campaign;
 mod comparison;
 pub mod figure;
+mod inspection;
 mod lint;
 pub mod page;
 mod plan;
@@ -19,6 +20,7 @@ pub use crate::text::{broken, counted, printable, printable_lines};
 pub use assessment::assessment_text;
 pub use campaign::{campaign_text, rare_contacts_text};
 pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
+pub use inspection::{entities_table, timelines_text};
 pub use lint::lint_text;
 pub use plan::{
     NO_BOUND, bound_line, legs_text, no_return_line, no_return_reason, plan_document_text,

@@ -1,5 +1,6 @@
 //! Text of a simulation.
 
+use super::plan::rules_broken;
 use super::table::{Display, Grid, Tone, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
@@ -117,12 +118,12 @@ pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             plain(format!("{:.0}", target.least_clearance_t_s)),
             or_dash(lead.map(|lead| format!("{lead:.0}"))),
             plain(target.outside_sets.to_string()),
-            or_dash((!broken.is_empty()).then(|| broken.join(" "))),
+            rules_broken(Some(broken)),
         ]
     });
-    let header = "target, behaviour, role, clearance\n[m], at\n[s], acts before\n[s], \
+    let header = "target, behaviour, own\nrole, clearance\n[m], at\n[s], acts before\n[s], \
                   outside\nits set, breaks";
-    Grid::new(header, 3..7, rows)
+    Grid::new(header, 3..7, rows).breaking("breaks", 9)
 }
 
 /// Named lines of what was sailed and of the plans.

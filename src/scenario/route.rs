@@ -8,6 +8,9 @@ use super::limits;
 use crate::frame::{Geographic, mps_from_knots};
 use crate::input::{Fault, Faults, InputError, abbreviated, every, read_text};
 
+/// The versions of RTZ that are read.
+const VERSIONS: [&str; 3] = ["1.0", "1.1", "1.2"];
+
 /// The elements of a schedule that give speeds, the first before the second at each waypoint.
 const SCHEDULES: [&str; 2] = ["calculated", "manual"];
 
@@ -43,8 +46,12 @@ fn route(root: &Xml) -> Option<Route> {
         let found = format_args!("the element {}", abbreviated(root.name()));
         return root.reject(found, "route, as in RTZ 1.0 to 1.2");
     }
+    if let Some(version) = root.attribute("version").filter(|v| !VERSIONS.contains(v)) {
+        let found = format_args!("version {}", abbreviated(version));
+        root.fault(found, VERSIONS.join(", "));
+    }
     let list = root.require("waypoints", "the waypoints of the route")?;
-    let waypoints: Vec<Xml> = list.all("waypoint").collect();
+    let waypoints: Vec<Xml> = list.numbered("waypoint").collect();
     let count = waypoints.len();
     if !(2..=limits::WAYPOINTS).contains(&count) {
         let allowed = format_args!("2 to {}", limits::WAYPOINTS);
@@ -102,6 +109,11 @@ fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<
     {
         for element in kind.iter().flat_map(|kind| kind.all("scheduleElement")) {
             let at = element.attribute("waypointId");
+            if let Some(at) = at.filter(|at| waypoints.iter().all(|w| id(Some(w)) != Some(at))) {
+                let found = format_args!("waypointId {}", abbreviated(at));
+                element.fault(found, "the id of a waypoint");
+                continue;
+            }
             if let Some(stay) = element.attribute("stay").filter(|stay| is_stay(stay))
                 && (at.is_none() || at != ends[1])
             {
@@ -172,16 +184,18 @@ mod tests {
 
     /// A part of the route, its replacement, and the line and the text of the fault.
     const MISTAKES: &str = r#"
-        lat="59.02" | lat="95" | 7 | waypoint[3]/position: found
+        lat="59.02" | lat="95" | 7 | waypoint[2]/position: found
         lon="10.50" | | 6 | no attribute lon
         speed="6" | speed="-6" | 13 | scheduleElement: found "-6"
-        Max="10" | Max="fast" | 7 | waypoint[3]/leg: found "fast"
+        Max="10" | Max="fast" | 7 | waypoint[2]/leg: found "fast"
         etd="2026-05-01T08:00:00Z" | stay="00:10:00" | 12 | a stay of "00:10:00"
         etd="2026-05-01T08:00:00Z" | stay="long" | 12 | a stay of "long"
         </waypoints> | | 18 | expected 'waypoints' tag
         waypoints> | points> | 2 | route: found no waypoints
         id="9" | id="3" | 8 | the id of a waypoint before
         lat="59.00" | lat=" 99 " | 6 | position: found
+        waypointId="9" | waypointId="8" | 16 | scheduleElement: found waypointId "8"
+        version="1.1" | version="2.0" | 2 | route: found version "2.0"
         route | track | 2 | the element "track"
     "#;
 

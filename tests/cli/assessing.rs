@@ -85,7 +85,7 @@ fn what_an_assessment_cannot_read_is_named() {
         {assess} --velocities DIR | not a regular file
         {assess} --at 1,2,-1 | --at | t_s: found -1; allowed: a number from 0
         {assess} --velocity 1,101 | --velocity | north_mps: found 101
-        {assess} --section -1 | --section | t_s: found -1
+        {assess} --section -1 | --section | '-1' | seconds from 0 to
         assess DIR/bad.toml --points DIR/empty.csv | title: found 3 | an empty file
         assess DIR | a folder
         assess DIR/mixed.toml | mixed.toml | targets[1].velocity_set

@@ -36,6 +36,17 @@ fn every_fault_of_a_file_is_reported_at_once() {
     }
 }
 
+#[test]
+fn a_hull_that_is_wider_than_long_is_noted() {
+    let folder = Folder::new();
+    let file = folder.write(
+        "wide.toml",
+        HEAD_ON.replacen("length_m = 30.0", "length_m = 3.0", 1),
+    );
+    let note = "wide.toml: own_ship: beam_m, 8, is greater than length_m, 3\n";
+    searoom(&["check", &file]).success().stderr(contains(note));
+}
+
 /// Requests that the path-time planner or another planner refuses: the lines before the mission, its
 /// alternatives, and the message. `TIME` is the table of the path-time planner.
 const UNFIT: &str = r#"

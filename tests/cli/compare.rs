@@ -9,6 +9,10 @@ use predicates::str::contains;
 
 #[test]
 fn every_planner_is_compared_on_the_same_scenarios() {
+    // an option that is refused is not offered
+    run("compare --help")
+        .success()
+        .stdout(contains("--times").and(contains("--panels").not()));
     let folder = Folder::new();
     let csv = folder.at("rows.csv");
     let figure = folder.at("compared.svg");

@@ -161,7 +161,7 @@ fn all_ships_are_marked_at_the_times_asked_for() {
     for (time, count) in [(">1:40<", 1), (">3:20<", 2), (", 2:33<", 1), (">2:00<", 0)] {
         assert_eq!(svg.matches(time).count(), count, "{time}");
     }
-    for first in [">own ship, 0:00<", ">target, give-way, 1:40<"] {
+    for first in [">own ship, 0:00<", ">target, 1:40<"] {
         assert!(svg.contains(first), "{first}");
     }
 }
@@ -270,7 +270,7 @@ fn options_of_figures_are_refused_by_name() {
         plan {head_on} --quiet --figure DIR/a.svg --times 0,9999 | --times: found 9999 s | from 0 to
         simulate {head_on} --quiet --figure DIR/a.svg --times 9999 | --times: found 9999 s | from 0 to
         compare {head_on} --quiet --figure DIR/a.svg --times 9999 | --times: found 9999 s | from 0 to
-        plan {head_on} --quiet --figure DIR/a.svg --times -1 | --times | -1
+        plan {head_on} --quiet --figure DIR/a.svg --times -1 | --times | '-1' | seconds from 0 to
         plan {head_on} --size 100x100 | --figure
         plan {head_on} --panels | --figure
         plan {head_on} --quiet --figure DIR/a.svg --panels --times 1,2,3,4,5,6,7 | --panels: found 7

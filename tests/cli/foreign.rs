@@ -26,7 +26,10 @@ fn a_folder_may_mix_formats_and_faults() {
     at("c/none.json", "{\"answer\": 42}");
     at("d/degrees.json", &DNV.replacen("58.763449", "4000000", 1));
     at("e/cut.json", &DNV[..DNV.len() / 2]);
-    at("f/plan.json", "{\"format\": \"searoom-plan/1\"}");
+    at(
+        "f/plan.json",
+        "{\"format\": \"searoom-plan/1\", \"own_ship\": {}}",
+    );
     let cases: Vec<&str> = IMAZU.split("\"id\": ").collect();
     let two = cases[..3].join("\"id\": ");
     let two = two.trim_end().trim_end_matches(['{', ',', ' ', '\n']);
@@ -66,7 +69,7 @@ fn a_folder_may_mix_formats_and_faults() {
         "degrees.json: 1 fault\n",
         "ownShip.waypoints[0].position.lat: found 4000000",
         "cut.json: 1 fault\n",
-        "plan.json: a result document, left out",
+        "plan.json: a plan document, which `searoom verify` checks, left out",
         "cases[1].targets[0].course_deg: found 999",
         "more than 16 MiB",
     ] {

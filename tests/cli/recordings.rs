@@ -30,7 +30,7 @@ fn a_recording_gives_back_what_it_was_made_from() {
     let said = stdout(&searoom(&["inspect", &file]).success());
     says(
         &said,
-        "Head-on: solved (verified, safe) | space-time, a-star | a manoeuvre by the rules | 'target': head-on | sim_time 0 to 302 | /curves/clearance_m",
+        "Head-on: solved (verified, safe) | space-time, A* | a manoeuvre by the rules | 'target': own ship is head-on | sim_time 0 to 302 | /curves/clearance_m",
     );
     let found = document(&searoom(&["inspect", "--json", &file]).success());
     let plan: Value = serde_json::from_str(&plan).expect("a plan");
@@ -60,7 +60,10 @@ fn inspect_tells_what_the_rules_say() {
         &said,
         "stand-on from 0 to | breaks 17(c) at | scores: rule 17 ",
     );
-    says(&lanes, "target: stand-on | target: violates");
+    says(
+        &lanes,
+        "own ship to target: stand-on | own ship breaks 17(c) toward target",
+    );
     let [said, lanes] = plan("rules");
     says(&said, "stands on    course and speed are held until ");
     says(

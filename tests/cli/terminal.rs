@@ -80,7 +80,8 @@ fn every_target_of_a_plan_has_one_block() {
         );
     }
     let both = "head-on on the desired trajectory, no role on the plan\n";
-    let new = "'tug': no role on the desired trajectory; on the plan give-way from 24 to 376 s\n";
+    let new =
+        "'tug': no role on the desired trajectory; on the plan own ship is give-way from 24 to";
     assert!(text.contains(both) && text.contains(new), "{text}");
     let text = stdout(&run("plan scenarios/harbour/ferry-crossing.toml").success());
     let without = "  target       'launch': no role; closest 422.5 m at 226 s, to port\n";

@@ -47,7 +47,6 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         assert!(!said.contains("relaxed"), "{said}");
         let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
         says(&page, &format!("<h2>Head-on: {both}"));
-        says(&page, &format!("<span>{word}</span>"));
         says(&fs::read_to_string(&figure).expect("a figure"), &both);
 
         let plan = searoom(&["plan", &file, "--json"]).code(1);

@@ -54,8 +54,6 @@ pub const VELOCITY: [Column; 2] = [
     Column::new("north_mps", -100.0, 100.0),
 ];
 
-pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
-
 /// Parses the comma-separated numbers of one option.
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();

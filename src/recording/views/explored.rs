@@ -123,7 +123,7 @@ impl Judge<'_> {
         let limit = if run.targets[obstacle].whole != sets.hard && !edge.iter().any(is_hard) {
             let role = sets.encounter.role;
             let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
-            format!("its ship domain ({}{rule})", role.word())
+            format!("its ship domain (own ship {}{rule})", role.word())
         } else if ship.is_some() {
             let margin = run.scenario.own_ship.safety_margin;
             format!("hulls and a margin of {margin} m")

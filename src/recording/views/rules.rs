@@ -79,22 +79,25 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         let mut roles = Lane::default();
         // the recording begins with the plan
         for state in conduct.roles.iter().filter(|state| state.until >= 0.0) {
-            let text = format!("{name}: {}", state.role.word());
+            let text = format!("own ship to {name}: {}", state.role.word());
             roles.add(state.from.max(0.0), text, style::target(index));
             roles.end(state.until);
         }
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
         let mut breaks = Lane::default();
+        let mut until = end;
         for (time, rule) in violated(conduct) {
             if !rules.contains(&rule) {
                 rules.push(rule);
             }
-            let text = format!("{name}: violates {}", rules.join(", "));
+            let text = format!("own ship breaks {} toward {name}", rules.join(", "));
             breaks.add(time, text, style::ALARM);
+            let mut ends = conduct.roles.iter().map(|state| state.until);
+            until = ends.find(|end| *end > time).unwrap_or(end);
         }
         if !rules.is_empty() {
-            breaks.end(end);
+            breaks.end(until);
             lanes.push(breaks);
         }
     }
@@ -207,11 +210,14 @@ mod tests {
         let [roles, broken] = &lanes(&model)[..] else {
             panic!("two lanes");
         };
-        assert_eq!(roles.at(conduct.roles[0].from), "target: stand-on");
+        assert_eq!(
+            roles.at(conduct.roles[0].from),
+            "own ship to target: stand-on"
+        );
         assert_eq!(roles.at(model.motion.end()), "");
         assert!(!broken.at(violation.time - 1e-6).contains("17(c)"));
         assert!(broken.at(violation.time).contains("17(c)"));
-        assert_eq!(broken.at(model.motion.end()), "");
+        assert_eq!(broken.at(conduct.roles[0].until), "");
     }
 
     #[test]

@@ -61,14 +61,16 @@ impl FigureOptions {
         end: f64,
         make: impl Fn(&Style) -> Figure,
     ) -> Result<Figure, FigureError> {
-        // negated so that a NaN is refused
-        if let Some(found) = self.times.iter().find(|t| !(**t >= 0.0 && **t <= end)) {
-            // never beyond the end
-            let end = (end * 10.0).floor() / 10.0;
-            return Err(FigureError::Time { found: *found, end });
+        // texts round the end to a tenth; negated so that a NaN is refused
+        let last = (end * 10.0).round() / 10.0;
+        if let Some(found) = (self.times.iter()).find(|t| !(**t >= 0.0 && **t <= end.max(last))) {
+            return Err(FigureError::Time {
+                found: *found,
+                end: last,
+            });
         }
         let mut style = Style {
-            times: self.times.clone(),
+            times: self.times.iter().map(|time| time.min(end)).collect(),
             panels: self.panels,
             ..Style::default()
         };
@@ -103,5 +105,27 @@ impl FigureOptions {
             return Err(FigureError::Size { found: size, least });
         }
         Ok(make(&style).with_size(style.area, pixels))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_may_be_the_end_as_it_is_printed() {
+        let draws = |time, end| {
+            let options = FigureOptions {
+                times: vec![time],
+                ..FigureOptions::default()
+            };
+            let make = |style: &Style| {
+                assert!(style.times[0] <= end);
+                Figure::new(1, Vec::new())
+            };
+            options.draw(end, make).is_ok()
+        };
+        assert!(draws(1557.4, 1557.38) && draws(1557.41, 1557.412));
+        assert!(!draws(1557.41, 1557.38) && !draws(-0.1, 9.0) && !draws(f64::NAN, 9.0));
     }
 }

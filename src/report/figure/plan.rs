@@ -10,7 +10,6 @@ use super::path_time::{run_panel, target_colour};
 use super::render::shortened;
 use super::sections::{PLAN, minutes, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
-use crate::colregs::Role;
 use crate::document::{self, PlanDocument};
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Window};
@@ -212,13 +211,9 @@ fn traffic(run: &Run, style: &Style) -> Traffic {
         None => vec![0.0, end],
     };
     let obstacles: Vec<&Obstacle> = run.obstacles().collect();
-    let targets = scenario.targets.iter().zip(&obstacles).zip(&run.targets);
-    let targets = targets.map(|((target, obstacle), outcome)| Charted {
+    let targets = scenario.targets.iter().zip(&obstacles);
+    let targets = targets.map(|(target, obstacle)| Charted {
         name: target.name.clone(),
-        role: match outcome.sets.encounter.role {
-            Role::None => "",
-            role => role.word(),
-        },
         hull: target.ship().map(|ship| ship.hull),
         track: sampled
             .iter()
@@ -254,9 +249,7 @@ fn traffic(run: &Run, style: &Style) -> Traffic {
 }
 
 pub(super) struct Charted {
-    /// Its name, and its role if it has one.
     pub name: String,
-    pub role: &'static str,
     /// Its hull, if it has one.
     pub hull: Option<Hull>,
     /// Its track, which may be empty.
@@ -391,10 +384,6 @@ pub(super) fn traffic_chart(
     let mut outside: Vec<(Stroke, String)> = Vec::new();
     for (index, target) in traffic.targets.iter().enumerate() {
         let name = shortened(&target.name, NAME_LETTERS);
-        let name = match target.role {
-            role if role.is_empty() || style.is_small() => name,
-            role => format!("{name}, {role}"),
-        };
         let mut places = Vec::new();
         for k in instants.clone() {
             if let Some(place) = target.place(k).filter(|place| window.contains(*place)) {

@@ -26,6 +26,9 @@ const MOST_MILLIONS: f64 = 200.0;
 const TITLE_SIZE: u32 = 18;
 const LETTERS: usize = 44;
 
+/// Most dashes of a line in a PNG.
+const MOST_DASHES: f64 = 1e4;
+
 /// Prefix of clip path names in the drawing library. A process-wide counter follows it.
 const CLIP: &str = "kuva-clip-";
 
@@ -321,6 +324,7 @@ impl Figure {
     pub fn png(self) -> Result<Vec<u8>, FigureError> {
         let (dpi, scale) = (self.dpi, self.dpi / SVG_DPI);
         let mut scene = self.scene();
+        scene.elements = scene.elements.into_iter().flat_map(cut).collect();
         let pixels = [scene.width, scene.height].map(|length| (length * scale).round());
         let millions = pixels[0] * pixels[1] / 1e6;
         if !(millions <= MOST_MILLIONS) {
@@ -356,6 +360,76 @@ impl Figure {
         };
         Ok(write_atomically(file, &bytes)?)
     }
+}
+
+/// A dashed line as its dashes, and everything else as it is. The raster backend would begin the
+/// dashes anew at every point of a line, and not scale them.
+fn cut(part: Primitive) -> Vec<Primitive> {
+    let (points, stroke, stroke_width, pattern) = match part {
+        Primitive::PolyLine {
+            points,
+            stroke,
+            stroke_width,
+            stroke_dasharray: Some(pattern),
+        } => (points, stroke, stroke_width, pattern),
+        Primitive::Line {
+            x1,
+            y1,
+            x2,
+            y2,
+            stroke,
+            stroke_width,
+            stroke_dasharray: Some(pattern),
+        } => (vec![(x1, y1), (x2, y2)], stroke, stroke_width, pattern),
+        other => return vec![other],
+    };
+    let lengths: Vec<f64> = pattern.split(' ').filter_map(|l| l.parse().ok()).collect();
+    let line = |points| Primitive::PolyLine {
+        points,
+        stroke: stroke.clone(),
+        stroke_width,
+        stroke_dasharray: None,
+    };
+    dashes(&points, &lengths).into_iter().map(line).collect()
+}
+
+/// The dashes of a line, whose lengths and those of the gaps take turns in a pattern of even length.
+/// A line of too many is one dash.
+fn dashes(points: &[(f64, f64)], pattern: &[f64]) -> Vec<Vec<(f64, f64)>> {
+    let length = |pair: &[(f64, f64)]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
+    let total: f64 = points.windows(2).map(length).sum();
+    // negated so that a NaN is one
+    if points.is_empty() || !(total <= MOST_DASHES * pattern.iter().sum::<f64>()) {
+        return vec![points.to_vec()];
+    }
+    let (mut all, mut dash) = (Vec::new(), vec![points[0]]);
+    let mut turns = pattern.iter().cycle();
+    let (mut left, mut is_gap) = (turns.next().copied().unwrap_or(total), false);
+    for pair in points.windows(2) {
+        let ([from, to], length) = ([pair[0], pair[1]], length(pair));
+        let mut at = 0.0;
+        while length - at > left {
+            at += left;
+            let share = at / length;
+            let place = (
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            );
+            dash.push(place);
+            let ended = std::mem::replace(&mut dash, vec![place]);
+            if !is_gap {
+                all.push(ended);
+            }
+            is_gap = !is_gap;
+            left = turns.next().copied().unwrap_or(total);
+        }
+        left -= length - at;
+        dash.push(to);
+    }
+    if !is_gap {
+        all.push(dash);
+    }
+    all
 }
 
 /// The same image with its resolution, which the drawing library leaves out.
@@ -441,6 +515,21 @@ fn numbered_anew(svg: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dashes_go_on_over_the_points_of_a_line() {
+        let line = [0.0, 3.0, 6.0, 30.0].map(|x| (x, 1.0));
+        let found: Vec<Vec<f64>> = (dashes(&line, &[8.0, 4.0]).iter())
+            .map(|dash| dash.iter().map(|point| point.0).collect())
+            .collect();
+        assert_eq!(
+            found,
+            [vec![0.0, 3.0, 6.0, 8.0], vec![12.0, 20.0], vec![24.0, 30.0]]
+        );
+        assert_eq!(dashes(&[(0.0, 0.0), (1e9, 0.0)], &[8.0, 4.0]).len(), 1);
+        assert_eq!(dashes(&[(0.0, 0.0), (f64::NAN, 0.0)], &[8.0, 4.0]).len(), 1);
+        assert_eq!(dashes(&[], &[8.0, 4.0]).len(), 1);
+    }
 
     #[test]
     fn clip_paths_are_counted_from_zero() {

@@ -59,7 +59,6 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
     let targets = simulation.targets.iter().map(|target| Charted {
         name: target.name.clone(),
-        role: "",
         hull: Some(target.hull()),
         track: (sampled.iter())
             .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))

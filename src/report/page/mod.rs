@@ -9,7 +9,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::campaign::{bounds, counts, groups, worst_grid};
+use super::campaign::{CLEARANCES, bounds, clearances, counts, groups, worst_grid};
 use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
     Figure, Panel, Style, comparison_panels, diagram_panels, distribution_panel, plan_panels,
@@ -182,6 +182,8 @@ impl HtmlReport {
             h2 { "Distributions" }
             (figures)
             h2 { "Least clearance" }
+            p.quiet { (CLEARANCES) }
+            (table(clearances(&groups), &[]))
             (table(worst_grid(&summary.worst, folder), &[]))
         });
     }
@@ -227,7 +229,8 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    @if !self.runs.is_empty() {
+                    // the section of a single plan says all of its row
+                    @if !self.runs.is_empty() && self.sections.len() > 1 {
                         (table(suite_grid(&self.runs), &self.run_sections))
                     }
                     @for section in &self.sections { (section) }
@@ -310,7 +313,9 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
                                 } @else if let Some(section) = sections.get(index) {
                                     th scope="row" { a href=(format!("#s{section}")) { (cell.0) } }
                                 } @else {
-                                    th scope="row" { span { (cell.0) } }
+                                    // a number alone names no row of a narrow page
+                                    @let name = number(0).then_some(name);
+                                    th scope="row" data-name=[name] { span { (cell.0) } }
                                 }
                             }
                         }

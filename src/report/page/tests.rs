@@ -81,12 +81,17 @@ fn a_report_of_plans_has_rows_sections_and_figures() {
     assert_eq!(names, ["a-1.svg", "b-1.svg", "b-2.svg"]);
     assert!(report.figures[2].1.contains("Distance along the path"));
     assert_eq!(page.matches("<h2>").count(), 3);
+    assert!(page.contains("data-name=\"leg\""));
     assert!(page.contains("href=\"./a%20%22b%22%23%3F.rrd\""));
     // no timestamps
     let again = build();
     assert_eq!(page, again.html(NASTY, "3 scenarios"));
     assert_eq!(report.figures, again.figures);
     assert!(!page.contains("[ms]"));
+    // one plan has the table of its legs alone
+    let mut single = HtmlReport::new();
+    add(&mut single, "a", "space-time");
+    assert_eq!(single.html("", "").matches("<table").count(), 1);
 }
 
 #[test]

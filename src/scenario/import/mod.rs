@@ -72,6 +72,13 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
     let root = Field::root(&value, &faults);
     let has = |key: &str| value.get(key).is_some();
     let text_at = |key: &str| value.get(key).and_then(|v| v.as_text()).unwrap_or_default();
+    // before Imazu's cases, which have an own_ship, too
+    let format = text_at("format");
+    if format.starts_with("searoom-plan/") {
+        return Ok(Contents::Other(
+            "a plan document, which `searoom verify` checks",
+        ));
+    }
     if has("ownShip") || has("targetShips") {
         let situation = dnv::situation(&root, &faults);
         return Ok(Contents::Situations(vec![situation]));
@@ -80,7 +87,7 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
         let situations = imazu::situations(&root, &faults, assumed.variants)?;
         return Ok(Contents::Situations(situations));
     }
-    if text_at("format").starts_with("searoom-") || (has("runs") && has("summary")) {
+    if format.starts_with("searoom-") || (has("runs") && has("summary")) {
         return Ok(Contents::Other("a result document"));
     }
     if ["FeatureCollection", "Feature"].contains(&text_at("type")) {

@@ -132,6 +132,15 @@ impl<'a> Xml<'a> {
             .filter(move |element| element.name() == name)
     }
 
+    /// Those of one name, which faults name by their place from 1 on, whatever their ids.
+    pub fn numbered(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
+        let at = |(place, element): (usize, Xml<'a>)| Xml {
+            path: format!("{}/{}[{place}]", self.path, element.name()),
+            ..element
+        };
+        (1..).zip(self.all(name)).map(at)
+    }
+
     pub fn take(&self, name: &str) -> Option<Xml<'a>> {
         self.all(name).next()
     }

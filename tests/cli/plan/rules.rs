@@ -186,5 +186,5 @@ fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
     let file = folder.write("near.toml", scene("planner = { cpa_limit_m = 400.0 }"));
     searoom(&["plan", &file])
         .success()
-        .stdout(contains("'coaster': give-way from ").and(contains(note).not()));
+        .stdout(contains("'coaster': own ship is give-way from ").and(contains(note).not()));
 }
