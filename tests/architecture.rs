@@ -33,7 +33,7 @@ scenario: frame tolerance geometry trajectory vessel map target colregs planner 
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
-study: document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
+study: parallel document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text
 report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text

@@ -170,7 +170,7 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
             let role = role.map_or("unknown", |e| &e.role);
-            format!("the rules: no plan complies with them with own ship {role} to '{target}'")
+            format!("the rules: no plan complies with them toward '{target}' (own ship: {role})")
         }
     };
     ("relaxes", text)

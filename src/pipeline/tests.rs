@@ -449,7 +449,7 @@ fn the_time_of_no_return_is_between_the_start_and_the_first_contact() {
 /// ship domain but no hard set.
 #[test]
 fn out_of_time_own_ship_keeps_a_plan_that_is_clear_of_the_hard_sets() {
-    let drawn = random_encounter(EncounterKind::GiveWay, 277, Placement::Origin);
+    let drawn = random_encounter(EncounterKind::GiveWay, 293, Placement::Origin);
     let mut first = drawn.expect("drawn").scenario;
     first.compliance = Compliance::Rules;
     let before = run(first.clone());
