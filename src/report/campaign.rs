@@ -172,8 +172,12 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
     }
     [
         format!(
-            "{}, {}: P(contact) = {:.3e}, {confidence:.0} % confidence: {low:.2e} to {high:.2e}",
-            found.campaign, found.stratum, found.contact
+            "{}, {}: P(contact) = {}, {confidence:.0} % confidence: {} to {}",
+            found.campaign,
+            found.stratum,
+            probability(found.contact),
+            probability(low),
+            probability(high)
         ),
         Grid::new("distance [m], reached [%]", 0..2, levels).text(display),
         format!(
@@ -185,4 +189,12 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
         ),
     ]
     .join("\n\n")
+}
+
+fn probability(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        _ if value >= 1e-3 => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
 }
