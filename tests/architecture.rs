@@ -64,6 +64,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/import/"]),
+    ("kurbo", &["report/figure/render.rs"]),
     ("kuva", &["report/figure/"]),
     ("png", &["report/figure/render.rs"]),
     ("parquet", &["campaign/part.rs"]),

@@ -12,7 +12,7 @@ use searoom::scenario::{Compliance, FILE_MEBIBYTES, ScenarioError};
 use crate::error::{argument, detached, faults, scenario};
 use crate::value::toml_text;
 
-/// What the options of an imported file are called.
+/// Names of the options for an imported file.
 const ASSUMPTIONS: [(&str, Assumption); 5] = [
     ("speed_spread_mps", Assumption::SpeedSpread),
     ("course_spread_deg", Assumption::CourseSpread),
@@ -173,7 +173,7 @@ impl Scenario {
         targets.map(|target| target.name.as_str()).collect()
     }
 
-    /// What was assumed for an imported file.
+    /// The assumptions made for an imported file.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()

@@ -83,6 +83,7 @@ pub(super) fn mean_interval(estimates: &[f64], confidence: f64) -> (f64, f64, [f
         return (mean, f64::INFINITY, [0.0, 1.0]);
     };
     let level = f64::midpoint(1.0, confidence);
+    // the quantile of statrs rests on `inv_beta_reg`, too
     let quantile = edge(0.0, 1e6, |x| student.cdf(x) < level);
     let factor = (quantile * error / mean).exp();
     (mean, error, [mean / factor, (mean * factor).min(1.0)])

@@ -35,7 +35,7 @@ impl CampaignError {
     }
 }
 
-/// What `campaign.json` says of the campaign in its folder.
+/// Content of `campaign.json`, which describes the campaign of a folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Index {
     /// Format of this file.
@@ -66,7 +66,7 @@ pub struct Folder {
 #[derive(Debug)]
 pub(super) struct Found {
     pub file: PathBuf,
-    /// What it belongs to, or why it is damaged.
+    /// Its metadata, or why it is damaged.
     pub header: Result<Header, PartError>,
 }
 

@@ -26,7 +26,7 @@ const FORMAT: &str = "searoom-campaign/1";
 /// Rows that are in memory at once when parts are joined.
 const GROUP: usize = 50_000;
 
-/// What a part belongs to.
+/// Metadata of a part: the campaign and the rows that it belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
     /// Hash of the specification.
@@ -40,7 +40,7 @@ pub struct Header {
 /// A part that was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// What it belongs to.
+    /// Its metadata.
     pub header: Header,
     /// Its rows, in order.
     pub rows: Vec<Vec<Cell>>,
@@ -63,7 +63,7 @@ pub(super) fn build() -> String {
 }
 
 impl Header {
-    /// Of this build.
+    /// Metadata of a part that this build writes.
     pub fn new(hash: &str, rows: Range<u64>) -> Self {
         Self {
             hash: hash.to_owned(),

@@ -9,8 +9,8 @@ use super::summary::CONFIDENCE;
 use crate::document::{RARE_FORMAT, RareContactDocument, RareLevelDocument};
 use crate::simulation::Simulation;
 
-/// m/s: what a predicted distance counts for more, for each second until then. A rough choice: two
-/// and three were tried, on too few trajectories to tell them apart.
+/// m/s: added to a predicted distance for each second until it is reached. A rough choice: 2 and 3
+/// were tried, on too few trajectories to tell them apart.
 const PER_SECOND: f64 = 3.0;
 
 /// A simulation that is split by how near a contact is; `None` where none could be drawn.

@@ -47,7 +47,7 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// What a run reports while it goes on.
+/// Progress of a run.
 #[derive(Debug)]
 pub enum Progress {
     /// So many rows are to be sailed, and so many are there.
@@ -58,7 +58,7 @@ pub enum Progress {
     Damaged(String),
 }
 
-/// What a run has done.
+/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Done {
     /// Rows that were sailed.

@@ -75,9 +75,9 @@ pub struct Stratum {
     pub class: &'static str,
     /// Rows of each cycle.
     share: u64,
-    /// What its rows have in common.
+    /// The scenario that its rows have in common.
     scenario: Scenario,
-    /// What is drawn; `None` for a scenario that has its targets.
+    /// The distributions that are drawn from; `None` for a scenario that has its targets.
     drawn: Option<Drawn>,
 }
 

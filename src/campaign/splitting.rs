@@ -18,14 +18,15 @@ const MOST_LEVELS: usize = 64;
 
 /// A random process that can be split.
 pub(super) trait Process: Clone + Send + Sync {
-    /// Makes what follows random anew.
+    /// Replaces the generators of all later random numbers.
     fn reseed(&mut self, seed: u64);
 
-    /// Goes on by one step; returns what it cost, such as seconds.
+    /// Goes on by one step; returns its cost, such as simulated seconds.
     fn step(&mut self) -> f64;
 
-    /// How far the event is: a copy with less is more likely to reach it. The event is at zero and
-    /// below, and at a NaN. Any measure gives an unbiased estimate.
+    /// Distance from the event, in any measure that falls as the event becomes more likely. The event
+    /// is at zero and below, and at a NaN. Every measure gives an unbiased estimate; a good one, a
+    /// narrow interval.
     fn distance(&self) -> f64;
 
     /// True where it does not go on.

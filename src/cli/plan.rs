@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use searoom::document::{LowerBoundDocument, PlanDocument};
+use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};
 use searoom::report::page::HtmlReport;
 use searoom::report::{
@@ -41,7 +41,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 output.note(&NO_BOUND);
             }
             let document = PlanDocument {
-                lower_bound: bound.map(LowerBoundDocument::from),
+                lower_bound: bound,
                 time_of_no_return_s: no_return.map(NoReturn::time),
                 ..PlanDocument::of(&run)
             };

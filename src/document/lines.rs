@@ -33,7 +33,7 @@ pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     in_brackets(&printable(&plan.verdict), &verdict_parts(plan))
 }
 
-/// What [`verdict_line`] says in brackets behind the outcome.
+/// The parts that [`verdict_line`] puts in brackets behind the outcome.
 pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     let mut all = Vec::new();
     if plan.trajectory.is_some() {
@@ -336,7 +336,7 @@ fn altered_for(plan: &PlanDocument) -> BTreeSet<String> {
     legs.filter_map(|leg| leg.because_of).collect()
 }
 
-/// What own ship did against a monitor, when, and by how much. The limits are named if the profile
+/// How own ship violated a monitor, when, and by how much. The limits are named if the profile
 /// is a published one.
 fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
     let published = Thresholds::named(&plan.thresholds);

@@ -87,7 +87,7 @@ pub fn json(document: &impl serde::Serialize) -> serde_json::Result<String> {
 #[derive(Default)]
 struct Rows {
     pretty: PrettyFormatter<'static>,
-    /// What is open, the innermost last: true for arrays.
+    /// The arrays and objects that are open, the innermost last: true for arrays.
     arrays: Vec<bool>,
 }
 

@@ -6,7 +6,7 @@ use crate::document::{
 };
 use crate::text::{counted, tenths};
 
-/// What the table of [`clearances`] shows.
+/// Caption of the table of [`clearances`].
 pub(super) const CLEARANCES: &str =
     "Least clearance of the rows in metres: the smallest, and the quantiles at 1, 5 and 50 %.";
 
@@ -194,7 +194,7 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
 fn probability(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
-        _ if value >= 1e-3 => format!("{value:.4}"),
+        _ if value >= 0.01 => format!("{value:.3}"),
         _ => format!("{value:.1e}"),
     }
 }

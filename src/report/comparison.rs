@@ -58,11 +58,11 @@ fn groups(entries: &[EntryDocument]) -> Vec<Vec<&EntryDocument>> {
     groups
 }
 
-/// How the name of a method ends that plans around ellipsoids.
+/// The end of the name of a method that plans around ellipsoids.
 const ELLIPSOIDS: &str = ", ellipsoids";
 
-/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part, and
-/// `space-time, A* and Dijkstra, polytopes and ellipsoids` where each occurs with polytopes and with ellipsoids.
+/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part. With
+/// `polytopes and ellipsoids` behind it where each of them occurs with both.
 pub(super) fn joined(methods: &[&str]) -> String {
     let (round, other): (Vec<&str>, Vec<&str>) =
         methods.iter().partition(|m| m.ends_with(ELLIPSOIDS));

@@ -193,8 +193,8 @@ pub fn bound_line(plan: &PlanDocument) -> Option<String> {
     let cost = plan.cost.as_ref()?.space_time_error_m2;
     let above = match least > 0.0 {
         true => format!(
-            "; the plan's is at most {:.0} % above the least",
-            100.0 * (cost / least - 1.0)
+            "; the plan's is at most {:.2} times the least",
+            cost / least
         ),
         false => String::new(),
     };

@@ -152,7 +152,7 @@ mod tests {
     use super::*;
     use crate::text::rows;
 
-    /// As a navigation system writes it; changes are `old => new`, and what the fault names.
+    /// A route of a navigation system. Changes are `old => new`, and what the fault names.
     const ROUTE: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <route version="1.1" xmlns="http://www.cirm.org/RTZ/1/1">
   <routeInfo routeName="To the pilot" vesselName="Any"/>

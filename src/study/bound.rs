@@ -27,37 +27,12 @@ const REACH: i64 = 16;
 /// Steps of the desired duration on the coarsest grid. Each grid after it halves step and cells.
 const COARSEST_STEPS: f64 = 40.0;
 
-/// No finer grid is begun where it is expected to visit more cells than this: about two seconds.
+/// No finer grid is begun where it is expected to visit more cells than this, which takes about two
+/// seconds. A coarse grid that does gives no bound but 0.
 const MOST_CELLS: f64 = 8e7;
 
 /// A halved grid has eight times as many cells, less those that its better bound leaves out.
 const GROWTH: f64 = 7.0;
-
-/// Part by which rounding of sums in single precision may raise the bound.
-const ROUNDING: f64 = 1e-4;
-
-/// A lower bound of the space-time error `J`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LowerBound {
-    /// No motion has a smaller `J`, m².
-    pub cost: f64,
-    /// Side of a cell, metres.
-    pub cell: f64,
-    /// Time step, seconds.
-    pub step: f64,
-    /// Cells of all steps that were visited on the finest grid.
-    pub cells: usize,
-}
-
-impl From<LowerBound> for LowerBoundDocument {
-    fn from(bound: LowerBound) -> Self {
-        Self {
-            space_time_error_m2: bound.cost,
-            cell_m: bound.cell,
-            step_s: bound.step,
-        }
-    }
-}
 
 /// A lower bound of `J` over all motions of a point that starts where own ship does, is never
 /// faster than own ship's greatest speed, keeps out of the sets that the plan of `run` keeps out of,
@@ -65,21 +40,23 @@ impl From<LowerBound> for LowerBoundDocument {
 /// at: they could only raise it.
 ///
 /// `None` without a plan, for a plan that enters sets or does not arrive, and under forces, where
-/// the greatest speed is not own ship's. Deterministic. Takes some seconds and less than 100 MB.
-pub fn lower_bound(run: &Run) -> Option<LowerBound> {
+/// the greatest speed is not own ship's. Deterministic. Takes some seconds and, in scenes of many
+/// kilometres, more than 100 MB.
+pub fn lower_bound(run: &Run) -> Option<LowerBoundDocument> {
     let known = run.evaluation.as_ref()?.space_time_error;
-    if !run.arrives() || run.enters() {
+    if !run.arrives() || run.enters() || !known.is_finite() {
         return None;
     }
     let problem = Relaxation::new(&run.scenario, run.obstacles().collect(), known);
     let mut steps = COARSEST_STEPS;
-    let mut bound = problem.on_grid(steps);
-    while bound.cells as f64 * GROWTH <= MOST_CELLS && bound.cost < known {
+    let (mut bound, mut cells) = problem.on_grid(steps);
+    while cells * GROWTH <= MOST_CELLS && bound.space_time_error_m2 < known {
         steps *= 2.0;
-        let finer = problem.on_grid(steps);
+        let finer;
+        (finer, cells) = problem.on_grid(steps);
         // both hold
-        bound = LowerBound {
-            cost: finer.cost.max(bound.cost),
+        bound = LowerBoundDocument {
+            space_time_error_m2: finer.space_time_error_m2.max(bound.space_time_error_m2),
             ..finer
         };
     }
@@ -250,8 +227,8 @@ impl<'a> Relaxation<'a> {
         }
     }
 
-    /// The bound with this many steps of the desired duration.
-    fn on_grid(&self, steps: f64) -> LowerBound {
+    /// The bound with this many steps of the desired duration, and the number of cells of all steps.
+    fn on_grid(&self, steps: f64) -> (LowerBoundDocument, f64) {
         let duration = self.scenario.desired.duration();
         let step = duration / steps;
         let grid = Grid {
@@ -269,15 +246,24 @@ impl<'a> Relaxation<'a> {
             rows: 0..1,
             costs: vec![0.0],
         };
-        let mut least = self.known * duration;
-        let mut cells = 0;
+        // a motion may arrive before the first step
+        let mut least = match end.norm() <= reached {
+            true => 0.0,
+            false => self.known * duration,
+        };
+        let (mut cells, mut sums) = (0.0, 0.0);
         for k in 1.. {
             let time = k as f64 * step;
             if time > self.scenario.horizon + step {
                 break;
             }
+            if cells > MOST_CELLS {
+                least = 0.0;
+                break;
+            }
             let mut next = layer.spread();
-            cells += next.costs.len();
+            cells += next.costs.len() as f64;
+            sums += 1.0;
             let arrived = self.cost(&mut next, grid, time, least, (end, reached));
             least = least.min(arrived);
             layer = match next.trimmed() {
@@ -285,12 +271,14 @@ impl<'a> Relaxation<'a> {
                 None => break,
             };
         }
-        LowerBound {
-            cost: (least * (1.0 - ROUNDING) / duration).min(self.known),
-            cell: grid.cell,
-            step,
-            cells,
-        }
+        // each sum is rounded to single precision
+        let exact = 1.0 - sums * f64::from(f32::EPSILON);
+        let bound = LowerBoundDocument {
+            space_time_error_m2: (least * exact / duration).min(self.known),
+            cell_m: grid.cell,
+            step_s: step,
+        };
+        (bound, cells)
     }
 
     /// Adds the cost around a step to a layer and leaves out what is inside an obstacle or too
@@ -405,10 +393,10 @@ mod tests {
                 let known = evaluation.space_time_error;
                 let obstacles = run.obstacles().collect();
                 let problem = Relaxation::new(&run.scenario, obstacles, 1.5 * known);
-                let bound = problem.on_grid(COARSEST_STEPS);
-                let what = format!("{kind:?} {seed} {compliance:?}: {bound:?} {known}");
-                assert!(bound.cost <= known, "{what}");
-                close += usize::from(bound.cost > 0.3 * known);
+                let bound = problem.on_grid(COARSEST_STEPS).0.space_time_error_m2;
+                let what = format!("{kind:?} {seed} {compliance:?}: {bound} {known}");
+                assert!(bound <= known, "{what}");
+                close += usize::from(bound > 0.3 * known);
             }
         }
         assert!(close >= 15, "the bound is idle: {close} of 30");
@@ -424,7 +412,8 @@ mod tests {
         let run = run_of(EncounterKind::GiveWay, 1, Compliance::None);
         let scenario = &run.scenario;
         let obstacles: Vec<&Obstacle> = run.obstacles().collect();
-        let bound = Relaxation::new(scenario, obstacles.clone(), 3e4).on_grid(40.0);
+        let problem = Relaxation::new(scenario, obstacles.clone(), 3e4);
+        let bound = problem.on_grid(COARSEST_STEPS).0.space_time_error_m2;
         let (start, end) = (scenario.own_ship.pose.position, scenario.desired.end());
         let speed = scenario.own_ship.max_speed();
         for _ in 0..200_000 {
@@ -454,12 +443,23 @@ mod tests {
                     .iter()
                     .map(|s| space_time_error(&scenario.desired, s, q));
                 let cost: f64 = parts.sum();
-                assert!(bound.cost <= cost, "{bound:?} {cost} {motion:?}");
+                assert!(bound <= cost, "{bound} {cost} {motion:?}");
                 tried += 1;
             }
         }
         assert!(tried > 10_000, "{tried}");
-        assert!(bound.cost > 1000.0, "{bound:?}");
+        assert!(bound > 1000.0, "{bound}");
+    }
+
+    /// The way of some metres takes less than a step.
+    #[test]
+    fn a_motion_may_arrive_before_the_first_step() {
+        let mut run = run_of(EncounterKind::GiveWay, 1, Compliance::None);
+        run.scenario.own_ship.speeds = vec![500.0];
+        let obstacles = run.obstacles().collect();
+        let problem = Relaxation::new(&run.scenario, obstacles, 1e6);
+        let bound = problem.on_grid(COARSEST_STEPS).0;
+        assert_eq!(bound.space_time_error_m2, 0.0);
     }
 
     /// The least cost of the cells, by the definition.

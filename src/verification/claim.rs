@@ -274,7 +274,7 @@ fn own_ship(own: &OwnShipDocument) -> Result<OwnShip, ClaimError> {
     })
 }
 
-/// What is read of the document at a place, or where it is wrong.
+/// A value read from the document, or the place at which it is wrong.
 pub(super) fn placed<T>(path: &str, read: Result<T, Fault>) -> Result<T, ClaimError> {
     read.map_err(|wrong| {
         let path = match wrong.path.as_str() {

@@ -197,19 +197,33 @@ fn sail(args: &RunArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     Ok(shown.max(status))
 }
 
-/// Distributions of a report: title and axis, and the columns of rows, the first over the second.
-const DISTRIBUTIONS: [(&str, &str); 3] = [
-    ("Least clearance", "Least distance of the hulls [m]"),
+/// A distribution of a report: title, axis, and the columns of rows, the first over the second.
+type Distribution = (
+    &'static str,
+    &'static str,
+    &'static str,
+    Option<&'static str>,
+);
+
+const DISTRIBUTIONS: [Distribution; 3] = [
+    (
+        "Least clearance",
+        "Least distance of the hulls [m]",
+        "clearance_m",
+        None,
+    ),
     (
         "Lead of the first manoeuvre",
         "Time before the closest approach [s]",
+        "lead_s",
+        None,
     ),
-    ("Space-time error", "J sailed / J of the first plan"),
-];
-const COLUMNS: [(&str, Option<&str>); 3] = [
-    ("clearance_m", None),
-    ("lead_s", None),
-    ("sailed_cost_m2", Some("planned_cost_m2")),
+    (
+        "Space-time error",
+        "J sailed / J of the first plan",
+        "sailed_cost_m2",
+        Some("planned_cost_m2"),
+    ),
 ];
 
 fn write_report(
@@ -218,10 +232,11 @@ fn write_report(
     summary: &CampaignDocument,
     into: &Path,
 ) -> anyhow::Result<()> {
-    let values = distributions(folder, args.parts.allow_other_builds, &COLUMNS)?;
+    let columns = DISTRIBUTIONS.map(|(_, _, of, over)| (of, over));
+    let values = distributions(folder, args.parts.allow_other_builds, &columns)?;
     let named = DISTRIBUTIONS.into_iter().zip(values);
     let values: Vec<_> = named
-        .map(|((title, axis), values)| (title, axis, values))
+        .map(|((title, axis, ..), values)| (title, axis, values))
         .collect();
     let mut report = HtmlReport::new();
     report.add_campaign(summary, &values, &args.parts.folder.display().to_string());

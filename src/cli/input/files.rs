@@ -69,7 +69,7 @@ pub struct Refused {
     pub outcome: &'static str,
     /// Error that includes the file name.
     pub error: String,
-    /// What is wrong in the file, where it could be read.
+    /// The faults of the file, where it could be read.
     pub faults: Vec<Fault>,
 }
 
@@ -114,7 +114,7 @@ impl Refused {
     }
 }
 
-/// What is looked for in a folder.
+/// The kind of file that is looked for in a folder.
 pub struct FileKind {
     name: &'static str,
     endings: &'static [&'static str],

@@ -229,7 +229,7 @@ impl PlanDocument {
     }
 }
 
-/// What own ship does, and for which target.
+/// Own ship's action, and the target that it is for.
 fn alters_for(leg: &PlannedLeg, before: &Before, target: &str) -> String {
     let motion = &leg.motion;
     let verb = if leg.waits() {

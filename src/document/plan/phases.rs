@@ -11,7 +11,7 @@ use crate::document::parts::EscapeDocument;
 use crate::frame::{heading_from_course_deg, wrap};
 use crate::tolerance;
 
-/// What own ship does in a part of a plan by the rules.
+/// Own ship's action in a part of a plan by the rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Phase {

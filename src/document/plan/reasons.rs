@@ -26,7 +26,7 @@ pub(super) struct Before {
 }
 
 impl PlanDocument {
-    /// What a leg alters course or speed for: the target whose set own ship would enter first with
+    /// The reason why a leg alters course or speed: the target whose set own ship would enter first with
     /// the course and speed `before`, or [`LAND`]. `legs` begins with this leg.
     ///
     /// `None` where the leg alters nothing, or comes back to the mission's course or speed, or

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Format name of the summary.
 pub const CAMPAIGN_FORMAT: &str = "searoom-campaign-summary/1";
 
-/// What the rows of a campaign say so far.
+/// Summary of the rows that a campaign has so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CampaignDocument {
     pub format: String,
@@ -63,7 +63,7 @@ pub struct GroupDocument {
     pub timing: GroupTimingDocument,
 }
 
-/// What depends on the machine.
+/// Figures that depend on the machine.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GroupTimingDocument {
     /// Rows with a plan that took longer than the delay.

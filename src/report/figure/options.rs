@@ -25,7 +25,7 @@ pub struct FigureOptions {
     pub panels: bool,
 }
 
-/// What a chart depends on besides its content.
+/// Settings of a chart.
 #[derive(Debug, Clone)]
 pub(in crate::report) struct Style {
     /// Size of the area between the axes in pixels.

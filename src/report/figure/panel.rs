@@ -95,7 +95,7 @@ pub struct Panel {
     title: String,
     axes: [String; 2],
     window: Window,
-    /// What the window contains at least.
+    /// The part of the plane that the window contains at least.
     content: Window,
     /// Size in pixels of the area between the axes.
     area: [f64; 2],

@@ -82,7 +82,7 @@ pub struct Simulation {
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
     plan_seconds: Vec<f64>,
-    /// What the cycles so far count; the rest is found at the end.
+    /// Counts of the cycles so far; the rest is found at the end.
     conduct: SailedDocument,
     keep_plans: bool,
     plans: Vec<PlanDocument>,
