@@ -367,6 +367,8 @@ mod tests {
     use rand::{Rng, SeedableRng};
 
     use super::*;
+    use crate::geometry::ConvexPolygon;
+    use crate::obstacle::PolytopeObstacle;
     use crate::pipeline;
     use crate::scenario::Compliance;
     use crate::simulation::{EncounterKind, Placement, random_encounter};
@@ -451,13 +453,21 @@ mod tests {
         assert!(bound > 1000.0, "{bound}");
     }
 
-    /// The way of some metres takes less than a step.
+    /// Own ship is at the end after 3 s, before a set covers everything for kilometres.
     #[test]
     fn a_motion_may_arrive_before_the_first_step() {
         let mut run = run_of(EncounterKind::GiveWay, 1, Compliance::None);
         run.scenario.own_ship.speeds = vec![500.0];
-        let obstacles = run.obstacles().collect();
-        let problem = Relaxation::new(&run.scenario, obstacles, 1e6);
+        let square = |middle: Vector, reach: f64| {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let corners = corners.map(|(x, y)| middle + Vector::new(x, y) * reach);
+            ConvexPolygon::hull(&corners).expect("corners")
+        };
+        let start = run.scenario.own_ship.pose.position;
+        let initial = square(start + Vector::new(1000.0, 1000.0), 100.0);
+        let set = PolytopeObstacle::new("grows", initial, square(Vector::zeros(), 450.0));
+        let set = Obstacle::from(set);
+        let problem = Relaxation::new(&run.scenario, vec![&set], 1e4);
         let bound = problem.on_grid(COARSEST_STEPS).0;
         assert_eq!(bound.space_time_error_m2, 0.0);
     }
