@@ -21,6 +21,9 @@ use crate::vessel::{Hull, OwnShip};
 /// Own ship's speeds if the file has none, as fractions of its own speed.
 const DEFAULT_SPEEDS: [f64; 2] = [0.5, 1.0];
 
+/// Speeds that differ by this fraction are one.
+const SAME_SPEED: f64 = 1e-9;
+
 /// Seconds after arrival for which own ship is observed by default.
 const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
 
@@ -71,10 +74,14 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().map(|own| own.land_margin);
     let acceleration = own_ship.as_ref().and_then(|own| own.acceleration);
-    let own_ship = own_ship.and_then(|own| own.ship);
+    let has_speeds = own_ship.as_ref().is_some_and(|own| own.has_speeds);
+    let mut own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .required_table("mission")
         .and_then(|table| mission(table, speed, &plane, folder, time));
+    if let (Some(own), Some(mission), false) = (&mut own_ship, &mission, has_speeds) {
+        add_speeds(&mut own.speeds, &mission.desired);
+    }
     // without a length the file is faulty, and any length serves
     let length = own_ship.as_ref().map_or(1.0, |own| own.hull.length);
     let planner: PlannerTable = root
@@ -180,6 +187,8 @@ pub(super) fn hull(table: &mut Table) -> Option<Hull> {
 pub(super) struct OwnShipFields {
     pub(super) ship: Option<OwnShip>,
     speed: Option<f64>,
+    /// True where the file has the speeds that own ship may use.
+    has_speeds: bool,
     /// Metres.
     land_margin: f64,
     pub(super) acceleration: Option<f64>,
@@ -194,6 +203,7 @@ pub(super) fn own_ship(
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(&mut table);
     let turning_radius = table.required_distance("turning_radius", limits::LENGTH);
+    let has_speeds = table.has_speed("speeds");
     let speeds = own_speeds(&mut table, speed);
     let margin = table.distance("safety_margin", limits::DISTANCE);
     let tracking_margin = table.distance("tracking_margin", limits::DISTANCE);
@@ -215,6 +225,7 @@ pub(super) fn own_ship(
     OwnShipFields {
         ship: ship(),
         speed,
+        has_speeds,
         land_margin: land_margin.unwrap_or(0.0),
         acceleration,
     }
@@ -251,6 +262,17 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     Some(speeds)
+}
+
+/// Adds the speeds of the mission: without them own ship would change between two others all the way.
+fn add_speeds(speeds: &mut Vec<f64>, desired: &DesiredTrajectory) {
+    for leg in desired.legs() {
+        let is_there = |speed: &f64| (speed - leg.speed).abs() <= SAME_SPEED * leg.speed;
+        if speeds.len() < limits::SPEEDS && !speeds.iter().any(is_there) {
+            speeds.push(leg.speed);
+        }
+    }
+    speeds.sort_by(f64::total_cmp);
 }
 
 struct Mission {

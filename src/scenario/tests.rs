@@ -78,6 +78,16 @@ fn plans_are_tidy_under_the_rules_or_where_the_file_asks_for_it() {
     }
 }
 
+/// Otherwise own ship would change between two speeds all the way.
+#[test]
+fn the_speeds_of_the_mission_are_own_ships_unless_it_has_others() {
+    let speeds = |text: &str| Scenario::parse(text).expect("valid").own_ship.speeds;
+    let text = SCENARIO.to_owned() + "leg_speeds_mps = [3, 5]";
+    assert_eq!(speeds(&text), [2.5, 3.0, 5.0]);
+    let text = text.replace("turning", "speeds_mps = [2, 6]\nturning");
+    assert_eq!(speeds(&text), [2.0, 6.0]);
+}
+
 #[test]
 fn knots_replace_lists_too() {
     let text = SCENARIO.replace("turning", "speeds_kn = [12, 0, 6, 6]\nturning")
