@@ -262,6 +262,8 @@ fn the_sources_keep_the_borders() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     sources(&root, &mut files);
+    // the build script is a program of its own
+    files.retain(|file| *file != root.join("build.rs"));
     assert!(files.len() > 20, "{files:?}");
     let faults: Vec<String> = files
         .iter()
