@@ -106,7 +106,7 @@ class Scenario:
         """The names of the targets."""
     @property
     def notes(self) -> list[str]:
-        """What was assumed for an imported file."""
+        """The assumptions made for an imported file."""
 
 @final
 class Plan:
