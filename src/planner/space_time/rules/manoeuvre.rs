@@ -51,7 +51,7 @@ const BACK: [f64; 3] = [0.3, 0.6, 1.0];
 const LEAVE: [f64; 4] = [1.0, 0.6, 0.2, 0.0];
 
 /// Seconds. The first alteration of a ship that meets a risk follows at once.
-const REACT_S: f64 = 20.0;
+const REACT_S: f64 = 10.0;
 
 /// Seconds in which a harbour vessel sails its turning radius.
 const NORMAL_TURN_S: f64 = 20.0;
@@ -79,9 +79,6 @@ const SPARE_S: f64 = 40.0;
 /// Seconds: more than the step of the judges' samples, so that one of them sees an alteration that
 /// is in time.
 const SAMPLE_S: f64 = 1.5;
-
-/// Seconds by which a stand-on ship that may act does so earlier, where that is cheaper.
-const EARLIER_S: f64 = 60.0;
 
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
@@ -287,13 +284,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
-        let earliest = (leave - EARLIER_S).max(may.min(leave)).max(self.from);
         self.keeps_a_length = FROM_ALL;
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
             let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
             let leave = found.manoeuvre.leave;
-            Some(search.improved(found, earliest.min(leave)..=leave))
+            Some(search.improved(found, leave..=leave))
         })
     }
 
