@@ -230,7 +230,8 @@ pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         track.push((elapsed, now));
         now.pose.position += now.velocity() * step;
         elapsed += step;
-        if end <= STEP_S || elapsed >= LONGEST_S {
+        // what is left below a microsecond is rounding
+        if end <= STEP_S + 1e-6 || elapsed >= LONGEST_S {
             break;
         }
         let scenario = later(first, &run, (elapsed, step), now, how, &mut rng)?;

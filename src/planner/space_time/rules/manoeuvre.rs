@@ -14,7 +14,7 @@
 //! search chooses the others.
 
 use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MayAct, ON_COURSE, SMALL_TURN,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MayAct, ON_COURSE, Role, SMALL_TURN,
 };
 use crate::frame::{Pose, Side, Vector, heading_of, wrap};
 use crate::geometry::outer_disc;
@@ -50,8 +50,10 @@ const BACK: [f64; 3] = [0.3, 0.6, 1.0];
 /// Departures, as fractions of the time until the latest one.
 const LEAVE: [f64; 4] = [1.0, 0.6, 0.2, 0.0];
 
-/// Seconds. The first alteration of a ship that meets a risk follows at once.
-const REACT_S: f64 = 10.0;
+/// Seconds within which the first alteration follows a risk that begins late. A ship that overtakes
+/// alters sooner: once it has turned, the closest approach comes early.
+const REACT_S: f64 = 20.0;
+const OVERTAKING_REACT_S: f64 = 10.0;
 
 /// Seconds in which a harbour vessel sails its turning radius.
 const NORMAL_TURN_S: f64 = 20.0;
@@ -350,8 +352,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let keeps_clear = |p: &&Passing| p.encountered.role.duties().keeps_clear;
         let latest = self.passing.iter().filter(keeps_clear).map(|p| {
             let e = p.encountered;
-            let seen = e.risk_since + (soon - turning - SAMPLE_S).max(REACT_S);
-            (e.tcpa - ample).max(e.risk_since + REACT_S).min(seen)
+            let react = match e.role {
+                Role::Overtaking => OVERTAKING_REACT_S,
+                _ => REACT_S,
+            };
+            let seen = e.risk_since + (soon - turning - SAMPLE_S).max(react);
+            (e.tcpa - ample).max(e.risk_since + react).min(seen)
         });
         latest.fold(f64::INFINITY, f64::min).max(0.0)
     }
