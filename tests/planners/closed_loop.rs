@@ -73,7 +73,14 @@ fn a_perfect_ship_among_steady_targets_sails_what_planning_again_and_again_gives
         let off = (cost - expected.cost).abs();
         assert!(off < 1e-6 * expected.cost, "{kind:?} {seed}");
         assert!(found.conduct.largest_off_plan_m < 1e-6 && found.arrived);
-        assert_eq!(found.replans.len(), expected.cycles + 1);
+        // rounding decides whether a ship plans once more at its arrival
+        let at_a_plan =
+            found.duration_s - replanning::STEP_S * (found.duration_s / replanning::STEP_S).round();
+        let more = usize::from(at_a_plan.abs() < 1e-6);
+        assert!(
+            found.replans.len().abs_diff(expected.cycles + 1) <= more,
+            "{kind:?} {seed}"
+        );
         assert_eq!(found.conduct.turns, expected.turns, "{kind:?} {seed}");
         assert_eq!(found.conduct.speed_changes, expected.speed_changes);
         expected.broken.sort_unstable();

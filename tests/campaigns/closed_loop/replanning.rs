@@ -23,7 +23,7 @@ use crate::campaigns::statistics::{quantiles, share_cells};
 use crate::campaigns::{Report, Seeds, meetings};
 
 /// Seconds from one plan to the next.
-const STEP_S: f64 = 20.0;
+pub const STEP_S: f64 = 20.0;
 
 /// Least share of sailed motions with which both judges are content, of targets that keep course
 /// and speed.
@@ -230,8 +230,7 @@ pub fn sail(first: &Scenario, seed: u64, how: &How) -> Option<Sailed> {
         track.push((elapsed, now));
         now.pose.position += now.velocity() * step;
         elapsed += step;
-        // what is left below a microsecond is rounding
-        if end <= STEP_S + 1e-6 || elapsed >= LONGEST_S {
+        if end <= STEP_S || elapsed >= LONGEST_S {
             break;
         }
         let scenario = later(first, &run, (elapsed, step), now, how, &mut rng)?;
