@@ -263,6 +263,9 @@ pub struct CompareArgs {
     /// Accepted risks instead of the scenario's, each from 0 to below 1; several give a sweep
     #[arg(long, value_name = "R,R,..", value_parser = max_risk, value_delimiter = ',')]
     pub max_risk: Vec<f64>,
+    /// Also find, for each plan, a cost that no motion can be below (takes some seconds)
+    #[arg(long)]
+    pub bound: bool,
     /// Write the rows as CSV
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub csv: Option<PathBuf>,

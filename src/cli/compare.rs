@@ -46,7 +46,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let asked = all.into_iter().map(|scene| ask(&scene?, args));
     let mut asked: Vec<Result<Compared, Refused>> = asked.collect();
-    run(&mut asked, output);
+    run(&mut asked, args.bound, output);
     let mut status = ExitStatus::Good;
     for compared in &asked {
         let faults = compared
@@ -120,7 +120,7 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-fn run(asked: &mut [Result<Compared, Refused>], output: &Output) {
+fn run(asked: &mut [Result<Compared, Refused>], bound: bool, output: &Output) {
     let jobs: Vec<(usize, &Compared, Candidate)> = (asked.iter().enumerate())
         .filter_map(|(index, compared)| Some((index, compared.as_ref().ok()?)))
         .flat_map(|(index, c)| c.candidates.iter().map(move |found| (index, c, *found)))
@@ -129,7 +129,11 @@ fn run(asked: &mut [Result<Compared, Refused>], output: &Output) {
     let results: Vec<(usize, Result<Entry, Refused>)> = jobs
         .into_par_iter()
         .map(|(index, c, candidate)| {
-            let entry = guarded(|| candidate.run(&c.scenario)).map_err(|fault| {
+            let run = || match bound {
+                true => candidate.run(&c.scenario).with_bound(),
+                false => candidate.run(&c.scenario),
+            };
+            let entry = guarded(run).map_err(|fault| {
                 let (file, method) = (c.file.display(), candidate.method);
                 let error = format_args!("{file}, {method}: {fault}");
                 Refused::new(&c.file, INTERNAL_FAULT, error)

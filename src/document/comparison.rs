@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
+use super::parts::{
+    CostDocument, LowerBoundDocument, PositionDocument, SearchStatsDocument, TimingDocument,
+};
 
 /// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,6 +35,8 @@ pub struct EntryDocument {
     pub verified: bool,
     pub safe: bool,
     pub cost: Option<CostDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_bound: Option<LowerBoundDocument>,
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
     pub breaks: Option<Vec<String>>,

@@ -102,6 +102,14 @@ pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let mut grid = Grid::new(header, 2..12, rows)
         .breaking("method", 22)
         .breaking("breaks", 9);
+    if entries.iter().any(|entry| entry.lower_bound.is_some()) {
+        grid.header.insert(3, "bound\n[m²]");
+        grid.numbers.end += 1;
+        for (row, group) in grid.rows.iter_mut().zip(&groups) {
+            let bound = group[0].lower_bound.map(|b| b.space_time_error_m2);
+            row.insert(3, or_dash(bound.map(square_metres)));
+        }
+    }
     if is_sweep(entries) {
         grid.header.insert(2, "accepted\nrisk");
         grid.numbers.end += 1;
@@ -193,6 +201,12 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
             collided.push(line);
         }
     }
+    if entries.iter().any(|entry| entry.lower_bound.is_some()) {
+        lines.push(
+            "bound: no motion of a point around the same sets has a smaller J, whatever the rules"
+                .to_owned(),
+        );
+    }
     lines.append(&mut collided);
     let mut methods: Vec<&str> = Vec::new();
     for entry in entries {
@@ -216,7 +230,7 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
 
 /// Columns of [`comparison_csv`], with commas between them.
 pub const COMPARISON_COLUMNS: &str = "file,scenario,method,max_risk,outcome,verified,safe,arrived,\
-    space_time_error_m2,space_time_error_until_s,space_time_error_arc_length_m2,duration_s,delay_s,\
+    space_time_error_m2,lower_bound_m2,space_time_error_until_s,space_time_error_arc_length_m2,duration_s,delay_s,\
     length_m,min_clearance_m,largest_risk,largest_turn_deg,largest_turn_side,breaks,expanded,\
     plan_ms,reason";
 
@@ -237,6 +251,7 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         word(entry.safe),
         cost.is_some_and(|c| c.arrived).to_string(),
         number(|c| c.space_time_error_m2),
+        optional(entry.lower_bound.map(|b| b.space_time_error_m2)),
         number(|c| c.space_time_error_until_s),
         optional(cost.and_then(|c| c.space_time_error_arc_length_m2)),
         number(|c| c.duration_s),

@@ -110,3 +110,24 @@ fn a_turning_target_is_no_ellipsoid_beside_others() {
         .code(1)
         .stdout(contains("path-time, ellipsoids"));
 }
+
+#[test]
+fn a_plan_costs_at_least_its_bound() {
+    let asked = "compare scenarios/colregs/head-on.toml --planner space-time --search a-star \
+                 --compliance none --bound";
+    let found = document(&run(&format!("{asked} --json")).success());
+    let entries = list(&found["comparisons"][0]["entries"]);
+    let bounded = entries.iter().filter(|e| e["lower_bound"].is_object());
+    let mut shares = Vec::new();
+    for entry in bounded {
+        let bound = number(&entry["lower_bound"]["space_time_error_m2"]);
+        shares.push(bound / number(&entry["cost"]["space_time_error_m2"]));
+    }
+    // the plans around polytopes and around ellipsoids; the baselines have none
+    assert_eq!(shares.len(), 2);
+    assert!(shares.iter().all(|s| (0.6..=1.0).contains(s)), "{shares:?}");
+    says(
+        &stdout(&run(asked).success()),
+        "bound | bound: no motion of a point",
+    );
+}

@@ -96,6 +96,7 @@ impl EntryDocument {
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
                 cost
             }),
+            lower_bound: entry.lower_bound,
             largest_turn_deg: turn.map(|turn| turn.degrees),
             largest_turn_side: turn.map(|turn| turn.side.to_string()),
             breaks: (!conduct.is_empty()).then_some(broken),

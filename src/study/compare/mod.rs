@@ -16,10 +16,12 @@ pub use method::Method;
 pub use stroke::Stroke;
 
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
+use crate::document::LowerBoundDocument;
 use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
 use crate::pipeline::{self, Run};
 use crate::scenario::Scenario;
+use crate::study::bound::lower_bound;
 use crate::trajectory::Trajectory;
 
 /// Method at one accepted risk, before it is run.
@@ -40,6 +42,8 @@ pub struct Entry {
     pub run: Option<Box<Run>>,
     /// Motion; `None` without one.
     pub motion: Option<ComparedMotion>,
+    /// See [`Entry::with_bound`].
+    pub lower_bound: Option<LowerBoundDocument>,
 }
 
 /// Lists every candidate of a scenario, by method, then by risk. Holding course accepts no risk, so
@@ -90,6 +94,7 @@ impl Candidate {
             candidate: self,
             run,
             motion,
+            lower_bound: None,
         }
     }
 
@@ -103,6 +108,13 @@ impl Candidate {
 }
 
 impl Entry {
+    /// With a [`lower_bound`] of J around the sets of this method, for a plan that has one. Takes
+    /// some seconds.
+    pub fn with_bound(mut self) -> Self {
+        self.lower_bound = self.run.as_deref().and_then(lower_bound);
+        self
+    }
+
     /// Trajectory; `None` without a motion.
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.motion.as_ref().map(|motion| &motion.trajectory)
