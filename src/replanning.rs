@@ -266,6 +266,7 @@ fn memory_after(
         .filter(|name| scenario.targets.iter().all(|target| target.name != *name));
     let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
     Ok(Memory {
+        warm_start: None,
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
             begins: manoeuvre.begins,
             first_heading: manoeuvre.first_heading,

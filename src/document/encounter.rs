@@ -62,7 +62,7 @@ pub struct MonitorDocument {
 }
 
 /// Own ship's behaviour toward one target along the plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConductDocument {
     pub roles: Vec<RoleDocument>,
     pub scores: BTreeMap<String, f64>,

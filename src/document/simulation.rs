@@ -11,6 +11,8 @@ use super::encounter::ConductDocument;
 use super::memory::{StateDocument, steady};
 use super::parts::{PositionDocument, SegmentDocument, segment};
 use crate::colregs::SteadyShip;
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
 use crate::vessel::Hull;
 
 /// Format name of the simulation document.
@@ -62,6 +64,27 @@ impl SimulatedTargetDocument {
         Some(ship)
     }
 
+    /// What own ship may not touch, with the target at a pose: the hull, or an explicit set.
+    pub fn outline(&self, pose: &Pose) -> ConvexPolygon {
+        let Some(corners) = &self.set_m else {
+            return self.hull().polygon(pose);
+        };
+        let corners = corners
+            .iter()
+            .map(|[x, y]| Vector::new(*x, *y) + pose.position);
+        // an invalid set is where its target is
+        ConvexPolygon::hull(&corners.collect::<Vec<_>>())
+            .unwrap_or_else(|_| ConvexPolygon::point(pose.position))
+    }
+
+    /// Own hull as far as it counts toward the target: an explicit set already holds it.
+    pub fn own_hull(&self, own: Hull) -> Hull {
+        match self.set_m {
+            None => own,
+            Some(_) => Hull::new(0.0, 0.0),
+        }
+    }
+
     /// The hull.
     pub fn hull(&self) -> Hull {
         Hull::new(self.length_m, self.beam_m)
@@ -111,8 +134,13 @@ pub struct SimulationSettingsDocument {
 pub struct SimulatedTargetDocument {
     pub name: String,
     pub behaviour: String,
+    /// Of an explicit set, its extent east and north.
     pub length_m: f64,
     pub beam_m: f64,
+    /// Corners of an explicit set about its position, east and north, metres. Own ship is a point
+    /// toward it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set_m: Option<Vec<[f64; 2]>>,
     /// Least distance of the hulls, null where it is no number; negative in overlap.
     pub least_clearance_m: Option<f64>,
     pub least_clearance_t_s: f64,

@@ -16,6 +16,7 @@ mod sets;
 mod steered;
 mod words;
 
+pub(crate) use cost::counted::counted_error_of_segments;
 pub use cost::counted::{Counted, counted_error};
 pub(crate) use cost::stage_cost::{StageWeights, stage_costs};
 pub(crate) use distance::clearance::Body;

@@ -30,6 +30,8 @@ pub struct Steering<'a> {
     pub vessel: &'a dyn Manoeuvring,
     /// Largest absolute surge force, sway force and yaw moment: newtons, newtons, newton metres.
     pub force_limits: ForceVector,
+    /// Surge, sway and yaw rate at the start: m/s, m/s, rad/s.
+    pub start_velocity: [f64; 3],
 }
 
 /// Evaluates a motion under forces over the whole horizon.
@@ -94,7 +96,9 @@ fn check(request: &Request, steering: &Steering) -> Vec<Violation> {
     let turn = wrap(first.pose.heading - own.pose.heading);
     let unit = "rad from own ship's";
     found.limit("start heading", unit, turn.abs(), tolerance::JOINT_RAD);
-    let speed = (first.velocity - Vector::new(own.speed, 0.0)).norm() + first.yaw_rate.abs();
+    let [surge, sway, yaw_rate] = steering.start_velocity;
+    let speed = (first.velocity - Vector::new(surge, sway)).norm();
+    let speed = speed + (first.yaw_rate - yaw_rate).abs();
     let allowed = tolerance::LIMIT * own.speed.max(1.0);
     found.limit("start velocity", "m/s from own ship's", speed, allowed);
     let scales = steering.vessel.scales();

@@ -61,6 +61,14 @@ impl ConvexSet {
         }
     }
 
+    /// The set moved by a vector.
+    pub fn translated(&self, shift: Vector) -> Self {
+        match self {
+            Self::Polygon(polygon) => Self::Polygon(polygon.translated(shift)),
+            Self::Ellipse(ellipse) => Self::Ellipse(ellipse.translated(shift)),
+        }
+    }
+
     /// `c + factor (x - c)` for every `x` of the set, with its centre `c`.
     pub fn scaled_about_center(&self, factor: f64) -> Self {
         match self {

@@ -105,6 +105,10 @@ fn judged(
                 motion,
                 vessel: vessel.as_ref(),
                 force_limits: control.force_limits,
+                start_velocity: match &scenario.memory.warm_start {
+                    Some(warm) => [3, 4, 5].map(|i| warm.state[i]),
+                    None => [scenario.own_ship.speed, 0.0, 0.0],
+                },
             };
             evaluate_steered(&request, &steering)
         }

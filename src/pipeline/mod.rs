@@ -142,6 +142,7 @@ pub fn problem<'a>(
         encountered: &[],
         under_way: None,
         tidy: scenario.tidiness(),
+        warm_start: scenario.memory.warm_start.as_ref(),
     }
 }
 

@@ -16,6 +16,7 @@ pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use no_plan::NoPlan;
+pub use optimal_control::WarmStart;
 
 use std::time::Duration;
 
@@ -188,6 +189,8 @@ pub struct Problem<'a> {
     pub under_way: Option<UnderWay>,
     /// How tidy a plan is, at some cost; `None` for the least cost alone.
     pub tidy: Option<Tidiness>,
+    /// Own ship's state and last plan under forces; `None` where it moves ahead at its speed.
+    pub warm_start: Option<&'a optimal_control::WarmStart>,
 }
 
 impl<'a> Problem<'a> {
@@ -215,6 +218,7 @@ impl<'a> Problem<'a> {
             encountered: &[],
             under_way: None,
             tidy: None,
+            warm_start: None,
         }
     }
 

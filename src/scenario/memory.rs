@@ -2,7 +2,7 @@
 //! follows.
 
 use crate::colregs::TargetMemory;
-use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
+use crate::planner::{Escape, PlannedManoeuvre, UnderWay, WarmStart};
 use crate::trajectory::Segment;
 
 /// Memory from before the scenario's time. Every time counts from the scenario's time and is
@@ -31,6 +31,8 @@ pub struct Memory {
     pub missing: Vec<String>,
     /// One per target in the scenario's order, or none at all.
     pub targets: Vec<TargetMemory>,
+    /// Own ship's state and last plan under forces; nothing else is remembered there.
+    pub warm_start: Option<WarmStart>,
 }
 
 impl Memory {

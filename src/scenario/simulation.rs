@@ -22,8 +22,8 @@ pub struct SimulationSettings {
     pub duration: Option<f64>,
     /// Seed of every random number.
     pub seed: u64,
-    /// Own ship's true motion.
-    pub vessel: VesselModel,
+    /// Own ship's true motion; `None` for that of its planner's model.
+    pub vessel: Option<VesselModel>,
     /// Motion of the water.
     pub current: Current,
     /// Sensor of own ship.
@@ -95,6 +95,13 @@ pub struct Current {
     pub time: f64,
     /// True where own ship's steering allows for it.
     pub known: bool,
+}
+
+impl Current {
+    /// True where the water is at rest.
+    pub fn is_none(&self) -> bool {
+        self.mean == Vector::zeros() && self.std == 0.0
+    }
 }
 
 /// Kind of sensor.
@@ -268,7 +275,7 @@ impl Default for SimulationSettings {
             delay: 1.0,
             duration: None,
             seed: 1,
-            vessel: VesselModel::Kinematic,
+            vessel: None,
             current: Current {
                 mean: Vector::zeros(),
                 std: 0.0,
@@ -319,7 +326,7 @@ pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> Sim
         seed: table.read_or("seed", standard.seed, |field| {
             field.whole_number(SEED).map(|seed| seed as u64)
         }),
-        vessel: table.read_or("vessel", standard.vessel, vessel),
+        vessel: table.take("vessel").and_then(|field| vessel(&field)),
         current: table.read_or("current", standard.current, |field| {
             current(field, standard.current)
         }),

@@ -168,8 +168,13 @@ impl DesiredTrajectory {
     /// The remainder from `time` on, with a clock that starts then. At least `LAST_STRETCH_M` at
     /// the end of the path remain.
     pub fn remaining(&self, time: f64) -> Self {
+        self.remaining_stretch(time, LAST_STRETCH_M)
+    }
+
+    /// [`Self::remaining`] with another shortest remainder, metres.
+    pub fn remaining_stretch(&self, time: f64, shortest: f64) -> Self {
         let last = &self.legs[self.legs.len() - 1];
-        let latest = self.duration() - LAST_STRETCH_M.min(last.length) / last.speed;
+        let latest = self.duration() - shortest.min(last.length) / last.speed;
         let time = if time > 0.0 { time.min(latest) } else { 0.0 };
         let left = || self.legs.iter().filter(|leg| leg.end_time() > time);
         let mut waypoints = vec![self.position_at(time)];

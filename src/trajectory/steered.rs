@@ -82,6 +82,17 @@ impl Steered {
         Ok(Self { nodes })
     }
 
+    /// The same motion by a clock that starts `time` seconds later.
+    pub fn after(&self, time: f64) -> Self {
+        let nodes = self.nodes.iter().map(|node| ForceNode {
+            time: node.time - time,
+            ..*node
+        });
+        Self {
+            nodes: nodes.collect(),
+        }
+    }
+
     /// The nodes, in order of time.
     pub fn nodes(&self) -> &[ForceNode] {
         &self.nodes
@@ -259,6 +270,20 @@ impl Cubic {
             + self.headings[1] * c
             + self.yaw_rates[1] * (d * self.duration);
         Pose::new(self.position(part), heading)
+    }
+
+    /// State at a time in seconds as a node without forces.
+    pub fn node_at(&self, time: f64) -> ForceNode {
+        let (pose, velocity) = (self.pose_at(time), self.velocity(self.part(time)));
+        let ahead = pose.ahead();
+        ForceNode {
+            time,
+            pose,
+            velocity: Vector::new(velocity.dot(&ahead), velocity.dot(&to_port(ahead))),
+            yaw_rate: self.yaw_rate_at(time),
+            force: Vector::zeros(),
+            moment: 0.0,
+        }
     }
 
     /// Yaw rate at a time in seconds, rad/s.

@@ -76,6 +76,8 @@ pub(super) enum ClaimedMotion {
         motion: Steered,
         vessel: VesselKind,
         force_limits: ForceVector,
+        /// Surge, sway and yaw rate at the start: m/s, m/s, rad/s.
+        start_velocity: [f64; 3],
         weights: StageWeights,
     },
 }

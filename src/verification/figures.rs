@@ -234,6 +234,7 @@ fn driven(claim: &Claim, said: f64) -> Option<f64> {
         motion,
         vessel,
         force_limits,
+        start_velocity,
         weights,
     }) = &claim.motion
     else {
@@ -244,6 +245,7 @@ fn driven(claim: &Claim, said: f64) -> Option<f64> {
         motion,
         vessel: vessel.as_ref(),
         force_limits: *force_limits,
+        start_velocity: *start_velocity,
     };
     let costs = stage_costs(&steering, &claim.desired, weights);
     let off = |cost: &f64| (cost - said).abs();

@@ -128,6 +128,7 @@ fn verified(claim: &Claim) -> Verification {
             motion,
             vessel,
             force_limits,
+            start_velocity,
             ..
         } => evaluate_steered(
             &request,
@@ -135,6 +136,7 @@ fn verified(claim: &Claim) -> Verification {
                 motion,
                 vessel: vessel.exact(claim.own.hull.length).as_ref(),
                 force_limits: *force_limits,
+                start_velocity: *start_velocity,
             },
         ),
     });

@@ -80,6 +80,11 @@ pub(super) fn read(
                     motion,
                     vessel,
                     force_limits,
+                    start_velocity: control
+                        .start
+                        .map_or([file.own_ship.speed_mps, 0.0, 0.0], |start| {
+                            start.velocity()
+                        }),
                     weights: weights(control)?,
                 })),
                 Err(error) => {

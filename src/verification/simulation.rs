@@ -7,20 +7,25 @@ use super::claim::{ClaimError, fault};
 use super::mismatch;
 use super::motion::segment;
 use crate::document::{
-    SIMULATION_FORMAT, SailedLandDocument, SimulationDocument, SimulationsDocument, StateDocument,
+    SIMULATION_FORMAT, SailedLandDocument, SimulatedTargetDocument, SimulationDocument,
+    SimulationsDocument, StateDocument,
 };
 use crate::evaluation::{Body, MovingSlabs, Violation, least_land_distance};
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Polygon};
 use crate::target::Uncertainty;
 use crate::trajectory::Segment;
-use crate::vessel::Hull;
+use crate::vessel::{Hull, VesselKind};
 
 /// Metres beside the gaps of a motion that is given step by step.
 const DISTANCE_M: f64 = 1e-3;
 
 /// Standard deviations of a current that are not exceeded.
 const CURRENT_SIGMAS: f64 = 6.0;
+
+/// Fraction of its way by which a ship under forces may be off the course of its heading: it drifts
+/// by up to 30° in a turn.
+const DRIFT_SHARE: f64 = 0.5;
 
 /// Fraction of its way by which a ship may be off the arc of its mean turn rate in a step.
 const MEAN_SHARE: f64 = 0.05;
@@ -151,7 +156,6 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
         let name = &target.name;
-        let hull = target.hull();
         let track = &target.track;
         if !(track.first().is_some_and(|state| state.at.t_s == 0.0)) {
             violations.push(mismatch(
@@ -167,7 +171,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
                 violations.push(Violation::new(what, pair[1].at.t_s));
             }
         }
-        let (least, allowed) = least_distance((&sailed, &gaps), &own, track, &hull);
+        let (least, allowed) = least_distance((&sailed, &gaps), &own, target);
         // a NaN is a contact
         let met = !(least > 0.0);
         let near_touch = least.abs() <= allowed;
@@ -258,7 +262,11 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         end,
     );
     let hulls = [settings.own_length_m, settings.own_beam_m].into_iter();
-    let hulls = hulls.chain(document.targets.iter().flat_map(|t| [t.length_m, t.beam_m]));
+    let hulls = hulls.chain(
+        (document.targets.iter())
+            .filter(|t| t.set_m.is_none())
+            .flat_map(|t| [t.length_m, t.beam_m]),
+    );
     require(
         hulls.into_iter().all(|size| size > 0.0),
         "a hull without size",
@@ -339,7 +347,11 @@ fn most_gap(document: &SimulationDocument) -> f64 {
             .iter()
             .map(|s| s.speed_mps)
             .fold(0.0, f64::max);
-        (drift + MEAN_SHARE * fastest) * document.settings.step_s + DISTANCE_M
+        let drifts = VesselKind::WORDS
+            .iter()
+            .any(|(word, _)| *word == document.settings.vessel);
+        let share = if drifts { DRIFT_SHARE } else { MEAN_SHARE };
+        (drift + share * fastest) * document.settings.step_s + DISTANCE_M
     } else {
         DISTANCE_M
     }
@@ -349,9 +361,9 @@ fn most_gap(document: &SimulationDocument) -> f64 {
 fn least_distance(
     (sailed, gaps): (&[Segment], &[f64]),
     own: &Hull,
-    track: &[StateDocument],
-    hull: &Hull,
+    target: &SimulatedTargetDocument,
 ) -> (f64, f64) {
+    let (track, own) = (&target.track, target.own_hull(*own));
     let mut least = (f64::INFINITY, DISTANCE_M);
     for (index, state) in track.iter().enumerate() {
         let until = track
@@ -360,7 +372,7 @@ fn least_distance(
         let from = state.at.t_s;
         let there = state.at.pose();
         let velocity = ConvexPolygon::point(there.ahead() * state.speed_mps);
-        let set = MovingSlabs::new(&Uncertainty::constant(hull.polygon(&there), velocity));
+        let set = MovingSlabs::new(&Uncertainty::constant(target.outline(&there), velocity));
         for (s, gap) in sailed.iter().zip(gaps) {
             if !(s.end_time() > from && s.start_time < until) {
                 continue;
@@ -370,7 +382,7 @@ fn least_distance(
                 start_time: part.start_time - from,
                 ..part
             };
-            let found = set.least_distance(&[piece], Body::hull(own)).value;
+            let found = set.least_distance(&[piece], Body::hull(&own)).value;
             // negated on purpose: a NaN stays
             if !(found >= least.0) && !least.0.is_nan() {
                 least = (found, gap + DISTANCE_M);

@@ -64,6 +64,27 @@ pub trait Manoeuvring: std::fmt::Debug + Sync {
 
     /// Units in which the model's numbers are of order one.
     fn scales(&self) -> Scales;
+
+    /// The state after `duration` seconds under a constant force, by `steps` steps of the classic
+    /// Runge–Kutta method.
+    fn integrated(
+        &self,
+        from: &StateVector,
+        force: &ForceVector,
+        duration: f64,
+        steps: usize,
+    ) -> StateVector {
+        let h = duration / steps as f64;
+        let mut x = *from;
+        for _ in 0..steps {
+            let a = self.rates(&x, force);
+            let b = self.rates(&(x + 0.5 * h * a), force);
+            let c = self.rates(&(x + 0.5 * h * b), force);
+            let d = self.rates(&(x + h * c), force);
+            x += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+        }
+        x
+    }
 }
 
 /// `J(heading) velocity`: the rates of position and heading, for every ship.

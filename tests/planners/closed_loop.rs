@@ -346,7 +346,7 @@ fn what_the_loop_cannot_sail_is_refused_with_its_place() {
         (refused(&|s| s.delay = 30.0), "simulation.delay_s", "30"),
         (refused(&|s| s.step = 25.0), "simulation.step_s", "25"),
         (
-            refused(&|s| s.vessel = weak),
+            refused(&|s| s.vessel = Some(weak)),
             "simulation.vessel",
             "a ship that turns at 250.0 m",
         ),
@@ -375,7 +375,7 @@ fn what_the_loop_cannot_sail_is_refused_with_its_place() {
     ];
     assert_eq!(places, wanted);
     for (file, place) in [
-        ("paper/figure_9", "planner.kind"),
+        ("paper/figure_5", "planner.kind"),
         ("uncertainty/changing-velocities", "targets[0]"),
     ] {
         let refused = Simulation::new(scenario(&format!("{file}.toml")), false);

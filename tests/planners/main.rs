@@ -8,6 +8,7 @@ mod closed_loop;
 mod conformance;
 mod control_solver;
 mod encounters;
+mod forced_loop;
 mod generator;
 mod land;
 mod larger_sets;

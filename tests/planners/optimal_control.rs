@@ -399,6 +399,7 @@ fn a_judge_without_its_ship_knows_no_plan() {
         motion: plan(&run).trajectory.steered().expect("forces"),
         vessel: full.as_ref(),
         force_limits: ForceVector::new(2.0, 1.5, 1.5),
+        start_velocity: [run.scenario.own_ship.speed, 0.0, 0.0],
     };
     let scenario = &run.scenario;
     let request = Request::new(&[], &scenario.own_ship, &scenario.desired, 100.0);

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::frame::{clockwise_deg_per_s, radians_from_deg};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Run;
 
@@ -13,6 +14,9 @@ pub struct ControlDocument {
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
     pub control_weights: [f64; 3],
+    /// Null for a start ahead at own ship's speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<StartVelocityDocument>,
     pub start_intervals: usize,
     pub intervals: usize,
     pub defect: Option<f64>,
@@ -27,6 +31,22 @@ pub struct ForceLimitsDocument {
     pub surge_n: f64,
     pub sway_n: f64,
     pub yaw_nm: f64,
+}
+
+/// Own ship's velocity at the start; starboard and clockwise are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StartVelocityDocument {
+    pub surge_mps: f64,
+    pub sway_mps: f64,
+    pub yaw_rate_deg_per_s: f64,
+}
+
+impl StartVelocityDocument {
+    /// Surge, sway to port and yaw rate to port: m/s, m/s, rad/s.
+    pub(crate) fn velocity(self) -> [f64; 3] {
+        let yaw_rate = radians_from_deg(-self.yaw_rate_deg_per_s);
+        [self.surge_mps, -self.sway_mps, yaw_rate]
+    }
 }
 
 /// Result of one initial guess.
@@ -62,6 +82,11 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         },
         state_weights: settings.state_weights.into(),
         control_weights: settings.force_weights.into(),
+        start: (run.scenario.memory.warm_start.as_ref()).map(|warm| StartVelocityDocument {
+            surge_mps: warm.state[3],
+            sway_mps: -warm.state[4] + 0.0,
+            yaw_rate_deg_per_s: clockwise_deg_per_s(warm.state[5]),
+        }),
         start_intervals: report.start_intervals,
         intervals: report.intervals,
         defect: finite(report.defect),

@@ -45,13 +45,21 @@ pub fn counted_error(
             let pieces: Vec<Cubic> = motion.pieces().collect();
             counted_error_of_cubics(&pieces, desired, q, within)
         }
-        None => {
-            let counted = counted(trajectory.segments(), desired, within);
-            let mut kept = until(trajectory.segments(), counted.until);
-            kept.extend(wait_until(counted.until, &kept));
-            (cost::space_time_error(&kept, desired, q), counted)
-        }
+        None => counted_error_of_segments(trajectory.segments(), desired, q, within),
     }
+}
+
+/// [`counted_error`] of segments, which need not begin exactly where those before them end.
+pub(crate) fn counted_error_of_segments(
+    segments: &[Segment],
+    desired: &DesiredTrajectory,
+    q: f64,
+    within: f64,
+) -> (f64, Counted) {
+    let counted = counted(segments, desired, within);
+    let mut kept = until(segments, counted.until);
+    kept.extend(wait_until(counted.until, &kept));
+    (cost::space_time_error(&kept, desired, q), counted)
 }
 
 /// Space-time error of segments to their end, which arrive at the last waypoint itself.

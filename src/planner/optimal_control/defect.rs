@@ -1,9 +1,9 @@
 //! Deviation of the ship from a plan, one interval at a time.
 
 use super::task::Profile;
-use crate::vessel::{ForceVector, Manoeuvring, StateVector};
+use crate::vessel::Manoeuvring;
 
-/// Steps of the classic Runge–Kutta method per interval.
+/// Steps of the integration per interval.
 const STEPS: usize = 20;
 
 /// Largest component of the deviation at the next node, in the ship's units, when the ship starts
@@ -16,7 +16,8 @@ pub fn largest_defect<V: Manoeuvring>(vessel: &V, profile: &Profile, step: f64) 
         .windows(2)
         .zip(&profile.forces)
         .map(|(pair, force)| {
-            let off = (integrated(vessel, &pair[0], force, step) - pair[1]).component_div(&unit);
+            let reached = vessel.integrated(&pair[0], force, step, STEPS);
+            let off = (reached - pair[1]).component_div(&unit);
             // a maximum would lose a NaN
             if off.sum().is_finite() {
                 off.amax()
@@ -25,22 +26,4 @@ pub fn largest_defect<V: Manoeuvring>(vessel: &V, profile: &Profile, step: f64) 
             }
         })
         .fold(0.0, f64::max)
-}
-
-fn integrated<V: Manoeuvring>(
-    vessel: &V,
-    from: &StateVector,
-    force: &ForceVector,
-    duration: f64,
-) -> StateVector {
-    let h = duration / STEPS as f64;
-    let mut x = *from;
-    for _ in 0..STEPS {
-        let a = vessel.rates(&x, force);
-        let b = vessel.rates(&(x + 0.5 * h * a), force);
-        let c = vessel.rates(&(x + 0.5 * h * b), force);
-        let d = vessel.rates(&(x + h * c), force);
-        x += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-    }
-    x
 }

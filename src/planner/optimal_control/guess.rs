@@ -17,6 +17,8 @@ const CLEARANCE: f64 = 0.3;
 /// Kind of initial guess.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Start {
+    /// The last plan.
+    Previous,
     /// Trajectory of the space-time planner.
     SpaceTime,
     /// Desired trajectory, bent to one side; the index of the amplitude.
@@ -29,6 +31,7 @@ pub enum Start {
 impl std::fmt::Display for Start {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Previous => f.write_str("previous"),
             Self::SpaceTime => f.write_str("space-time"),
             Self::Lateral(index) => write!(f, "lateral {}", index + 1),
             Self::Sided(sides) => write!(f, "sides {}", sides + 1),

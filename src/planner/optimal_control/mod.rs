@@ -30,10 +30,10 @@ pub use attempt::{Inside, StartAttempt, attempt};
 pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
 pub use plan::plan;
-pub use receding::{Measured, RecedingHorizon};
+pub use receding::{Measured, RecedingHorizon, WarmStart};
 pub use report::{ControlReport, HomotopyClass, StartReport};
 pub use solver::{Settings, SolverReport, SolverStatus};
-pub use task::{Controls, Profile, Task};
+pub use task::{Controls, Profile, Task, force, node, state};
 pub use transcription::Weights;
 
 use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};

@@ -28,6 +28,9 @@ const STARTS_SHARE: f64 = 0.6;
 /// Fraction of the time budget for the space-time planner, which provides one initial guess.
 const SPACE_TIME_SHARE: f64 = 0.25;
 
+/// Initial barrier parameter where the last plan is the guess.
+const WARM_BARRIER: f64 = 1e-4;
+
 /// Relative difference of the objective below which two plans are the same.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
@@ -90,13 +93,12 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
             controls: self.controls,
             desired: self.problem.desired,
             keep_outs: &self.keep_outs,
-            first: StateVector::new(
-                own.pose.position.x,
-                own.pose.position.y,
-                own.pose.heading,
-                own.speed,
-                0.0,
-                0.0,
+            first: self.problem.warm_start.map_or_else(
+                || {
+                    let place = own.pose.position;
+                    StateVector::new(place.x, place.y, own.pose.heading, own.speed, 0.0, 0.0)
+                },
+                |warm| warm.state,
             ),
             start_time: 0.0,
             duration: self.problem.horizon,
@@ -136,6 +138,9 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
     }
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
+        if let Some(outcome @ Outcome::Solved(_)) = self.warm_started(report) {
+            return outcome;
+        }
         let mut attempts = self.attempts(&Settings::default());
         let lost = |(_, attempt): &(_, Option<StartAttempt>)| {
             attempt.as_ref().is_none_or(StartAttempt::is_lost)
@@ -151,14 +156,31 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
             .any(|(report, _)| report.status == SolverStatus::OutOfTime);
         let (reports, attempts): (Vec<StartReport>, Vec<Option<StartAttempt>>) =
             attempts.into_iter().unzip();
-        report.classes = classes(&reports);
-        report.starts = reports;
+        report.starts.extend(reports);
+        report.classes = classes(&report.starts);
         let attempts: Vec<StartAttempt> = attempts.into_iter().flatten().collect();
         match self.cheapest_on_fine_grid(&attempts, report) {
             Outcome::Solved(plan) if late || !self.in_time() => Outcome::Deadline(Some(plan)),
             _ if late || !self.in_time() => Outcome::Deadline(None),
             other => other,
         }
+    }
+
+    /// The plan that the last one leads to, as long as there is one: no other side is tried.
+    fn warm_started(&self, report: &mut ControlReport) -> Option<Outcome> {
+        let warm = self.problem.warm_start?;
+        let task = self.task(self.intervals);
+        let settings = Settings {
+            barrier: WARM_BARRIER,
+            ..Settings::default()
+        };
+        let guess = Some(warm.profile(&task));
+        let keep_going = || self.in_share(STARTS_SHARE);
+        let (start, found) =
+            self.attempt_from(&task, Start::Previous, guess, &settings, &keep_going)?;
+        report.starts.push(start);
+        report.classes = classes(&report.starts);
+        found.map(|found| self.cheapest_on_fine_grid(&[found], report))
     }
 
     /// Results of all initial guesses, in their order.

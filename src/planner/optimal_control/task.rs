@@ -139,6 +139,24 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
     }
 }
 
+/// State at a node of a trajectory.
+pub fn state(node: &ForceNode) -> StateVector {
+    let (place, way) = (node.pose.position, node.velocity);
+    StateVector::new(
+        place.x,
+        place.y,
+        node.pose.heading,
+        way.x,
+        way.y,
+        node.yaw_rate,
+    )
+}
+
+/// Forces from a node of a trajectory on.
+pub fn force(node: &ForceNode) -> ForceVector {
+    ForceVector::new(node.force.x, node.force.y, node.moment)
+}
+
 /// State and forces as a node of a trajectory.
 pub fn node(time: f64, state: &StateVector, force: &ForceVector) -> ForceNode {
     ForceNode {

@@ -2,7 +2,10 @@
 
 use super::{Canvas, Palette, cursor_times, with_sea};
 use crate::colregs::{self, SteadyShip};
-use crate::document::{self, PlanDocument, SimulatedTargetDocument, SimulationDocument};
+use crate::document::{
+    self, PlanDocument, SampleDocument, SimulatedTargetDocument, SimulationDocument,
+};
+use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::scenario::Scenario;
 use crate::target::{ShipTrack, Uncertainty};
@@ -119,20 +122,24 @@ impl<'a> ClosedLoop<'a> {
     /// Metres between the hulls, negative in overlap.
     pub fn clearance(&self, target: &SimulatedTargetDocument, time: f64) -> Option<f64> {
         let own = self.canvas.scenario.own_ship.hull;
-        let own = own.polygon(&self.own_at(time).pose);
-        let other = target.hull().polygon(&target.at(time)?.pose);
+        let own = target.own_hull(own).polygon(&self.own_at(time).pose);
+        let other = target.outline(&target.at(time)?.pose);
         Some(own.separation(&other))
     }
 }
 
 impl FollowedPlan {
     fn new(scenario: &Scenario, from: f64, plan: &PlanDocument) -> Self {
-        let segments = plan.trajectory.iter().flat_map(|t| t.segments.iter());
+        let trajectory = plan.trajectory.as_ref();
+        let segments = trajectory.map_or_else(Vec::new, |trajectory| match &trajectory.segments {
+            Some(segments) => segments.iter().map(document::segment).collect(),
+            None => lines(&trajectory.samples),
+        });
         let ships = plan.targets.iter().filter_map(|t| t.ship.as_ref());
         let ships = ships.filter_map(|ship| ship.track().ok());
         Self {
             from,
-            segments: (segments.flatten().map(document::segment))
+            segments: (segments.into_iter())
                 .map(|segment| Segment {
                     start_time: segment.start_time + from,
                     ..segment
@@ -164,6 +171,17 @@ impl AssumedTarget {
     pub fn hard_at(&self, time: f64) -> ConvexPolygon {
         self.hard.outer_section(time)
     }
+}
+
+/// Lines from sample to sample of a motion under forces.
+fn lines(samples: &[SampleDocument]) -> Vec<Segment> {
+    let place = |sample: &SampleDocument| Vector::new(sample.east_m, sample.north_m);
+    let line = |pair: &[SampleDocument]| {
+        let (way, duration) = (place(&pair[1]) - place(&pair[0]), pair[1].t_s - pair[0].t_s);
+        let start = Pose::new(place(&pair[0]), heading_of(way));
+        Segment::straight(start, pair[0].t_s, duration, way.norm() / duration)
+    };
+    samples.windows(2).map(line).collect()
 }
 
 /// The ship on segments, of which there is at least one.

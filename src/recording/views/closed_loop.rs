@@ -11,7 +11,6 @@ use crate::geometry::ConvexPolygon;
 use crate::recording::canvas::{AssumedTarget, ClosedLoop, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
-use crate::vessel::Hull;
 
 pub const OFF_PLAN: &str = "curves/off_plan_m";
 pub const PLANNING: &str = "curves/planning_ms";
@@ -78,21 +77,24 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let colors: Vec<_> = std::iter::once(style::OWN_SHIP)
         .chain((0..targets.len()).map(style::target))
         .collect();
-    let ships = |time: f64| -> Option<Vec<(SteadyShip, Hull)>> {
-        let own = Some((model.own_at(time), canvas.scenario.own_ship.hull));
-        let others = targets.iter();
-        let others = others.map(|target| Some((target.at(time)?, target.hull())));
-        std::iter::once(own).chain(others).collect()
+    let ships = |time: f64| -> Option<Vec<(SteadyShip, ConvexPolygon)>> {
+        let own = model.own_at(time);
+        let hull = canvas.scenario.own_ship.hull.polygon(&own.pose);
+        let others = targets.iter().map(|target| {
+            let ship = target.at(time)?;
+            Some((ship, target.outline(&ship.pose)))
+        });
+        std::iter::once(Some((own, hull))).chain(others).collect()
     };
     let style = LineStrips2D::update_fields()
         .with_colors(colors.iter().flat_map(|color| [*color; 2]))
         .with_radii([style::points(1.2), style::points(0.8)].repeat(colors.len()));
     let seconds = ships::vector_seconds(canvas);
     log_strips(rec, model, "ships", &style, |time| {
-        let drawn = ships(time)?.into_iter().flat_map(|(ship, hull)| {
+        let drawn = ships(time)?.into_iter().flat_map(|(ship, outlined)| {
             let tip = ship.pose.position + ship.velocity() * seconds;
             let vector = [ship.pose.position, tip].map(flat);
-            [outline(&hull.polygon(&ship.pose)), vector.to_vec()]
+            [outline(&outlined), vector.to_vec()]
         });
         Some(drawn.collect())
     })?;

@@ -2,7 +2,8 @@
 
 use super::plan::{Charted, Traffic, marked_times, moments, traffic_chart};
 use super::{Figure, FigureError, FigureOptions, Panel, Style};
-use crate::document::SimulationDocument;
+use crate::document::{SimulatedTargetDocument, SimulationDocument};
+use crate::frame::{Pose, Vector};
 use crate::report::simulation::headline;
 use crate::scenario::Scenario;
 use crate::text::tenths;
@@ -43,6 +44,10 @@ pub(in crate::report) fn simulation_panel(
     traffic_chart("Sailed", scenario, style, &traffic, None, Vec::new())
 }
 
+fn corners(target: &SimulatedTargetDocument, pose: &Pose) -> Vec<Vector> {
+    target.outline(pose).vertices().to_vec()
+}
+
 fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let end = simulation.duration_s;
     let step = STEP.max(end / MOST_POINTS);
@@ -59,14 +64,23 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
     let targets = simulation.targets.iter().map(|target| Charted {
         name: target.name.clone(),
-        hull: Some(target.hull()),
+        hull: target.set_m.is_none().then(|| target.hull()),
         track: (sampled.iter())
             .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))
             .collect(),
         poses: (times.iter())
             .map(|time| target.at(*time).map(|ship| ship.pose))
             .collect(),
-        areas: Vec::new(),
+        areas: match target.set_m {
+            None => Vec::new(),
+            Some(_) => (times.iter())
+                .map(|time| {
+                    target
+                        .at(*time)
+                        .map_or_else(Vec::new, |s| corners(target, &s.pose))
+                })
+                .collect(),
+        },
     });
     let closest = nearest.and_then(|target| {
         let time = target.least_clearance_t_s;

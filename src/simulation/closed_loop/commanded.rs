@@ -24,6 +24,11 @@ pub struct Command {
 impl Simulation {
     /// The loop without a planner: own ship holds course and speed until [`Self::command`].
     pub fn commanded(scenario: Scenario) -> Result<Self, Vec<Fault>> {
+        if super::is_under_forces(&scenario) {
+            let allowed = "\"space-time\": commands are courses and speeds, not forces";
+            let found = format!("{:?}", scenario.planner.facts().name);
+            return Err(vec![Fault::new("planner.kind", found, allowed)]);
+        }
         let mut simulation = Self::begun(scenario, false)?;
         simulation.scenario.simulation.replan_on_events = false;
         simulation.next_cycle = f64::INFINITY;

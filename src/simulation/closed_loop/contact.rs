@@ -2,11 +2,36 @@
 
 use crate::colregs::SteadyShip;
 use crate::evaluation::{Body, MovingSlabs};
-use crate::frame::Vector;
+use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::target::Uncertainty;
 use crate::trajectory::{Cubic, Segment};
 use crate::vessel::Hull;
+
+/// What own ship may not touch.
+#[derive(Debug, Clone)]
+pub(super) enum Shape {
+    Hull(Hull),
+    /// An explicit set about its position, which does not turn.
+    Set(ConvexPolygon),
+}
+
+impl Shape {
+    fn at(&self, pose: &Pose) -> ConvexPolygon {
+        match self {
+            Self::Hull(hull) => hull.polygon(pose),
+            Self::Set(set) => set.translated(pose.position),
+        }
+    }
+
+    /// Metres from the position to the farthest point.
+    fn reach(&self) -> f64 {
+        match self {
+            Self::Hull(hull) => hull.half_diagonal(),
+            Self::Set(set) => set.reach(),
+        }
+    }
+}
 
 /// Own ship's motion within a step, from t = 0.
 #[derive(Debug, Clone)]
@@ -40,8 +65,9 @@ struct Step {
 /// end, in the steps that may hold it.
 #[derive(Debug, Clone)]
 pub(super) struct Clearance {
+    /// A point beside an explicit set, which holds own hull.
     own: Hull,
-    target: Hull,
+    target: Shape,
     least: Least,
     /// No hulls were farther apart than this, metres.
     nearer_than: f64,
@@ -58,7 +84,7 @@ pub(super) struct Least {
 }
 
 impl Clearance {
-    pub fn new(own: Hull, target: Hull) -> Self {
+    pub fn new(own: Hull, target: Shape) -> Self {
         Self {
             own,
             target,
@@ -82,7 +108,7 @@ impl Clearance {
     ) {
         let apart = (target.pose.position - start).norm();
         let closing = own.fastest() + target.speed;
-        let reach = self.own.half_diagonal() + self.target.half_diagonal();
+        let reach = self.own.half_diagonal() + self.target.reach();
         let bound = apart - reach - closing * step;
         // centres are farther apart than hulls
         self.nearer_than = self.nearer_than.min(apart);
@@ -124,9 +150,9 @@ impl Clearance {
 }
 
 impl Least {
-    fn update(&mut self, step: &Step, (own, target): (&Hull, &Hull)) {
+    fn update(&mut self, step: &Step, (own, target): (&Hull, &Shape)) {
         let sets = Uncertainty::constant(
-            target.polygon(&step.target.pose),
+            target.at(&step.target.pose),
             ConvexPolygon::point(step.target.velocity()),
         );
         let (slabs, body) = (MovingSlabs::new(&sets), Body::hull(own));
@@ -148,7 +174,6 @@ impl Least {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Pose;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -165,7 +190,7 @@ mod tests {
             let segment = Segment::new(start, 0.0, 10.0, 5.0 + within(2.0), rate);
             let pose = Pose::new(Vector::new(within(90.0), within(90.0)), within(3.0));
             let target = SteadyShip::new(pose, 5.0 + within(4.0));
-            let mut clearance = Clearance::new(own_hull, hull);
+            let mut clearance = Clearance::new(own_hull, Shape::Hull(hull));
             for k in 0..20 {
                 let (time, step) = (f64::from(k) * 0.5, 0.5);
                 let part = Segment {
@@ -207,7 +232,7 @@ mod tests {
         let own = OwnMotion::Segments(vec![line]);
         let target = SteadyShip::new(Pose::new(Vector::new(1e4, 0.0), 0.0), 1.0);
         let hull = Hull::new(30.0, 8.0);
-        let mut clearance = Clearance::new(hull, hull);
+        let mut clearance = Clearance::new(hull, Shape::Hull(hull));
         clearance.add((3.0, 1.0), (lost, &own), &target);
         assert!(clearance.is_contact() && clearance.settled().metres.is_nan());
     }

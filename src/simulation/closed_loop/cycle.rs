@@ -3,16 +3,23 @@
 use super::Simulation;
 use crate::colregs::SteadyShip;
 use crate::document::{EstimateDocument, ReplanDocument, finite, position, relaxation};
-use crate::frame::{Pose, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
-use crate::obstacle::SpaceTimeObstacle;
+use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
+use crate::planner::WarmStart;
+use crate::planner::optimal_control::node;
 use crate::replanning::remember;
 use crate::scenario::Memory;
-use crate::target::{Motion, ShipTrack};
+use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::tolerance::TOUCH_M;
+use crate::vessel::ForceVector;
 
 /// m/s and metres: rounding of a target's state.
 const ROUNDING: f64 = 1e-6;
+
+/// Metres that remain at the least of the desired trajectory under forces: the shortest leg. A ship
+/// of a metre has to lie at its end, not a metre before it.
+const LAST_STRETCH_M: f64 = 1e-3;
 
 pub(super) struct Cycle {
     pub run: Run,
@@ -46,15 +53,32 @@ impl Simulation {
                 course_spread_deg: deg_from_radians(ship.course_spread),
                 starboard_turn_deg: deg_from_radians(ship.starboard_turn),
             });
-            target.motion = Motion::Ship(ship);
+            target.motion = match &simulated.set {
+                None => Motion::Ship(ship),
+                Some(sets) => Motion::Sets(seen(sets, simulated.truth.now.pose.position, delay)),
+            };
         }
+        let in_plan = self.time - self.active.start;
+        let forced = (self.own).forced_state(&self.active.trajectory, in_plan, delay);
         if start > 0.0 {
             scenario.time += start;
-            scenario.desired = self.scenario.desired.remaining(start);
             scenario.own_ship.pose = self.pose_at(start);
             scenario.memory = Memory::default();
+            scenario.desired = match forced {
+                None => self.scenario.desired.remaining(start),
+                Some(_) => self
+                    .scenario
+                    .desired
+                    .remaining_stretch(start, LAST_STRETCH_M),
+            };
         }
-        if let Some(previous) = &self.active.document {
+        if let (Some(state), Some(plan)) = (forced, self.active.trajectory.steered()) {
+            let own = node(0.0, &state, &ForceVector::zeros());
+            scenario.own_ship.pose = own.pose;
+            scenario.own_ship.speed = own.velocity.norm();
+            let plan = plan.after(start - self.active.start);
+            scenario.memory.warm_start = Some(WarmStart { state, plan });
+        } else if let Some(previous) = &self.active.document {
             // the last plan is own ship's, so only a ship far off it is refused
             if remember(previous, &mut scenario).is_err() {
                 self.alarm("far off the plan", None);
@@ -82,7 +106,11 @@ impl Simulation {
             safe: run.safe(),
             followed: plan.is_some() && !late,
             keeps_plan: run.planned.is_remainder,
-            cost_m2: plan.and_then(|plan| finite(plan.cost)),
+            cost_m2: plan.and_then(|plan| {
+                // the stage cost of forces has another unit
+                let evaluation = run.evaluation.as_ref().filter(|_| forced.is_some());
+                finite(evaluation.map_or(plan.cost, |e| e.space_time_error))
+            }),
             relaxations: run.relaxations.iter().map(|r| relaxation(r).kind).collect(),
             turn_deg: (run.planned.manoeuvres.first()).map(|m| clockwise_deg(m.turn)),
             off_plan_m,
@@ -109,6 +137,18 @@ impl Simulation {
             then.world_coordinates(off),
             then.heading + wrap(own.heading - now.heading),
         )
+    }
+}
+
+/// Explicit sets whose centre is seen now, `delay` seconds later.
+fn seen(sets: &Uncertainty, center: Vector, delay: f64) -> Uncertainty {
+    let now = Uncertainty {
+        initial: sets.initial.translated(center - sets.initial.center()),
+        ..sets.clone()
+    };
+    match Obstacle::new("", now.clone()) {
+        Ok(obstacle) => obstacle.remaining_sets(delay),
+        Err(_) => now,
     }
 }
 

@@ -4,6 +4,7 @@ mod behaviour;
 mod commanded;
 mod contact;
 mod cycle;
+mod forces;
 mod guidance;
 mod mutual;
 mod own;
@@ -18,7 +19,7 @@ pub use commanded::Command;
 use std::sync::OnceLock;
 
 use behaviour::TrueTarget;
-use contact::Clearance;
+use contact::{Clearance, Shape};
 use cycle::Cycle;
 use mutual::MutualTarget;
 use own::Own;
@@ -27,11 +28,16 @@ use tracker::Track;
 
 use crate::colregs::SteadyShip;
 use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
+use crate::frame::{Pose, Vector, heading_of};
+use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
 use crate::planner::Minimises;
-use crate::scenario::{Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings};
-use crate::target::ShipTrack;
+use crate::scenario::{
+    Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings, VesselModel,
+};
+use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::text::rounded;
+use crate::tolerance::ELLIPSE_SIDES;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -94,6 +100,8 @@ pub struct Simulation {
 #[derive(Debug, Clone)]
 struct Simulated {
     name: String,
+    /// An explicit set. Its centre moves with the middle of its velocities.
+    set: Option<Uncertainty>,
     truth: TrueTarget,
     sensor: TargetSensor,
     track: Track,
@@ -115,8 +123,9 @@ struct Active {
     trajectory: Trajectory,
     /// `None` where own ship holds course and speed without a plan.
     document: Option<PlanDocument>,
-    /// The ships that the plan assumes at its start, in the scenario's order.
-    assumed: Vec<ShipTrack>,
+    /// The targets that the plan assumes at its start, in the scenario's order; `None` for explicit
+    /// sets.
+    assumed: Vec<Option<ShipTrack>>,
 }
 
 impl Active {
@@ -154,8 +163,15 @@ impl Simulation {
         let not_reported = settings.not_reported.iter().copied();
         let not_reported = not_reported.chain(std::iter::repeat(NotReported::default()));
         let ships = scenario.targets.iter().zip(behaviours).zip(not_reported);
-        let targets = ships.filter_map(|((target, behaviour), not_reported)| {
-            let ship = target.ship()?;
+        let targets = ships.map(|((target, behaviour), not_reported)| {
+            let (ship, set) = match &target.motion {
+                Motion::Ship(ship) => (ship, None),
+                Motion::Sets(sets) => (&middle_of(sets), Some(sets)),
+            };
+            let shapes = match set {
+                None => (scenario.own_ship.hull, Shape::Hull(ship.hull)),
+                Some(sets) => (Hull::new(0.0, 0.0), Shape::Set(outline(sets))),
+            };
             let assumed = ShipTrack {
                 hull: not_reported.outer_hull(ship.hull, settings.sensor.default_hull),
                 ..ship.clone()
@@ -163,11 +179,12 @@ impl Simulation {
             let seed = settings.seed;
             let mut simulated = Simulated {
                 name: target.name.clone(),
+                set: set.cloned(),
                 truth: TrueTarget::new(&target.name, ship, behaviour, seed),
                 mutual: mutual_targets.next().flatten(),
                 sensor: TargetSensor::new(&settings.sensor, &target.name, seed),
                 track: Track::new(&assumed, &settings.sensor),
-                clearance: Clearance::new(scenario.own_ship.hull, ship.hull),
+                clearance: Clearance::new(shapes.0, shapes.1),
                 states: Vec::new(),
                 outside_sets: 0,
                 is_stale: false,
@@ -179,7 +196,7 @@ impl Simulation {
                 simulated.observe(time, &SteadyShip::on_track(ship, time), false);
             }
             simulated.track.assume_anew();
-            Some(simulated)
+            simulated
         });
         Ok(Self {
             targets: targets.collect(),
@@ -423,16 +440,12 @@ impl Simulation {
             if self.keep_plans {
                 self.plans.push(document.clone());
             }
-            let ships = run
-                .scenario
-                .targets
-                .iter()
-                .filter_map(|target| target.ship());
+            let targets = run.scenario.targets.iter();
             self.pending = Some(Active {
                 start: self.time + delay,
                 trajectory: plan.trajectory.clone(),
                 document: Some(document),
-                assumed: ships.cloned().collect(),
+                assumed: targets.map(|target| target.ship().cloned()).collect(),
             });
         }
         self.replans.push(replan);
@@ -455,7 +468,8 @@ impl Simulation {
         };
         let mut outside = Vec::new();
         for (target, assumed) in self.targets.iter_mut().zip(&plan.assumed) {
-            if !cycle::holds(assumed, &target.truth.now) {
+            let holds = |assumed| cycle::holds(assumed, &target.truth.now);
+            if !assumed.as_ref().is_none_or(holds) {
                 target.outside_sets += 1;
                 outside.push(target.name.clone());
             }
@@ -530,6 +544,30 @@ impl Simulated {
     }
 }
 
+/// True where the plans are forces, which drive the planner's own model of the ship.
+fn is_under_forces(scenario: &Scenario) -> bool {
+    matches!(scenario.planner.facts().minimises, Minimises::Own(_))
+}
+
+/// An explicit set as a ship: its centre, with the middle of its velocities.
+fn middle_of(sets: &Uncertainty) -> ShipTrack {
+    let velocity = sets.velocities.first().map(|set| set.velocities.center());
+    let velocity = velocity.unwrap_or_else(Vector::zeros);
+    let (outline, (east, north)) = (outline(sets), (Vector::x(), Vector::y()));
+    let extent = |axis: Vector| outline.support(axis) + outline.support(-axis);
+    ShipTrack::exact(
+        Pose::new(sets.initial.center(), heading_of(velocity)),
+        velocity.norm(),
+        Hull::new(extent(east), extent(north)),
+    )
+}
+
+/// The polygon around the initial set, about its centre.
+fn outline(sets: &Uncertainty) -> ConvexPolygon {
+    let polygon = sets.initial.outer_polygon(ELLIPSE_SIDES);
+    polygon.translated(-sets.initial.center())
+}
+
 /// Everything that the loop cannot sail. Conditions are negated so that a NaN is refused.
 fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
     let (settings, facts) = (&scenario.simulation, scenario.planner.facts());
@@ -540,16 +578,51 @@ fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
         }
     };
     refuse_if(
-        facts.follows_paths || matches!(facts.minimises, Minimises::Own(_)),
+        facts.follows_paths,
         "planner.kind",
         format!("{:?}", facts.name),
-        "\"space-time\": the closed loop goes on from its plans alone",
+        "\"space-time\" or \"optimal-control\": the closed loop goes on from their plans alone",
+    );
+    let forces = is_under_forces(scenario);
+    refuse_if(
+        forces && settings.vessel.is_some(),
+        "simulation.vessel",
+        "another ship than the planner's".to_owned(),
+        "nothing: the forces of the plans drive the planner's own vessel",
+    );
+    refuse_if(
+        forces && !(scenario.own_ship.tracking_margin > 0.0),
+        "own_ship.tracking_margin_m",
+        "0".to_owned(),
+        "above 0: the vessel is never exactly on a plan under forces",
+    );
+    refuse_if(
+        forces && !settings.current.is_none(),
+        "simulation.current",
+        "a current".to_owned(),
+        "nothing: the vessel of plans under forces has no current",
     );
     for (index, target) in scenario.targets.iter().enumerate() {
         let path = format!("targets[{index}]");
         let Some(ship) = target.ship() else {
-            let allowed = "a tracked ship: explicit sets have no true motion";
-            refuse_if(true, &path, "explicit sets".to_owned(), allowed);
+            let seen = settings.sensor.kind;
+            let acts = !matches!(
+                settings.behaviours.get(index),
+                None | Some(Behaviour::Constant)
+            );
+            let (what, allowed) = match &target.motion {
+                _ if !forces => ("explicit sets", "a tracked ship, or plans under forces"),
+                Motion::Sets(sets) if sets.velocities.len() > 1 => {
+                    ("several sets of velocities", "one, whose middle it keeps")
+                }
+                _ if acts => ("explicit sets that act", "behaviour = \"constant\""),
+                _ if seen != SensorKind::Exact => (
+                    "explicit sets that are measured",
+                    "simulation.sensor = { kind = \"exact\" }",
+                ),
+                _ => continue,
+            };
+            refuse_if(true, &path, what.to_owned(), allowed);
             continue;
         };
         refuse_if(
@@ -570,6 +643,12 @@ fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
             &format!("{path}.behaviour"),
             format!("a ship of {} m/s that plans", rounded(ship.speed)),
             &format!("a speed of at least {} m/s", mutual::NO_WAY),
+        );
+        refuse_if(
+            is_mutual && forces,
+            &format!("{path}.behaviour"),
+            "a ship that plans".to_owned(),
+            "another behaviour: own ship's forces are those of its own length",
         );
         let path = format!("{path}.not_reported");
         let missing = settings.not_reported.get(index).copied();
@@ -606,7 +685,8 @@ fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
         duration.to_string(),
         "a time above 0",
     );
-    let vessel = vessel::Vessel::new(settings.vessel, &scenario.own_ship);
+    let model = settings.vessel.unwrap_or(VesselModel::Kinematic);
+    let vessel = vessel::Vessel::new(model, &scenario.own_ship);
     let (least, planned) = (vessel.least_radius(), scenario.own_ship.turning_radius);
     refuse_if(
         !(least <= planned),

@@ -1,6 +1,7 @@
 //! Own ship: where it is, and how it moves along its plan.
 
 use super::contact::OwnMotion;
+use super::forces::ForcedShip;
 use super::guidance::follow;
 use super::stream::{Purpose, normal, stream};
 use super::vessel::{Vessel, VesselState};
@@ -8,6 +9,7 @@ use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::scenario::{Current, Scenario, VesselModel};
 use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::StateVector;
 use rand_chacha::ChaCha8Rng;
 
 /// m/s. A slower ship has no course over ground.
@@ -17,8 +19,10 @@ const NO_WAY: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(super) struct Own {
     vessel: Vessel,
-    /// `None` for a ship that follows its plan exactly.
+    /// `None` for a ship that follows its plan exactly, and for one under forces.
     state: Option<VesselState>,
+    /// A ship that the forces of its plan drive.
+    forced: Option<ForcedShip>,
     max_speed: f64,
     current: Current,
     /// The random part of the current, m/s.
@@ -29,12 +33,16 @@ pub(super) struct Own {
 impl Own {
     pub fn new(scenario: &Scenario) -> Self {
         let (settings, own) = (&scenario.simulation, &scenario.own_ship);
-        let still = settings.current.mean == Vector::zeros() && settings.current.std == 0.0;
-        let perfect = settings.vessel == VesselModel::Kinematic && still;
+        let model = settings.vessel.unwrap_or(VesselModel::Kinematic);
+        let forced = super::is_under_forces(scenario)
+            .then(|| ForcedShip::new(scenario.settings.optimal_control, own));
+        let perfect =
+            forced.is_some() || model == VesselModel::Kinematic && settings.current.is_none();
         let mut rng = stream(settings.seed, Purpose::Current, "current");
         let current_noise = Vector::new(normal(&mut rng), normal(&mut rng)) * settings.current.std;
         Self {
-            vessel: Vessel::new(settings.vessel, own),
+            vessel: Vessel::new(model, own),
+            forced,
             state: (!perfect).then_some(VesselState {
                 pose: own.pose,
                 speed: own.speed,
@@ -55,12 +63,26 @@ impl Own {
 
     /// Own ship's pose, `time` seconds after the start of its plan.
     pub fn pose(&self, plan: &Trajectory, time: f64) -> Pose {
-        self.state
-            .map_or_else(|| plan.pose_at(time), |state| state.pose)
+        let forced = self.forced.map(|ship| ship.pose());
+        forced
+            .or(self.state.map(|state| state.pose))
+            .unwrap_or_else(|| plan.pose_at(time))
+    }
+
+    /// Own ship's state under the forces of a plan, `ahead` seconds after `time` of the plan.
+    pub fn forced_state(&self, plan: &Trajectory, time: f64, ahead: f64) -> Option<StateVector> {
+        let mut ship = self.forced?;
+        if let Some(plan) = plan.steered() {
+            ship.advance(plan, time, ahead);
+        }
+        Some(ship.state)
     }
 
     /// Own ship's place, course and speed over ground.
     pub fn steady(&self, plan: &Trajectory, time: f64) -> SteadyShip {
+        if let Some(ship) = &self.forced {
+            return ship.steady();
+        }
         let Some(state) = &self.state else {
             return SteadyShip {
                 pose: plan.pose_at(time),
@@ -80,6 +102,9 @@ impl Own {
 
     /// Moves own ship for `step` seconds along its plan; the motion counts from 0.
     pub fn advance(&mut self, plan: &Trajectory, time: f64, step: f64) -> OwnMotion {
+        if let (Some(ship), Some(plan)) = (&mut self.forced, plan.steered()) {
+            return OwnMotion::Cubic(ship.advance(plan, time, step));
+        }
         let Some(state) = &mut self.state else {
             let parts = plan.segments().iter();
             let parts = parts.filter(|s| s.end_time() > time && s.start_time < time + step);

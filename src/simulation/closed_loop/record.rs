@@ -1,6 +1,5 @@
 //! The document of a simulation, with the judges' verdicts on what was sailed.
 
-use super::vessel::Vessel;
 use super::{Simulated, Simulation};
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
@@ -8,10 +7,11 @@ use crate::document::{
     SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument, finite,
     segment_document, state_document,
 };
-use crate::evaluation::least_land_distance;
+use crate::evaluation::{counted_error_of_segments, least_land_distance};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
+use crate::scenario::VesselModel;
 use crate::trajectory::Segment;
 
 impl Simulation {
@@ -21,7 +21,9 @@ impl Simulation {
     /// O(targets × seconds sailed), and with a map O(its edges × segments).
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
-        let samples: Vec<EncounterSamples> = (self.targets.iter())
+        // explicit sets have no rules
+        let ships = self.targets.iter().filter(|target| target.set.is_none());
+        let samples: Vec<EncounterSamples> = ships
             .map(|target| {
                 EncounterSamples::of_tracks(&self.sailed, own, &target.states, target.truth.hull)
             })
@@ -48,14 +50,21 @@ impl Simulation {
         let contact = grounded || self.targets.iter().any(|t| t.clearance.is_contact());
         let late = self.replans.iter().any(|r| !r.followed);
         let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
-        let arrived = self.time >= self.active.end() - super::INSTANT
-            && self.active.document.is_some()
-            && self.off_plan() <= self.tracking_margin();
+        let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
+        let ended = self.time >= self.active.end() - super::INSTANT;
+        let mut arrived =
+            ended && self.active.document.is_some() && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
-        let error = match arrived {
-            true => whole_space_time_error,
-            false => sailed_space_time_error,
+        let mut cost_m2 = match arrived {
+            true => whole_space_time_error(desired, &self.sailed, weight),
+            false => sailed_space_time_error(desired, &self.sailed, weight),
         };
+        if super::is_under_forces(&self.scenario) {
+            // as in its plans, where arrival is not required
+            let within = own.hull.length;
+            arrived = (self.own().pose.position - desired.end()).norm() <= within;
+            cost_m2 = counted_error_of_segments(&self.sailed, desired, weight, within).0;
+        }
         SimulationDocument {
             format: SIMULATION_FORMAT.to_owned(),
             build: env!("CARGO_PKG_VERSION").to_owned(),
@@ -66,18 +75,13 @@ impl Simulation {
             arrived,
             interrupted: !self.finished(),
             duration_s: self.time,
-            targets: (self.targets.iter().enumerate())
-                .filter_map(|(index, target)| {
-                    Some(simulated(self, index, target, reports.get(index)?))
-                })
-                .collect(),
+            targets: match self.sailed.is_empty() {
+                true => Vec::new(),
+                false => simulated_targets(self, &reports),
+            },
             land,
             conduct: SailedDocument {
-                cost_m2: error(
-                    &self.scenario.desired,
-                    &self.sailed,
-                    self.scenario.time_weight,
-                ),
+                cost_m2,
                 breaks,
                 turns: most(&|m| m.turns),
                 speed_changes: most(&|m| m.speed_changes),
@@ -128,7 +132,11 @@ impl Simulation {
             measured_delay: self.measured_delay,
             duration_s: self.duration,
             seed: settings.seed,
-            vessel: Vessel::new(settings.vessel, own).model.word().to_owned(),
+            vessel: match super::is_under_forces(&self.scenario) {
+                true => self.scenario.settings.optimal_control.vessel.word(),
+                false => settings.vessel.unwrap_or(VesselModel::Kinematic).word(),
+            }
+            .to_owned(),
             current_mps: [settings.current.mean.x, settings.current.mean.y],
             current_std_mps: settings.current.std,
             current_known: settings.current.known,
@@ -140,11 +148,27 @@ impl Simulation {
     }
 }
 
+fn simulated_targets(
+    simulation: &Simulation,
+    reports: &[ComplianceReport],
+) -> Vec<SimulatedTargetDocument> {
+    let mut reports = reports.iter();
+    let targets = simulation.targets.iter().enumerate();
+    let targets = targets.map(|(index, target)| {
+        let report = match target.set {
+            None => reports.next(),
+            Some(_) => None,
+        };
+        simulated(simulation, index, target, report)
+    });
+    targets.collect()
+}
+
 fn simulated(
     simulation: &Simulation,
     index: usize,
     target: &Simulated,
-    report: &ComplianceReport,
+    report: Option<&ComplianceReport>,
 ) -> SimulatedTargetDocument {
     let behaviour = simulation.settings().behaviours.get(index);
     let clearance = target.clearance.settled();
@@ -160,6 +184,10 @@ fn simulated(
         track: (target.states.iter())
             .map(|(time, ship)| state_document(*time, ship))
             .collect(),
-        conduct: ConductDocument::of(report),
+        set_m: target.set.as_ref().map(|sets| {
+            let outline = super::outline(sets);
+            outline.vertices().iter().map(|p| [p.x, p.y]).collect()
+        }),
+        conduct: report.map(ConductDocument::of).unwrap_or_default(),
     }
 }

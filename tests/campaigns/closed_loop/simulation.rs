@@ -165,7 +165,7 @@ impl How {
         scenario.simulation = SimulationSettings {
             seed,
             replan: if self.replan { 20.0 } else { scenario.horizon },
-            vessel: self.vessel(),
+            vessel: Some(self.vessel()),
             sensor: self.sensor(),
             behaviours: vec![self.behaviour(); scenario.targets.len()],
             ..SimulationSettings::default()

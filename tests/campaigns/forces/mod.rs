@@ -52,6 +52,7 @@ pub fn run_scenes(count: usize) -> Report {
                     motion: plan.trajectory.steered().expect("forces"),
                     vessel: &CyberShip2::EXACT,
                     force_limits: ControlSettings::of(VesselKind::CyberShip2).force_limits,
+                    start_velocity: [own.speed, 0.0, 0.0],
                 },
             );
             report.require(judged.verified(), || {

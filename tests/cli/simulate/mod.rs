@@ -93,7 +93,7 @@ fn a_report_shows_every_simulation_and_why_one_was_refused() {
     let folder = Folder::new();
     let sail = |name: &str| {
         let report = folder.path().join(name);
-        let refused = "scenarios/paper/figure_9.toml";
+        let refused = "scenarios/paper/figure_5.toml";
         searoom(&["simulate", HEAD_ON_FILE, refused, "--report", text(&report)]).code(2);
         assert!(report.join("head-on-1.svg").is_file());
         std::fs::read_to_string(report.join("index.html")).expect("written")
@@ -104,7 +104,7 @@ fn a_report_shows_every_simulation_and_why_one_was_refused() {
         "src=\"./head-on-1.svg\"",
         "Plans that differ from the one before",
         "not applicable",
-        "the closed loop goes on from its plans alone",
+        "the closed loop goes on from their plans alone",
     ] {
         assert!(page.contains(shown), "{shown}: {page}");
     }

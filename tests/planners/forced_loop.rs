@@ -1,0 +1,190 @@
+//! The closed loop of the optimal-control planner: its own vessel, driven by the planned forces.
+
+use searoom::document::{PlanDocument, SimulationDocument};
+use searoom::frame::Vector;
+use searoom::scenario::{Behaviour, Scenario, Sensor, SensorKind, VesselModel};
+use searoom::simulation::Simulation;
+use searoom::verification::{verify, verify_simulations};
+
+use crate::campaigns::documents::scenario;
+
+const SCENES: [&str; 2] = ["forces/give-way.toml", "paper/figure_9.toml"];
+
+fn sailed(scenario: Scenario) -> (SimulationDocument, Vec<PlanDocument>) {
+    let mut simulation = Simulation::new(scenario, false).expect("a scenario for the loop");
+    simulation.keep_plans();
+    while !simulation.finished() {
+        simulation.step();
+    }
+    (simulation.record(), simulation.plans().to_vec())
+}
+
+fn untimed(mut document: SimulationDocument) -> SimulationDocument {
+    document.timing.plan_s.clear();
+    document
+}
+
+fn json(document: &impl serde::Serialize) -> String {
+    serde_json::to_string(document).expect("a document")
+}
+
+#[test]
+fn the_scenes_under_forces_are_sailed_as_planned_and_verified() {
+    for (file, nodes) in SCENES.into_iter().zip([45, 50]) {
+        let (document, plans) = sailed(scenario(file));
+        assert!(
+            document.safe && document.arrived && !document.contact,
+            "{file}"
+        );
+        assert_eq!((document.replans.len(), plans.len()), (nodes, nodes));
+        assert!(document.alarms.is_empty(), "{:?}", document.alarms);
+        for target in &document.targets {
+            assert!(target.least_clearance_m > Some(0.0), "{file}: {target:?}");
+        }
+        // the vessel is integrated apart from the plan, and is near it
+        let length = document.settings.own_length_m;
+        let off = document.conduct.largest_off_plan_m / length;
+        assert!(off > 1e-9 && off < 1e-4, "{file}: {off} lengths");
+        let checked = verify_simulations(&json(&document)).expect("a document");
+        assert!(
+            checked[0].violations.is_empty(),
+            "{:?}",
+            checked[0].violations
+        );
+        for (index, plan) in plans.iter().enumerate() {
+            let checked = verify(&json(plan)).expect("a plan");
+            assert!(checked.verified(), "{file} {index}: {checked:?}");
+            let control = plan.optimal_control.as_ref().expect("forces");
+            let starts: Vec<&str> = control.starts.iter().map(|s| s.start.as_str()).collect();
+            // the first plan tries many guesses, every other one the last plan alone
+            match control.start {
+                None => assert!(index == 0 && starts.len() > 5, "{file} {index}: {starts:?}"),
+                Some(_) => assert_eq!(starts, ["previous"], "{file} {index}"),
+            }
+            assert_eq!(control.start.is_some(), index > 0);
+        }
+        let again = sailed(scenario(file)).0;
+        assert_eq!(untimed(again), untimed(document), "{file}");
+    }
+}
+
+/// A plan that claims to start with another velocity than its motion has.
+#[test]
+fn the_velocity_at_the_start_of_a_plan_is_checked() {
+    let mut short = scenario(SCENES[0]);
+    short.simulation.duration = Some(330.0);
+    let (_, mut plans) = sailed(short);
+    let plan = plans.last_mut().expect("plans");
+    let control = plan.optimal_control.as_mut().expect("forces");
+    let start = control.start.as_mut().expect("a ship that turns");
+    assert!(start.yaw_rate_deg_per_s.abs() > 1e-3, "{start:?}");
+    start.sway_mps += 0.01;
+    let checked = verify(&json(plan)).expect("a plan");
+    let words = format!("{:?}", checked.violations);
+    assert!(
+        !checked.verified() && words.contains("start velocity"),
+        "{words}"
+    );
+}
+
+/// A ship comes alongside, so near that own ship is inside its set, and leaves again.
+#[test]
+fn without_a_plan_own_ship_goes_on_along_the_last_one() {
+    let mut scene = scenario(SCENES[0]);
+    let place = |east, north| Vector::new(east, north);
+    scene.simulation.behaviours = vec![Behaviour::Track(vec![
+        (0.0, place(900.0, -900.0)),
+        (100.0, place(200.0, -70.0)),
+        (160.0, place(320.0, -70.0)),
+        (260.0, place(320.0, -900.0)),
+    ])];
+    scene.simulation.duration = Some(400.0);
+    let (document, plans) = sailed(scene);
+    let none = |r: &&searoom::document::ReplanDocument| r.cost_m2.is_none();
+    let missing: Vec<_> = document.replans.iter().filter(none).collect();
+    assert!(!missing.is_empty() && missing.iter().all(|r| !r.followed));
+    assert_eq!(missing.len(), document.conduct.without_plan);
+    let alarms = document.alarms.iter().filter(|a| a.alarm == "no plan");
+    let times: Vec<f64> = alarms.map(|a| a.t_s).collect();
+    assert_eq!(times, missing.iter().map(|r| r.t_s).collect::<Vec<_>>());
+    assert!(!document.safe && plans.len() == document.replans.len() - missing.len());
+    // it keeps to the last plan over several periods, and there are plans again
+    assert!(
+        document.conduct.within_tracking_margin,
+        "{:?}",
+        document.conduct
+    );
+    assert!(document.replans.last().expect("plans").followed);
+    let checked = verify_simulations(&json(&document)).expect("a document");
+    assert!(
+        checked[0].violations.is_empty(),
+        "{:?}",
+        checked[0].violations
+    );
+}
+
+#[test]
+fn what_the_loop_cannot_sail_under_forces_is_named() {
+    let refused = |file: &str, change: &dyn Fn(&mut Scenario)| -> String {
+        let mut scene = scenario(file);
+        change(&mut scene);
+        let faults = Simulation::new(scene, false).expect_err("refused");
+        let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        faults.join("; ")
+    };
+    type Change = fn(&mut Scenario);
+    let [ship, sets] = SCENES;
+    let cases: [(&str, Change, &str); 8] = [
+        (
+            ship,
+            |s| s.simulation.replan = 901.0,
+            "simulation.replan_s: found 901; allowed: at most 900, the horizon",
+        ),
+        (
+            ship,
+            |s| s.simulation.vessel = Some(VesselModel::Kinematic),
+            "simulation.vessel: found another ship than the planner's; allowed: nothing",
+        ),
+        (
+            ship,
+            |s| s.simulation.current.std = 0.1,
+            "simulation.current: found a current; allowed: nothing",
+        ),
+        (
+            ship,
+            |s| s.own_ship.tracking_margin = 0.0,
+            "own_ship.tracking_margin_m: found 0; allowed: above 0",
+        ),
+        (
+            ship,
+            |s| s.simulation.behaviours = vec![Behaviour::Mutual],
+            "targets[0].behaviour: found a ship that plans",
+        ),
+        (
+            sets,
+            |s| s.simulation.behaviours = vec![Behaviour::Pursuit { every: 5.0 }],
+            "targets[0]: found explicit sets that act",
+        ),
+        (
+            sets,
+            |s| {
+                s.simulation.sensor = Sensor {
+                    kind: SensorKind::Radar,
+                    ..Sensor::EXACT
+                }
+            },
+            "targets[2]: found explicit sets that are measured",
+        ),
+        (
+            "uncertainty/ellipse.toml",
+            |_| {},
+            "targets[0]: found explicit sets; allowed: a tracked ship, or plans under forces",
+        ),
+    ];
+    for (file, change, words) in cases {
+        let found = refused(file, &change);
+        assert!(found.contains(words), "{words}: {found}");
+    }
+    let commanded = Simulation::commanded(scenario(ship)).expect_err("forces");
+    assert_eq!(commanded[0].path, "planner.kind");
+}
