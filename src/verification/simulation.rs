@@ -23,9 +23,9 @@ const DISTANCE_M: f64 = 1e-3;
 /// Standard deviations of a current that are not exceeded.
 const CURRENT_SIGMAS: f64 = 6.0;
 
-/// Fraction of its way by which a ship under forces may be off the course of its heading: it drifts
-/// by up to 30° in a turn.
-const DRIFT_SHARE: f64 = 0.5;
+/// Fraction of its way by which a ship under forces may be off the course of its heading: it may even
+/// go astern.
+const DRIFT_SHARE: f64 = 2.0;
 
 /// Fraction of its way by which a ship may be off the arc of its mean turn rate in a step.
 const MEAN_SHARE: f64 = 0.05;

@@ -1,9 +1,10 @@
 //! The closed loop of the optimal-control planner: its own vessel, driven by the planned forces.
 
 use searoom::document::{PlanDocument, SimulationDocument};
-use searoom::frame::Vector;
+use searoom::frame::{Pose, Vector};
 use searoom::scenario::{Behaviour, Scenario, Sensor, SensorKind, VesselModel};
 use searoom::simulation::Simulation;
+use searoom::target::Motion;
 use searoom::verification::{verify, verify_simulations};
 
 use crate::campaigns::documents::scenario;
@@ -87,34 +88,64 @@ fn the_velocity_at_the_start_of_a_plan_is_checked() {
     );
 }
 
-/// A ship comes alongside, so near that own ship is inside its set, and leaves again.
+/// At 100 and 120 s a ship lies so near that own ship is inside its set.
 #[test]
 fn without_a_plan_own_ship_goes_on_along_the_last_one() {
     let mut scene = scenario(SCENES[0]);
-    let place = |east, north| Vector::new(east, north);
-    scene.simulation.behaviours = vec![Behaviour::Track(vec![
-        (0.0, place(900.0, -900.0)),
-        (100.0, place(200.0, -70.0)),
-        (160.0, place(320.0, -70.0)),
-        (260.0, place(320.0, -900.0)),
-    ])];
-    scene.simulation.duration = Some(400.0);
+    let [far, near] = [(900.0, -900.0), (250.0, -130.0)].map(|(x, y)| Vector::new(x, y));
+    let track = vec![(95.0, far), (99.0, near), (125.0, near), (130.0, far)];
+    scene.simulation.behaviours = vec![Behaviour::Track(track)];
+    scene.simulation.duration = Some(200.0);
     let (document, plans) = sailed(scene);
     let none = |r: &&searoom::document::ReplanDocument| r.cost_m2.is_none();
     let missing: Vec<_> = document.replans.iter().filter(none).collect();
-    assert!(!missing.is_empty() && missing.iter().all(|r| !r.followed));
-    assert_eq!(missing.len(), document.conduct.without_plan);
+    let times: Vec<f64> = missing.iter().map(|r| r.t_s).collect();
+    assert_eq!(times, [100.0, 120.0]);
     let alarms = document.alarms.iter().filter(|a| a.alarm == "no plan");
-    let times: Vec<f64> = alarms.map(|a| a.t_s).collect();
-    assert_eq!(times, missing.iter().map(|r| r.t_s).collect::<Vec<_>>());
-    assert!(!document.safe && plans.len() == document.replans.len() - missing.len());
-    // it keeps to the last plan over several periods, and there are plans again
+    assert_eq!(alarms.map(|a| a.t_s).collect::<Vec<_>>(), times);
+    assert!(missing.iter().all(|r| !r.followed) && document.conduct.without_plan == 2);
+    assert!(!document.safe && plans.len() == document.replans.len() - 2);
+    // it keeps to the plan of 80 s until 141 s, and there are plans again
     assert!(
         document.conduct.within_tracking_margin,
         "{:?}",
         document.conduct
     );
     assert!(document.replans.last().expect("plans").followed);
+    let checked = verify_simulations(&json(&document)).expect("a document");
+    assert!(
+        checked[0].violations.is_empty(),
+        "{:?}",
+        checked[0].violations
+    );
+}
+
+/// Own ship begins inside the set of a ship that sails away from it.
+#[test]
+fn before_its_first_plan_own_ship_holds_course_and_speed() {
+    let mut scene = scenario(SCENES[0]);
+    let Motion::Ship(ship) = &mut scene.targets[0].motion else {
+        panic!("a ship");
+    };
+    ship.pose = Pose::new(Vector::new(60.0, -100.0), -std::f64::consts::FRAC_PI_2);
+    scene.simulation.duration = Some(150.0);
+    let (document, plans) = sailed(scene);
+    let first = document
+        .replans
+        .iter()
+        .position(|r| r.followed)
+        .expect("a plan");
+    assert!(first > 0 && plans.len() == document.replans.len() - first);
+    let at = document
+        .own_at(document.replans[first].start_t_s - 0.1)
+        .expect("sailed")
+        .pose;
+    let held = 2.0 * (document.replans[first].start_t_s - 0.1);
+    assert!(
+        (at.position - Vector::new(held, 0.0)).norm() < 0.01,
+        "{at:?}"
+    );
+    assert!(document.conduct.within_tracking_margin && !document.safe);
     let checked = verify_simulations(&json(&document)).expect("a document");
     assert!(
         checked[0].violations.is_empty(),

@@ -72,7 +72,9 @@ impl Simulation {
                     .remaining_stretch(start, LAST_STRETCH_M),
             };
         }
-        if let (Some(state), Some(plan)) = (forced, self.active.trajectory.steered()) {
+        if let (Some(state), Some(plan)) = (forced, self.active.trajectory.steered())
+            && start > 0.0
+        {
             let own = node(0.0, &state, &ForceVector::zeros());
             scenario.own_ship.pose = own.pose;
             scenario.own_ship.speed = own.velocity.norm();

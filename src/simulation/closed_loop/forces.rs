@@ -53,6 +53,22 @@ impl ForcedShip {
         SteadyShip::new(pose, velocity.norm())
     }
 
+    /// Straight ahead for `duration` seconds, under the forces that hold the present speed.
+    pub fn held(&self, duration: f64) -> Option<Steered> {
+        let vessel = self.control.vessel.exact(self.control.length);
+        let (begun, force) = (self.node(0.0), vessel.steady(self.state[3]));
+        let mut ended = self.state;
+        let way = begun.ground_velocity() * duration;
+        (ended[0], ended[1]) = (ended[0] + way.x, ended[1] + way.y);
+        let nodes = [(0.0, &self.state), (duration, &ended)];
+        Steered::new(
+            nodes
+                .map(|(time, state)| node(time, state, &force))
+                .to_vec(),
+        )
+        .ok()
+    }
+
     /// Applies the forces that a plan has from `time` on, for `step` seconds. The motion counts from
     /// 0. O(nodes of the plan).
     pub fn advance(&mut self, plan: &Steered, time: f64, step: f64) -> Cubic {

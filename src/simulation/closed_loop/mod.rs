@@ -198,20 +198,16 @@ impl Simulation {
             simulated.track.assume_anew();
             simulated
         });
+        let own = Own::new(&scenario);
         Ok(Self {
             targets: targets.collect(),
-            own: Own::new(&scenario),
             active: Active {
                 start: 0.0,
-                trajectory: Trajectory::from(Segment::straight(
-                    scenario.own_ship.pose,
-                    0.0,
-                    duration,
-                    scenario.own_ship.speed,
-                )),
+                trajectory: own.held(&scenario, duration),
                 document: None,
                 assumed: Vec::new(),
             },
+            own,
             measured_delay,
             time: 0.0,
             duration,

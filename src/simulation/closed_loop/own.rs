@@ -69,6 +69,16 @@ impl Own {
             .unwrap_or_else(|| plan.pose_at(time))
     }
 
+    /// Own ship on its course at its speed for `duration` seconds.
+    pub fn held(&self, scenario: &Scenario, duration: f64) -> Trajectory {
+        let (pose, speed) = (scenario.own_ship.pose, scenario.own_ship.speed);
+        let forced = self.forced.and_then(|ship| ship.held(duration));
+        forced.map_or_else(
+            || Trajectory::from(Segment::straight(pose, 0.0, duration, speed)),
+            Trajectory::from,
+        )
+    }
+
     /// Own ship's state under the forces of a plan, `ahead` seconds after `time` of the plan.
     pub fn forced_state(&self, plan: &Trajectory, time: f64, ahead: f64) -> Option<StateVector> {
         let mut ship = self.forced?;
