@@ -294,7 +294,7 @@ fn apart(encounter: &EncounterDocument, desired: bool) -> String {
     if let Some((distance, time)) = undisturbed.filter(|_| desired || parts.is_empty()) {
         let what = match distance > 0.0 {
             true => format!("{} m", tenths(distance)),
-            false => "a collision".to_owned(),
+            false => "the hulls overlap, deepest".to_owned(),
         };
         parts.push(format!("on the desired trajectory {what} at {time:.0} s"));
     }

@@ -16,13 +16,13 @@ pub fn assessment_text(
     let count = assessment.targets.len();
     let AssessmentDocument {
         scenario,
-        sets,
         horizon_s,
         ..
     } = assessment;
     let mut blocks = vec![format!(
-        "{scenario}: {}, {sets} sets, 0 to {horizon_s} s",
-        counted(count, "target")
+        "{scenario}: {}, {}, 0 to {horizon_s} s",
+        counted(count, "target"),
+        sets(assessment)
     )];
     if count > 0 {
         blocks.push(held(situation, assessment, display));
@@ -44,6 +44,13 @@ pub fn assessment_text(
     blocks.join("\n\n")
 }
 
+fn sets(assessment: &AssessmentDocument) -> &'static str {
+    match assessment.sets.as_str() {
+        "domains" => "ship domains",
+        _ => "hard sets",
+    }
+}
+
 fn course(heading: f64) -> String {
     // 359.96 would round to 360
     let tenths = (course_deg_from_heading(heading) * 10.0).round() as u32 % 3600;
@@ -60,10 +67,20 @@ fn held(situation: &OwnSituation, assessment: &AssessmentDocument, display: Disp
         ]
     });
     let header = "target, dCPA\n[m], tCPA\n[s], largest\nrisk";
+    let contact = match assessment
+        .hold_course
+        .targets
+        .iter()
+        .any(|t| t.dcpa_m == 0.0)
+    {
+        true => "; at dCPA 0.0 it enters the set at tCPA",
+        false => "",
+    };
     format!(
-        "Holding course {} at {}\n{}",
+        "Holding course {} at {}: own centre to the {}{contact}\n{}",
         course(situation.pose.heading),
         knots(situation.speed),
+        sets(assessment),
         table(header, 1..4, rows, display)
     )
 }

@@ -192,11 +192,15 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
         let Some(CollisionDocument { with, t_s }) = &entry.collision else {
             continue;
         };
-        let with = match with.as_str() {
-            LAND => with.clone(),
-            name => format!("'{name}'"),
+        let what = match with.as_str() {
+            LAND => "runs aground".to_owned(),
+            name => format!("collides with '{name}'"),
         };
-        let line = format!("{}: collides with {with} at {t_s:.0} s", entry.method);
+        let when = match with.as_str() {
+            LAND => "",
+            _ => ", when the hulls first touch on its expected motion",
+        };
+        let line = format!("{}: {what} at {t_s:.0} s{when}", entry.method);
         if !collided.contains(&line) {
             collided.push(line);
         }

@@ -59,7 +59,9 @@ fn an_assessment_reads_as_a_table() {
         .stderr(is_empty())
         .stdout(
             contains("Give-way: 1 target, hard sets, 0 to 400 s")
-                .and(contains("Holding course 090.0° at 9.7 kn"))
+                .and(contains(
+                    "Holding course 090.0° at 9.7 kn: own centre to the hard sets; at dCPA 0.0 it ",
+                ))
                 .and(contains("to starboard").and(contains("to port").and(contains("kn slower"))))
                 .and(contains("Points").and(contains("Velocities").and(contains("Sections")))),
         );

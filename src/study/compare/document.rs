@@ -2,17 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use super::{Entry, Inapplicable};
+use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
     CollisionDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument, cost_of, finite, minimised, objective, position, timing,
 };
-use crate::evaluation::{Safety, outcome_word, without_rules};
+use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
 use crate::obstacle::LAND;
 use crate::pipeline::{Run, Verdict};
 use crate::scenario::Scenario;
-use crate::trajectory::largest_alteration;
+use crate::trajectory::{Segment, largest_alteration};
 
 /// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
 /// steps.
@@ -108,7 +108,7 @@ impl EntryDocument {
     }
 }
 
-/// The first ship that own ship's hull meets if this keeps to its expected motion, else land.
+/// What own ship's hull meets first: a ship that keeps to its expected motion, or land.
 fn collision(scenario: &Scenario, entry: &Entry) -> Option<CollisionDocument> {
     let motion = entry.motion.as_ref()?;
     if motion.safety != Safety::Collides {
@@ -124,12 +124,35 @@ fn collision(scenario: &Scenario, entry: &Entry) -> Option<CollisionDocument> {
         let with = target.name.clone();
         Some(CollisionDocument { with, t_s })
     });
-    let first = met.min_by(|a, b| a.t_s.total_cmp(&b.t_s));
-    let aground = finite(motion.evaluation.min_land_distance_time);
-    first.or(aground.map(|t_s| CollisionDocument {
+    let aground = first_aground(scenario, motion).map(|t_s| CollisionDocument {
         with: LAND.to_owned(),
         t_s,
-    }))
+    });
+    met.chain(aground).min_by(|a, b| a.t_s.total_cmp(&b.t_s))
+}
+
+/// Seconds at which own ship's hull first touches land, to a second; `None` where it keeps off.
+fn first_aground(scenario: &Scenario, motion: &ComparedMotion) -> Option<f64> {
+    let segments = motion.trajectory.segments();
+    let land = scenario.land.as_ref()?.map.polygons();
+    let touches = |until: f64| {
+        let sailed = segments.iter().filter(|s| s.start_time <= until);
+        let sailed = sailed.map(|s| s.between(s.start_time, s.end_time().min(until)));
+        let sailed: Vec<Segment> = sailed.collect();
+        least_land_distance(land, &sailed, &scenario.own_ship.hull).0 < 0.0
+    };
+    let found = &motion.evaluation;
+    let mut aground =
+        finite(found.min_land_distance_time).filter(|_| found.min_land_distance < 0.0)?;
+    let mut afloat = motion.trajectory.start_time();
+    while aground - afloat > 1.0 {
+        let middle = 0.5 * (afloat + aground);
+        match touches(middle) {
+            true => aground = middle,
+            false => afloat = middle,
+        }
+    }
+    Some(aground)
 }
 
 fn track(entry: &Entry) -> Vec<TrackPointDocument> {

@@ -1,7 +1,8 @@
 //! Tests of baselines against closed-form results, and of candidates against single runs.
 
 use super::*;
-use crate::evaluation::counted_error;
+use crate::document::ScenarioComparisonDocument;
+use crate::evaluation::{counted_error, least_land_distance};
 use crate::frame::{Side, wrap};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::planner::optimal_control::OptimalControlPlanner;
@@ -26,6 +27,31 @@ fn holding_course_arrives_where_the_course_leads_and_meets_the_target() {
     let held = hold_course(&aside);
     assert!(!held.arrived && held.evaluation.duration == 400.0);
     assert!(held.evaluation.space_time_error > 1e3);
+}
+
+/// The deepest place on land is reached later than the shore.
+#[test]
+fn the_first_contact_with_land_is_told() {
+    let scenario = scenario("harbour/canal-transit");
+    let found = methods(&scenario);
+    let candidate = Candidate {
+        method: Method::HoldCourse,
+        max_risk: 0.0,
+    };
+    let entries = [candidate.run(&scenario)];
+    let file = String::new();
+    let document = ScenarioComparisonDocument::of(file, &scenario, &entries, &found.inapplicable);
+    let told = document.entries[0].collision.as_ref().expect("aground");
+    assert_eq!(told.with, crate::obstacle::LAND);
+    let motion = entries[0].motion.as_ref().expect("a motion");
+    let deepest = motion.evaluation.min_land_distance_time;
+    assert!(told.t_s < deepest - 100.0, "{told:?}, {deepest}");
+    let land = scenario.land.as_ref().expect("land").map.polygons();
+    let until = |time: f64| {
+        let held = motion.trajectory.segments()[0].between(0.0, time);
+        least_land_distance(land, &[held], &scenario.own_ship.hull).0
+    };
+    assert!(until(told.t_s) < 0.0 && until(told.t_s - 1.0) >= 0.0);
 }
 
 /// Tests that the velocity lies on the edge of the velocity obstacle: it is clear, and any smaller

@@ -116,6 +116,30 @@ fn a_plan_that_does_not_arrive_says_so() {
         .stdout(contains("COLLIDES").not().and(contains("NOT SAFE").not()));
 }
 
+/// Times of the hulls deepest in each other, of their first contact and of entry into the set.
+#[test]
+fn each_command_says_of_what_its_time_of_a_collision_is() {
+    for (command, told) in [
+        (
+            "plan",
+            "on the desired trajectory the hulls overlap, deepest at 150 s",
+        ),
+        (
+            "compare",
+            "collides with 'target' at 146 s, when the hulls first touch",
+        ),
+        ("assess", "at dCPA 0.0 it enters the set at tCPA"),
+    ] {
+        run(&format!("{command} scenarios/colregs/give-way.toml")).stdout(contains(told));
+    }
+    // nothing is entered 400 m abeam
+    let folder = Folder::new();
+    let scenario = fs::read_to_string("scenarios/colregs/give-way.toml").expect("a scenario");
+    let away = scenario.replace("north_m = -750.0", "north_m = -1750.0");
+    let file = folder.write("away.toml", away);
+    run(&format!("assess {file}")).stdout(contains("to the hard sets\n"));
+}
+
 #[test]
 fn without_targets_there_is_no_clearance() {
     let folder = Folder::new();
