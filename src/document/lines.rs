@@ -422,7 +422,13 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
             let until = cost.space_time_error_until_s;
             add("", format!("J is counted until {until:.1} s"));
         }
-        None => add("delay", format!("does not arrive ({way} at the horizon)")),
+        None => {
+            add("delay", format!("does not arrive ({way} at the horizon)"));
+            add(
+                "",
+                format!("J is counted until {:.1} s", cost.space_time_error_until_s),
+            );
+        }
     }
     let skipped = skipped(plan, cost);
     if !skipped.is_empty() {

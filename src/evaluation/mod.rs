@@ -97,7 +97,7 @@ pub struct Evaluation {
     pub safety: Safety,
     /// Space-time error, docs/theory.md section 7, m².
     pub space_time_error: f64,
-    /// Time until which the space-time error is counted. For segments: their end.
+    /// Time until which the space-time error is counted.
     pub counted: Counted,
     /// Eq. (30) read literally over the whole motion, m².
     pub arc_length_error: f64,

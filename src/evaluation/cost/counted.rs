@@ -62,19 +62,24 @@ pub(crate) fn counted_error_of_segments(
     (cost::space_time_error(&kept, desired, q), counted)
 }
 
-/// Space-time error of segments to their end, which arrive at the last waypoint itself.
+/// Space-time error of segments that arrive at the last waypoint itself, to their end; to the end
+/// of the desired trajectory where they do not arrive.
 pub(crate) fn error_to_end(
     segments: &[Segment],
     desired: &DesiredTrajectory,
     q: f64,
 ) -> (f64, Counted) {
     let off = |s: &Segment| (s.end().position - desired.end()).norm();
-    let wait = wait_until(desired.duration(), segments);
-    let all: Vec<Segment> = segments.iter().copied().chain(wait).collect();
+    let arrived = (segments.last()).is_some_and(|s| off(s) <= tolerance::ARRIVAL_M);
+    let mut all = match arrived {
+        true => segments.to_vec(),
+        false => until(segments, desired.duration()),
+    };
+    all.extend(wait_until(desired.duration(), &all));
     let counted = Counted {
         within: tolerance::ARRIVAL_M,
         until: all.last().map_or(f64::NAN, Segment::end_time),
-        arrived: (segments.last()).is_some_and(|s| off(s) <= tolerance::ARRIVAL_M),
+        arrived,
     };
     (cost::space_time_error(&all, desired, q), counted)
 }

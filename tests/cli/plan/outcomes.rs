@@ -113,7 +113,18 @@ fn a_plan_that_does_not_arrive_says_so() {
     run(along)
         .code(1)
         .stdout(contains("does not arrive").and(contains("m are left at the horizon")))
-        .stdout(contains("COLLIDES").not().and(contains("NOT SAFE").not()));
+        .stdout(contains("COLLIDES").not().and(contains("NOT SAFE").not()))
+        .stdout(contains("J is counted until 300.0 s"));
+    // a comparison counts it alike
+    let file = "scenarios/colregs/overtaking.toml --planner path-time --json";
+    let compared = document(&run(&format!("compare {file}")).code(1));
+    let [entry, ..] = list(&compared["comparisons"][0]["entries"]) else {
+        panic!("{compared}");
+    };
+    let planned = document(&run(&format!("plan {file}")).code(1));
+    for key in ["space_time_error_m2", "space_time_error_until_s"] {
+        assert_eq!(entry["cost"][key], planned["cost"][key], "{key}");
+    }
 }
 
 /// Times of the hulls deepest in each other, of their first contact and of entry into the set.
