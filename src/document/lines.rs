@@ -220,7 +220,7 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
     for encounter in met {
         let EncounterDocument { target, role, .. } = encounter;
         add("target", format!("'{target}': {}", roles(encounter)));
-        let apart = apart(encounter, true);
+        let apart = apart(plan, encounter, true);
         if !apart.is_empty() {
             add("", apart);
         }
@@ -236,7 +236,7 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
     for encounter in others.into_iter().take(LISTED) {
         let text = [
             format!("'{}': no role", encounter.target),
-            apart(encounter, false),
+            apart(plan, encounter, false),
         ];
         let text: Vec<String> = text.into_iter().filter(|part| !part.is_empty()).collect();
         add("target", text.join("; "));
@@ -273,8 +273,9 @@ fn roles(encounter: &EncounterDocument) -> String {
 }
 
 /// The closest approach of the plan, and with `desired` that of the desired trajectory, for the
-/// expected motion of the target.
-fn apart(encounter: &EncounterDocument, desired: bool) -> String {
+/// expected motion of the target. An explicit set has no hull: own position to the set counts.
+fn apart(plan: &PlanDocument, encounter: &EncounterDocument, desired: bool) -> String {
+    let is_set = is_set(plan, &encounter.target);
     let mut parts = Vec::new();
     if let (Some(distance), Some(time)) = (encounter.dcpa_m, encounter.tcpa_s) {
         let side = match (&encounter.passing_side, encounter.crosses_astern) {
@@ -283,10 +284,9 @@ fn apart(encounter: &EncounterDocument, desired: bool) -> String {
             (Some(side), Some(true)) => format!(", to {side}, own ship crosses astern"),
             (Some(side), Some(false)) => format!(", to {side}, own ship crosses ahead"),
         };
-        parts.push(format!(
-            "closest {} m at {time:.0} s{side}",
-            tenths(distance)
-        ));
+        let to = if is_set { " to its set" } else { "" };
+        let distance = tenths(distance);
+        parts.push(format!("closest {distance} m{to} at {time:.0} s{side}"));
     }
     let undisturbed = encounter
         .undisturbed_dcpa_m
@@ -294,11 +294,18 @@ fn apart(encounter: &EncounterDocument, desired: bool) -> String {
     if let Some((distance, time)) = undisturbed.filter(|_| desired || parts.is_empty()) {
         let what = match distance > 0.0 {
             true => format!("{} m", tenths(distance)),
+            false if is_set => "in its set, deepest".to_owned(),
             false => "the hulls overlap, deepest".to_owned(),
         };
         parts.push(format!("on the desired trajectory {what} at {time:.0} s"));
     }
     parts.join("; ")
+}
+
+/// True for a target that is given by its sets, without a hull.
+fn is_set(plan: &PlanDocument, name: &str) -> bool {
+    let mut targets = plan.targets.iter();
+    targets.any(|target| target.name == name && target.ship.is_none())
 }
 
 /// The manoeuvre, the rules that own ship breaks toward a target, and its scores.
@@ -442,7 +449,13 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         };
         let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
         let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
-        let text = format!("worst case {clearance} m; after {end} {after} m within {hold} s");
+        let sets = plan.targets.iter().filter(|t| t.ship.is_none()).count();
+        let to = match sets {
+            0 => "",
+            _ if sets == plan.targets.len() => " to the sets",
+            _ => " to hulls and sets",
+        };
+        let text = format!("worst case {clearance} m{to}; after {end} {after} m within {hold} s");
         add("clearance", text);
         if cost.hold_clearance_m.is_some_and(|after| after < 0.0) {
             add(
