@@ -19,6 +19,13 @@ const COURSE_RAD: f64 = 0.01;
 /// Speeds that differ by a smaller fraction are one.
 const SPEED: f64 = 0.01;
 
+/// Leg of the mission, the way along it, and its distance from a place in metres.
+struct NearestLeg {
+    index: usize,
+    along: Vector,
+    off: f64,
+}
+
 /// Own ship before an alteration: the last leg, or its course and speed at the present.
 pub(super) struct Before {
     pub heading: f64,
@@ -26,12 +33,12 @@ pub(super) struct Before {
 }
 
 impl PlanDocument {
-    /// The reason why a leg alters course or speed: the target whose set own ship would enter first with
-    /// the course and speed `before`, or [`LAND`]. `legs` begins with this leg.
+    /// The reason why a leg alters course or speed: the target whose set own ship would enter first if
+    /// it went on as `before`, or [`LAND`]. `legs` begins with this leg.
     ///
     /// `None` where the leg alters nothing, or comes back to the mission's course or speed, or
-    /// where nothing would be entered until the horizon. Along a path own ship would keep to the
-    /// path. The sets are those that the plan keeps out of. O(sets × legs).
+    /// where nothing would be entered. Along a path own ship would keep to the path, and to the mission
+    /// where it is on it. The sets are those that the plan keeps out of. O(sets × legs).
     pub(super) fn reason(&self, before: &Before, legs: &[PlannedLeg]) -> Option<&str> {
         let leg = &legs[0].motion;
         let (course, speed) = self.desired_at(leg.start.position)?;
@@ -47,11 +54,37 @@ impl PlanDocument {
         let held: Vec<Segment> = if is_along_path {
             at_one_speed(legs, before.speed)
         } else {
-            let start = Pose::new(leg.start.position, before.heading);
-            let left = self.horizon_s - leg.start_time;
-            vec![Segment::straight(start, leg.start_time, left, before.speed)]
+            self.going_on(leg, before)
         };
         self.entered(&held)
+    }
+
+    /// Own ship's motion if it did not alter at the start of a leg: along the mission to its end
+    /// where it is on it, else straight on until the horizon.
+    fn going_on(&self, leg: &Segment, before: &Before) -> Vec<Segment> {
+        let mut at = Pose::new(leg.start.position, before.heading);
+        let mut time = leg.start_time;
+        let straight = |at, time| {
+            let left = self.horizon_s - time;
+            vec![Segment::straight(at, time, left, before.speed)]
+        };
+        let Some(near) = self.nearest_leg(at.position) else {
+            return straight(at, time);
+        };
+        let turned = wrap(before.heading - heading_of(near.along)).abs();
+        if turned > COURSE_RAD || near.off > self.own_ship.length_m {
+            return straight(at, time);
+        }
+        let ahead = self.mission.waypoints.iter().skip(near.index + 1);
+        let segment = |to: &PositionDocument| {
+            let way = to.point() - at.position;
+            let start = Pose::new(at.position, heading_of(way));
+            let duration = way.norm() / before.speed;
+            let segment = Segment::straight(start, time, duration, before.speed);
+            (at, time) = (segment.end(), segment.end_time());
+            segment
+        };
+        ahead.map(segment).filter(|s| s.duration > 0.0).collect()
     }
 
     /// The target that own ship lets pass before leg `index` comes back to the mission's course or
@@ -90,21 +123,21 @@ impl PlanDocument {
 
     /// Direction and speed of the mission's nearest leg.
     fn desired_at(&self, place: Vector) -> Option<(f64, f64)> {
-        let mission = &self.mission;
-        let points: Vec<Vector> = mission
-            .waypoints
-            .iter()
-            .map(PositionDocument::point)
-            .collect();
-        let away = |from: Vector, to: Vector| {
-            let along = to - from;
-            let part = ((place - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-            (from + along * part - place).norm()
-        };
-        let legs = points.windows(2).zip(&mission.leg_speeds_mps);
-        let legs = legs.map(|(ends, speed)| (away(ends[0], ends[1]), ends[1] - ends[0], *speed));
-        let (_, along, speed) = legs.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((heading_of(along), speed))
+        let near = self.nearest_leg(place)?;
+        let speed = self.mission.leg_speeds_mps.get(near.index)?;
+        Some((heading_of(near.along), *speed))
+    }
+
+    fn nearest_leg(&self, place: Vector) -> Option<NearestLeg> {
+        let points = self.mission.waypoints.iter().map(PositionDocument::point);
+        let points: Vec<Vector> = points.collect();
+        let near = points.windows(2).enumerate().map(|(index, ends)| {
+            let along = ends[1] - ends[0];
+            let part = ((place - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            let off = (ends[0] + along * part - place).norm();
+            NearestLeg { index, along, off }
+        });
+        near.min_by(|a, b| a.off.total_cmp(&b.off))
     }
 
     /// The target whose set a motion enters first, or [`LAND`].
@@ -269,6 +302,14 @@ mod tests {
         // it would be free to return, but the rules ask for the other to be past
         let legs = planned("harbour/munkholmen").legs();
         assert_eq!(legs[3].events, ["returns after 'ferry'"], "{legs:?}");
+    }
+
+    /// Straight on there is land, but the mission turns before it.
+    #[test]
+    fn who_does_not_alter_goes_on_along_the_mission() {
+        let legs = planned("closed-loop/harbour-ferries").legs();
+        assert_eq!(legs[1].events[0], "turns for 'fast ferry'", "{legs:?}");
+        assert_eq!(legs[3].events, ["returns after 'fast ferry'"], "{legs:?}");
     }
 
     #[test]

@@ -156,7 +156,9 @@ fn a_distance_to_a_set_is_no_distance_of_hulls() {
     run("plan scenarios/paper/figure_1.toml")
         .success()
         .stdout(contains("closest 0.0 m to its set at "))
-        .stdout(contains("on the desired trajectory in its set, deepest at 50 s"))
+        .stdout(contains(
+            "on the desired trajectory in its set, deepest at 50 s",
+        ))
         .stdout(contains("worst case 0.0 m to the sets; after arrival"));
 }
 
