@@ -1,6 +1,7 @@
 //! `searoom check`: reads and checks scenarios without planning.
 
 use searoom::document::{CheckDocument, CheckedDocument, FaultDocument};
+use searoom::planner::Minimises;
 use searoom::scenario::Scenario;
 
 use super::args::CheckArgs;
@@ -19,6 +20,7 @@ pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
         let made = scene.and_then(|scene| Ok((scene.scenario()?, scene)));
         match made.map(|(mut made, scene)| {
             made.notes.extend(wide_hulls(&made.scenario));
+            made.notes.extend(short_horizon(&made.scenario));
             (made, scene)
         }) {
             Ok((made, scene)) if args.json => document.files.push(CheckedDocument {
@@ -60,6 +62,19 @@ fn wide_hulls(scenario: &Scenario) -> impl Iterator<Item = String> {
     wide.map(|(name, hull)| {
         let (beam, length) = (hull.beam, hull.length);
         format!("{name}: beam_m, {beam}, is greater than length_m, {length}")
+    })
+}
+
+/// A horizon before the end of the mission, where a plan has to arrive.
+pub fn short_horizon(scenario: &Scenario) -> Option<String> {
+    let (horizon, duration) = (scenario.horizon, scenario.desired.duration());
+    let arrives = !matches!(scenario.planner.facts().minimises, Minimises::Own(_));
+    // less is a rounding of the file
+    (arrives && horizon + 0.5 < duration).then(|| {
+        format!(
+            "horizon_s: {horizon} s are less than the {duration:.0} s of the mission at its \
+             speeds, and a plan has to arrive by then; take more, with time to give way"
+        )
     })
 }
 

@@ -13,6 +13,7 @@ use searoom::report::{
 use searoom::study::bound::lower_bound;
 
 use super::args::PlanArgs;
+use super::check::short_horizon;
 use super::input::files::{Found, shown};
 use super::input::scenes;
 use super::output::Output;
@@ -30,7 +31,8 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
-        Ok((run, notes)) => {
+        Ok((run, mut notes)) => {
+            notes.extend(short_horizon(&run.scenario));
             output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {

@@ -1,5 +1,7 @@
 //! Files and options that are refused, run as a user runs them: what is named, and where.
 
+use std::fs;
+
 use super::program::{
     Folder, HEAD_ON, head_on_without_planner, rows, run, says, searoom, stderr, text,
 };
@@ -34,6 +36,27 @@ fn every_fault_of_a_file_is_reported_at_once() {
     ] {
         assert = assert.stderr(contains(expected));
     }
+}
+
+#[test]
+fn a_horizon_before_the_end_of_the_mission_is_noted() {
+    let folder = Folder::new();
+    let scenario = fs::read_to_string("scenarios/colregs/give-way.toml").expect("a scenario");
+    let with = |horizon: &str| scenario.replace("horizon_s = 400.0", horizon);
+    let short = folder.write("short.toml", with("horizon_s = 280.0"));
+    let just = folder.write("just.toml", with("horizon_s = 300.0"));
+    let note = "horizon_s: 280 s are less than the 300 s of the mission at its speeds";
+    for command in ["check", "plan"] {
+        run(&format!("{command} {short}")).stderr(contains(note));
+        run(&format!("{command} {just}")).stderr("");
+    }
+    // no arrival is asked for
+    let forces = fs::read_to_string("scenarios/paper/figure_9.toml").expect("a scenario");
+    let file = folder.write(
+        "forces.toml",
+        forces.replace("horizon_s = 100", "horizon_s = 20"),
+    );
+    run(&format!("check {file}")).success().stderr("");
 }
 
 #[test]
