@@ -1,5 +1,6 @@
 //! Text of the summary of a campaign.
 
+use super::plan::monitors_key;
 use super::table::{Display, Grid, Styled, Tone, or_dash, plain};
 use crate::document::{
     CampaignDocument, GroupDocument, RareContactDocument, ShareDocument, WorstRowDocument,
@@ -34,6 +35,8 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
     let mut lines = Vec::new();
     if !breaks.is_empty() {
         lines.push(format!("Rows that break: {}", breaks.join(", ")));
+        let names = summary.all.breaks.keys().map(String::as_str);
+        lines.extend(monitors_key(names));
     }
     if !summary.worst.is_empty() {
         let worst = summary.worst.iter();

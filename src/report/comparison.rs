@@ -1,6 +1,6 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::{TIME_COLUMN, milliseconds, rules_broken};
+use super::plan::{TIME_COLUMN, milliseconds, monitors_key, rules_broken};
 use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CollisionDocument, CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
@@ -187,6 +187,8 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
         let why = "the motion is not safe, so its J is no measure of it";
         lines.push(format!("J in brackets: {why}"));
     }
+    let broken = entries.iter().filter_map(|entry| entry.breaks.as_ref());
+    lines.extend(monitors_key(broken.flatten().map(String::as_str)));
     let mut collided: Vec<String> = Vec::new();
     for entry in entries {
         let Some(CollisionDocument { with, t_s }) = &entry.collision else {

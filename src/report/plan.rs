@@ -20,9 +20,11 @@ const MOST_LEGS: usize = 40;
 
 pub(super) const TIME_COLUMN: &str = "time";
 
-/// Formats a table with one row per scenario.
+/// Formats a table with one row per scenario, and explains the monitors in it.
 pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
-    suite_grid(runs).text(display)
+    let broken = runs.iter().filter_map(|run| breaks(&run.encounters));
+    let key = monitors_key(broken.flatten()).map(|key| format!("\n{key}"));
+    suite_grid(runs).text(display) + &key.unwrap_or_default()
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
@@ -108,6 +110,24 @@ pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
         Some(broken) if broken.is_empty() => ("none".to_owned(), Tone::Good),
         Some(broken) => (broken.join(", "), Tone::Bad),
     }
+}
+
+/// What own ship does that breaks a compliance monitor.
+const MONITORS: [(&str, &str); 6] = [
+    ("S", "the hulls touch"),
+    ("R1", "holds a collision course until the hulls meet"),
+    ("R3", "in a crossing, alters too little or too late"),
+    ("R4", "head-on, turns to starboard too little or too late"),
+    ("R5", "overtaking, alters too little or too late"),
+    ("R6", "does not stand on"),
+];
+
+/// Explains the monitors among what is broken; `None` without one. Other names are rules.
+pub(super) fn monitors_key<'a>(broken: impl Iterator<Item = &'a str>) -> Option<String> {
+    let broken: Vec<&str> = broken.collect();
+    let told = MONITORS.iter().filter(|(name, _)| broken.contains(name));
+    let told: Vec<String> = told.map(|(name, what)| format!("{name}: {what}")).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }
 
 /// Formats the verdict and the costs of a run in aligned lines.

@@ -1,6 +1,6 @@
 //! Text of a simulation.
 
-use super::plan::rules_broken;
+use super::plan::{monitors_key, rules_broken};
 use super::table::{Display, Grid, Tone, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
@@ -198,7 +198,9 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
             ),
         ),
     ];
-    lines.splice(1..1, land);
+    let monitors = monitors_key(sailed.breaks.iter().map(String::as_str));
+    let monitors = monitors.map(|key| ("Monitors", key)).into_iter();
+    lines.splice(1..1, monitors.chain(land));
     lines
 }
 

@@ -31,6 +31,10 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     assert!(!drawn.contains("A*: ") && !drawn.contains("NaN"));
     says(
         &shown,
+        "S: the hulls touch; R1: holds a collision course until the hulls meet; R3: in a crossing, alters too little or too late",
+    );
+    says(
+        &shown,
         "hold course: collides with 'target' at 146 s, when the hulls first touch on its expected motion",
     );
     // the same whatever runs at the same time, but for the times
