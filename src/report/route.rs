@@ -103,7 +103,7 @@ impl RouteFormat {
             (_, None) => Err(RouteError::NoOrigin),
             (_, Some(_)) if is_far => Err(RouteError::TooFar),
             (Self::GeoJson, Some(earth)) => Ok(geojson(&legs, earth)),
-            (Self::Rtz, Some(earth)) => rtz(&plan.scenario, &waypoints(&legs), earth),
+            (Self::Rtz, Some(earth)) => rtz(plan, &waypoints(&legs), earth),
         }
     }
 }
@@ -259,12 +259,18 @@ fn corners(turn: &Segment) -> impl Iterator<Item = (Vector, f64)> {
     })
 }
 
-fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, RouteError> {
+fn rtz(plan: &PlanDocument, all: &[Waypoint], earth: &Georeference) -> Result<String, RouteError> {
+    // own ship may be off its plan by this much to either side
+    let off = match plan.own_ship.tracking_margin_m / NAUTICAL_MILE_M {
+        off if off > 0.0 => format!(" starboardXTD=\"{off:.6}\" portsideXTD=\"{off:.6}\""),
+        _ => String::new(),
+    };
+    let orthodrome = format!("<leg{off} geometryType=\"Orthodrome\"/>");
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
          <route xmlns=\"http://www.cirm.org/RTZ/1/1\" version=\"1.1\">\n  \
          <routeInfo routeName=\"{}\"/>\n  <waypoints>\n",
-        in_xml(title)
+        in_xml(&plan.scenario)
     );
     let mut schedule = String::new();
     for (id, waypoint) in (1..).zip(all) {
@@ -279,11 +285,7 @@ fn rtz(title: &str, all: &[Waypoint], earth: &Georeference) -> Result<String, Ro
         if radius > RTZ_RADIUS_NMI || waypoint.stay.round() >= RTZ_STAY_S {
             return Err(RouteError::BeyondRtz);
         }
-        let leg = if id == 1 {
-            ""
-        } else {
-            "<leg geometryType=\"Orthodrome\"/>"
-        };
+        let leg = if id == 1 { "" } else { &orthodrome };
         // writing into a text does not fail
         let _ = writeln!(
             text,

@@ -132,6 +132,20 @@ fn the_legs_of_a_plan_are_printed_and_written_as_a_route() {
         searoom(&["plan", &placed, "--route", text(&written)]).success();
         assert!(written.exists());
     }
+    // the tracking margin is the cross-track limit
+    let limits = |name: &str| {
+        let rtz = fs::read_to_string(route(name)).expect("written");
+        rtz.matches(r#"<leg starboardXTD="0.005400" portsideXTD="0.005400" "#)
+            .count()
+    };
+    assert_eq!(limits("route.rtz"), 0);
+    let margin = "safety_margin_m = 20.0";
+    assert!(HEAD_ON.contains(margin));
+    let with = HEAD_ON.replace(margin, &format!("{margin}\ntracking_margin_m = 10.0"));
+    let with = format!("origin = {{ lat_deg = 59.0, lon_deg = 10.5 }}\n{with}");
+    let with = folder.write("margin.toml", with);
+    searoom(&["plan", &with, "--route", text(&route("margin.rtz"))]).success();
+    assert!(limits("margin.rtz") > 3);
     // a wait on the path is a stay
     let waits = "scenarios/dnv/traffic_situation_05.json";
     let written = route("waits.rtz");
