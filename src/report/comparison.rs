@@ -1,6 +1,6 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::{TIME_COLUMN, milliseconds, monitors_key, rules_broken};
+use super::plan::{milliseconds, monitors_key, rules_broken};
 use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CollisionDocument, CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
@@ -23,9 +23,9 @@ pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display)
     lines.join("\n")
 }
 
-/// Formats the table as markdown, without the planning time.
+/// Formats the table as markdown, without details, so that it fits a pane of a viewer.
 pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
-    let grid = comparison_grid(&compared.entries).without(TIME_COLUMN);
+    let grid = comparison_grid(&compared.entries).brief();
     let mut lines = vec![
         format!("# {}\n", in_cell(title(compared))),
         grid.markdown(),
@@ -276,7 +276,22 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
 
 #[cfg(test)]
 mod tests {
-    use super::joined;
+    use super::{ScenarioComparisonDocument, comparison_markdown, joined};
+
+    #[test]
+    fn a_table_of_a_recording_has_no_details() {
+        let empty = ScenarioComparisonDocument {
+            file: "a.toml".to_owned(),
+            scenario: None,
+            error: None,
+            entries: Vec::new(),
+            inapplicable: Vec::new(),
+        };
+        let header =
+            "method | outcome | J [m²] | clearance [m] | largest turn | verified | safe | breaks";
+        let table = comparison_markdown(&empty);
+        assert!(table.contains(&format!("| {header} |\n")), "{table}");
+    }
 
     #[test]
     fn methods_with_one_plan_have_one_name() {

@@ -92,14 +92,18 @@ impl Grid {
         self
     }
 
+    /// The table without details.
+    pub fn brief(self) -> Self {
+        DETAILS.iter().fold(self, |grid, name| grid.without(name))
+    }
+
     /// Formats the table for a terminal. A table that is too wide breaks the lines of one column and
     /// drops others until it fits, and breaks all lines if it still does not. A narrow terminal
     /// shows a card per row instead.
     pub fn text(self, display: Display) -> String {
         let width = display.width.unwrap_or(usize::MAX);
         if width < CARD_WIDTH && self.width(display) > width {
-            let without = |grid: Self, name: &&str| grid.without(name);
-            return DETAILS.iter().fold(self, without).cards(display);
+            return self.brief().cards(display);
         }
         let mut grid = self;
         for name in DETAILS.into_iter().chain(FURTHER) {
