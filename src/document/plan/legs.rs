@@ -153,7 +153,11 @@ impl PlanDocument {
             let leg = &mut legs[index];
             if let Some(target) = &reason {
                 if is_new {
-                    leg.events.insert(0, alters_for(leg, &before, target));
+                    let told = [
+                        Some(alters_for(leg, &before, target)),
+                        self.lesser_turns(leg),
+                    ];
+                    leg.events.splice(0..0, told.into_iter().flatten());
                 }
                 (cause, told) = (Some(target.clone()), None);
             } else if let Some(event) = leg.events.iter_mut().find(|event| *event == RETURNS) {

@@ -7,6 +7,7 @@ use crate::frame::{Pose, Vector, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::target::Uncertainty;
+use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::Hull;
 
@@ -15,6 +16,10 @@ const DEPTH_M: f64 = 0.01;
 
 /// Radians. A smaller departure from the mission's course is none.
 const COURSE_RAD: f64 = 0.01;
+
+/// Degrees. The least turn of a manoeuvre by the rules, and one that needs a word.
+const LEAST_TURN_DEG: f64 = 30.0;
+const LARGE_TURN_DEG: f64 = 90.0;
 
 /// Speeds that differ by a smaller fraction are one.
 const SPEED: f64 = 0.01;
@@ -119,6 +124,37 @@ impl PlanDocument {
         };
         held.extend(rest.iter().map(moved));
         self.entered(&held)
+    }
+
+    /// Why a large turn of a manoeuvre by the rules is no smaller: the turns, in whole 5° from
+    /// [`LEAST_TURN_DEG`] on, after which own ship would enter a set on its new course before the
+    /// manoeuvre is over. `None` for other turns, and where most smaller ones are clear: then the
+    /// mission was cheaper to reach after the large one.
+    pub(super) fn lesser_turns(&self, leg: &PlannedLeg) -> Option<String> {
+        let (whole, start) = (leg.turn_deg().abs(), leg.motion.start_time);
+        let begins = |begins: f64| (begins - start).abs() < tolerance::TIME_S;
+        let manoeuvre = self.manoeuvres.iter().find(|m| begins(m.begins_s))?;
+        if whole < LARGE_TURN_DEG {
+            return None;
+        }
+        let met = |turn: f64| {
+            let until = start + leg.motion.duration * turn / whole;
+            let arc = leg.motion.between(start, until);
+            let left = manoeuvre.returns_s - until;
+            let on = Segment::straight(arc.end(), until, left, arc.speed);
+            Some((turn, self.entered(&[arc, on])?))
+        };
+        let turns = (0..).map(|k| LEAST_TURN_DEG + 5.0 * f64::from(k));
+        let turns = turns.take_while(|turn| *turn < whole);
+        let met: Vec<(f64, &str)> = turns.map_while(met).collect();
+        let (most, name) = *met.last()?;
+        let what = match name {
+            LAND => "land".to_owned(),
+            _ if met.iter().all(|(_, other)| *other == name) => format!("the set of '{name}'"),
+            _ => "a set".to_owned(),
+        };
+        (most >= 0.5 * whole)
+            .then(|| format!("a turn of {LEAST_TURN_DEG} to {most}° would enter {what}"))
     }
 
     /// Direction and speed of the mission's nearest leg.
@@ -302,6 +338,26 @@ mod tests {
         // it would be free to return, but the rules ask for the other to be past
         let legs = planned("harbour/munkholmen").legs();
         assert_eq!(legs[3].events, ["returns after 'ferry'"], "{legs:?}");
+    }
+
+    /// Against sections of the sets, every half second.
+    #[test]
+    fn a_large_turn_says_after_which_a_set_would_be_entered() {
+        let plan = planned("uncertainty/known-route");
+        let turn = &plan.legs()[1];
+        let told = "a turn of 30 to 120° would enter the set of 'ferry'";
+        assert_eq!(turn.events[1], told, "{turn:?}");
+        let (motion, back) = (&turn.motion, plan.manoeuvres[0].returns_s);
+        let enters = |degrees: f64| {
+            let until = motion.start_time + motion.duration * degrees / turn.turn_deg();
+            let arc = motion.between(motion.start_time, until);
+            let on = Segment::straight(arc.end(), until, back - until, arc.speed);
+            [arc, on].iter().any(|part| scanned(&plan, part).is_some())
+        };
+        assert!((30..=120).all(|degrees| enters(f64::from(degrees))));
+        assert!(!enters(turn.turn_deg()));
+        let small = planned("colregs/give-way").legs();
+        assert_eq!(small[1].events.len(), 2, "{small:?}");
     }
 
     /// Straight on there is land, but the mission turns before it.
