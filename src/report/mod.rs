@@ -27,6 +27,6 @@ pub use plan::{
     plan_text, suite_table,
 };
 pub use route::{RouteError, RouteFormat};
-pub use simulation::{simulation_text, simulations_line};
+pub use simulation::{simulation_markdown, simulation_text, simulations_line};
 pub use table::Display;
 pub use verification::{simulation_verification_text, verification_text};

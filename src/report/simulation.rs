@@ -1,7 +1,7 @@
 //! Text of a simulation.
 
 use super::plan::{monitors_key, rules_broken};
-use super::table::{Display, Grid, Tone, or_dash, painted, plain, verdict};
+use super::table::{Display, Grid, Tone, in_cell, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
@@ -39,6 +39,20 @@ pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> Str
             .collect();
         blocks.push(lines.join("\n"));
     }
+    blocks.join("\n\n")
+}
+
+/// Formats the same as markdown, for a pane that is narrower than the table in a terminal.
+pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
+    let mut blocks = vec![format!("# {}", in_cell(&headline(simulation)))];
+    if !simulation.targets.is_empty() {
+        blocks.push(targets_grid(&simulation.targets).markdown());
+    }
+    let lines = conduct_lines(simulation).into_iter();
+    let lines = lines.map(|(name, text)| format!("- **{name}**: {}", in_cell(&text)));
+    let alarms = alarm_lines(simulation).into_iter();
+    let alarms = alarms.map(|line| format!("- **Alarm**: {}", in_cell(&line)));
+    blocks.push(lines.chain(alarms).collect::<Vec<_>>().join("\n"));
     blocks.join("\n\n")
 }
 
@@ -308,4 +322,36 @@ pub(super) fn alarm_lines(simulation: &SimulationDocument) -> Vec<String> {
         lines.push(format!("and {} more", alarms.len() - LISTED));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{simulation_markdown, simulation_text};
+    use crate::report::Display;
+    use crate::scenario::Scenario;
+    use crate::simulation::Simulation;
+
+    #[test]
+    fn markdown_says_what_the_text_says() {
+        let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref()).expect("valid");
+        let mut simulation = Simulation::new(scenario, false).expect("a closed loop");
+        simulation.step();
+        let document = simulation.record();
+        let text = simulation_text(&document, Display::default());
+        let (title, _) = text.split_once('\n').expect("several lines");
+        let markdown = simulation_markdown(&document);
+        assert!(markdown.starts_with(&format!("# {title}\n\n| target | ")));
+        let named = text.lines().filter_map(|line| line.split_once(": "));
+        let named: Vec<_> = named
+            .skip(1)
+            .filter(|(n, _)| !n.starts_with("alarm"))
+            .collect();
+        assert!(named.len() >= 4);
+        for (name, said) in named {
+            assert!(
+                markdown.contains(&format!("- **{name}**: {said}")),
+                "{name}"
+            );
+        }
+    }
 }

@@ -10,9 +10,9 @@ use searoom::report::figure::{
     FigureError, FigureFormat, FigureOptions, plan_figure, simulation_figure,
 };
 use searoom::report::page::{HtmlReport, Subject, link_from};
-use searoom::report::write_atomically;
 #[cfg(feature = "recording")]
-use searoom::report::{Display, simulation_text};
+use searoom::report::simulation_markdown;
+use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
@@ -223,7 +223,7 @@ impl Products {
                     scenario,
                     document,
                     plans: simulation.plans(),
-                    text: &simulation_text(document, Display::default()),
+                    text: &simulation_markdown(document),
                 };
                 searoom::recording::write_simulation(&simulated, &place.file(stem, "rrd"))?;
             }

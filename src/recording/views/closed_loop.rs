@@ -174,7 +174,10 @@ pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
         series.push(Series::new(&target.name, color, 2.0, distances));
     }
     if !series.is_empty() {
-        series.push(curves::safety_margin(canvas));
+        // own ship keeps its margin from hulls, and nothing from explicit sets
+        if model.simulation.targets.iter().any(|t| t.set_m.is_none()) {
+            series.push(curves::safety_margin(canvas));
+        }
         log(CLEARANCE, &canvas.samples, &series)?;
     }
     let off = canvas

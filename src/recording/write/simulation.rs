@@ -24,7 +24,7 @@ pub struct Simulated<'a> {
     /// The plans that own ship followed: [`crate::simulation::Simulation::plans`] of a simulation
     /// that kept them from the start.
     pub plans: &'a [PlanDocument],
-    /// The result as text.
+    /// The result as markdown.
     pub text: &'a str,
 }
 
@@ -86,7 +86,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
         text,
     } = *simulated;
     let model = ClosedLoop::new(scenario, document, plans);
-    let text = format!("```\n{text}\n```\n\n{}", key(&model));
+    let text = format!("{text}\n\n{}", key(&model));
     rec.log_markdown(SUMMARY, text)?;
     land::log_on_chart(rec, &model.canvas)?;
     closed_loop::log_chart(rec, &model)?;
