@@ -64,17 +64,16 @@ impl SimulatedTargetDocument {
         Some(ship)
     }
 
-    /// What own ship may not touch, with the target at a pose: the hull, or an explicit set.
-    pub fn outline(&self, pose: &Pose) -> ConvexPolygon {
+    /// What own ship may not touch, with the target at a pose: the hull, or an explicit set. `None`
+    /// for a set that is no polygon.
+    pub fn outline(&self, pose: &Pose) -> Option<ConvexPolygon> {
         let Some(corners) = &self.set_m else {
-            return self.hull().polygon(pose);
+            return Some(self.hull().polygon(pose));
         };
         let corners = corners
             .iter()
             .map(|[x, y]| Vector::new(*x, *y) + pose.position);
-        // an invalid set is where its target is
-        ConvexPolygon::hull(&corners.collect::<Vec<_>>())
-            .unwrap_or_else(|_| ConvexPolygon::point(pose.position))
+        ConvexPolygon::hull(&corners.collect::<Vec<_>>()).ok()
     }
 
     /// Own hull as far as it counts toward the target: an explicit set already holds it.

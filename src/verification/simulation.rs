@@ -357,7 +357,8 @@ fn most_gap(document: &SimulationDocument) -> f64 {
     }
 }
 
-/// The least distance of the hulls, metres, and by how much it may differ where it is.
+/// The least distance of the hulls, metres, and by how much it may differ where it is. A set that is
+/// no polygon is everywhere.
 fn least_distance(
     (sailed, gaps): (&[Segment], &[f64]),
     own: &Hull,
@@ -372,7 +373,10 @@ fn least_distance(
         let from = state.at.t_s;
         let there = state.at.pose();
         let velocity = ConvexPolygon::point(there.ahead() * state.speed_mps);
-        let set = MovingSlabs::new(&Uncertainty::constant(target.outline(&there), velocity));
+        let Some(outline) = target.outline(&there) else {
+            return (f64::NAN, DISTANCE_M);
+        };
+        let set = MovingSlabs::new(&Uncertainty::constant(outline, velocity));
         for (s, gap) in sailed.iter().zip(gaps) {
             if !(s.end_time() > from && s.start_time < until) {
                 continue;

@@ -88,6 +88,23 @@ fn the_velocity_at_the_start_of_a_plan_is_checked() {
     );
 }
 
+fn assert_verifies(document: &SimulationDocument) {
+    let checked = verify_simulations(&json(document)).expect("a document");
+    let violations = &checked[0].violations;
+    assert!(violations.is_empty(), "{violations:?}");
+}
+
+/// Nobody knows what is free of a set without corners.
+#[test]
+fn a_set_that_is_no_polygon_is_everywhere() {
+    let mut short = scenario(SCENES[1]);
+    short.simulation.duration = Some(10.0);
+    let (mut document, _) = sailed(short);
+    document.targets[0].set_m = Some(Vec::new());
+    let checked = verify_simulations(&json(&document)).expect("a document");
+    assert!(checked[0].contact && !checked[0].violations.is_empty());
+}
+
 /// At 100 and 120 s a ship lies so near that own ship is inside its set.
 #[test]
 fn without_a_plan_own_ship_goes_on_along_the_last_one() {
@@ -112,12 +129,7 @@ fn without_a_plan_own_ship_goes_on_along_the_last_one() {
         document.conduct
     );
     assert!(document.replans.last().expect("plans").followed);
-    let checked = verify_simulations(&json(&document)).expect("a document");
-    assert!(
-        checked[0].violations.is_empty(),
-        "{:?}",
-        checked[0].violations
-    );
+    assert_verifies(&document);
 }
 
 /// Own ship begins inside the set of a ship that sails away from it.
@@ -146,12 +158,7 @@ fn before_its_first_plan_own_ship_holds_course_and_speed() {
         "{at:?}"
     );
     assert!(document.conduct.within_tracking_margin && !document.safe);
-    let checked = verify_simulations(&json(&document)).expect("a document");
-    assert!(
-        checked[0].violations.is_empty(),
-        "{:?}",
-        checked[0].violations
-    );
+    assert_verifies(&document);
 }
 
 #[test]

@@ -148,9 +148,11 @@ impl PlanDocument {
         let turns = turns.take_while(|turn| *turn < whole);
         let met: Vec<(f64, &str)> = turns.map_while(met).collect();
         let (most, name) = *met.last()?;
+        let is_one = met.iter().all(|(_, other)| *other == name);
         let what = match name {
-            LAND => "land".to_owned(),
-            _ if met.iter().all(|(_, other)| *other == name) => format!("the set of '{name}'"),
+            LAND if is_one => "land".to_owned(),
+            _ if is_one => format!("the set of '{name}'"),
+            _ if met.iter().any(|(_, other)| *other == LAND) => "a set or land".to_owned(),
             _ => "a set".to_owned(),
         };
         (most >= 0.5 * whole)

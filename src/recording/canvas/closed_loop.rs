@@ -123,7 +123,7 @@ impl<'a> ClosedLoop<'a> {
     pub fn clearance(&self, target: &SimulatedTargetDocument, time: f64) -> Option<f64> {
         let own = self.canvas.scenario.own_ship.hull;
         let own = target.own_hull(own).polygon(&self.own_at(time).pose);
-        let other = target.outline(&target.at(time)?.pose);
+        let other = target.outline(&target.at(time)?.pose)?;
         Some(own.separation(&other))
     }
 }

@@ -82,7 +82,7 @@ fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
         let hull = canvas.scenario.own_ship.hull.polygon(&own.pose);
         let others = targets.iter().map(|target| {
             let ship = target.at(time)?;
-            Some((ship, target.outline(&ship.pose)))
+            Some((ship, target.outline(&ship.pose)?))
         });
         std::iter::once(Some((own, hull))).chain(others).collect()
     };

@@ -45,7 +45,7 @@ pub(in crate::report) fn simulation_panel(
 }
 
 fn corners(target: &SimulatedTargetDocument, pose: &Pose) -> Vec<Vector> {
-    target.outline(pose).vertices().to_vec()
+    (target.outline(pose)).map_or_else(Vec::new, |outline| outline.vertices().to_vec())
 }
 
 fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {

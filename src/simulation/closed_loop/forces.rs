@@ -1,5 +1,6 @@
 //! Own ship under the forces of its plan.
 
+use super::own::NO_WAY;
 use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::planner::ControlSettings;
@@ -10,9 +11,6 @@ use crate::vessel::{ForceVector, OwnShip, StateVector};
 /// Longest step of the integration, in the model's unit of time: a second at the length of the
 /// model, whose shortest time constant is five.
 const INTEGRATION_STEP: f64 = 0.02;
-
-/// m/s. A slower ship has no course over ground.
-const NO_WAY: f64 = 1e-3;
 
 /// The planner's ship model without smoothing, integrated apart from the plan.
 #[derive(Debug, Clone, Copy)]

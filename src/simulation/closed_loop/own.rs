@@ -13,7 +13,7 @@ use crate::vessel::StateVector;
 use rand_chacha::ChaCha8Rng;
 
 /// m/s. A slower ship has no course over ground.
-const NO_WAY: f64 = 1e-3;
+pub(super) const NO_WAY: f64 = 1e-3;
 
 /// Own ship, which follows its plan exactly or is steered.
 #[derive(Debug, Clone)]
