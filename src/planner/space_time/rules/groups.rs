@@ -9,6 +9,10 @@ use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
+/// Ratio of the costs up to which a grouping is taken because it breaks fewer rules. One manoeuvre
+/// around ships that are met an hour apart breaks none, but no one would sail it.
+const FEWER_BROKEN_PRICE: f64 = 100.0;
+
 /// A plan by the rules.
 pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
@@ -30,8 +34,8 @@ enum Together {
 /// The cheapest manoeuvre for each conflict of the nominal motion, one after another.
 ///
 /// The next manoeuvre begins when own ship is on the route again. Several targets may be passed in
-/// one manoeuvre: the grouping that breaks the fewest rules is taken. `None` where no manoeuvre is
-/// found.
+/// one manoeuvre: the grouping that breaks the fewest rules is taken, up to a price. `None` where no
+/// manoeuvre is found.
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
@@ -61,20 +65,24 @@ fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Opt
     if encountered.all(|e| e.risk_since <= contact) {
         return one_by_one(context, nominal_motion, Together::All, clock);
     }
-    let mut best: Option<(usize, RulePlan)> = None;
+    let mut best: Option<(usize, f64, RulePlan)> = None;
     for together in [Together::AtContact, Together::UntilJoined, Together::All] {
         let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
             continue;
         };
         let broken = broken_rules(context.problem, &plan.motion);
-        if best.as_ref().is_none_or(|(least, _)| broken < *least) {
-            best = Some((broken, plan));
+        let cost = context.problem.error_to_end(&plan.motion);
+        let better = |(least, of, _): &(usize, f64, RulePlan)| {
+            broken < *least && cost <= FEWER_BROKEN_PRICE * of
+        };
+        if best.as_ref().is_none_or(better) {
+            best = Some((broken, cost, plan));
         }
         if broken == 0 || clock.is_up() {
             break;
         }
     }
-    best.map(|(_, plan)| plan)
+    best.map(|(_, _, plan)| plan)
 }
 
 fn one_by_one(

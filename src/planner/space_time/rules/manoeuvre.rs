@@ -8,9 +8,9 @@
 //!
 //! Where neither is clear, the turn is made at half speed or less.
 //!
-//! A manoeuvre has at most five parameters. For the latest departure that has a clear manoeuvre,
-//! the cheapest of a coarse grid is improved by a pattern search. There are few turns and few
-//! changes of speed by construction. A manoeuvre under way keeps the parameters that are done; the
+//! A manoeuvre has at most five parameters. For each of a few departures, the cheapest of a coarse
+//! grid is improved by a pattern search. There are few turns and few changes of speed by
+//! construction. A manoeuvre under way keeps the parameters that are done; the
 //! search chooses the others.
 
 use crate::colregs::{
@@ -48,7 +48,7 @@ const ENDING_STRIDE: usize = 2;
 const BACK: [f64; 3] = [0.3, 0.6, 1.0];
 
 /// Departures, as fractions of the time until the latest one.
-const LEAVE: [f64; 4] = [1.0, 0.6, 0.2, 0.0];
+const LEAVE: [f64; 6] = [1.0, 0.8, 0.6, 0.4, 0.2, 0.0];
 
 /// Seconds within which the first alteration follows a risk that begins late. A ship that overtakes
 /// alters sooner: once it has turned, the closest approach comes early.
@@ -251,11 +251,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.with_a_length_if_possible(|search| {
             let from = search.from;
             let latest = latest.max(from);
-            let mut times = LEAVE
-                .iter()
-                .map(|share| search.tidy_time(from + share * (latest - from)));
-            let found = times.find_map(|time| search.cheapest(time))?;
-            Some(search.improved(found, from..=latest))
+            let times = LEAVE.map(|share| search.tidy_time(from + share * (latest - from)));
+            times.into_iter().fold(None, |best: Option<Found>, time| {
+                let below = best.as_ref().map_or(f64::INFINITY, |best| best.rank);
+                let found = search.cheaper(time, below);
+                let improved = found.map(|found| search.improved(found, from..=latest));
+                improved.or(best)
+            })
         })
     }
 
@@ -499,18 +501,22 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         turns.collect()
     }
 
-    /// The motions until every target is passed that are clear so far, from a departure on.
-    fn clear_outward_legs(&self, leave: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
+    /// The motions until every target is passed that are clear so far, from a departure on, and
+    /// cheaper than a rank.
+    fn clear_outward_legs(&self, leave: f64, below: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
         let before = until(self.nominal_motion, leave);
         let alterations = self.alterations().into_iter();
         alterations.filter_map(move |first| {
             let out = self.out(&before, leave, first)?;
-            self.is_clear(&out.motion[out.before..]).then_some(out)
+            // what follows can only add to the cost
+            let cheap = below.is_infinite()
+                || self.problem().error_of(&out.motion) * speed_price(&first) < below;
+            (cheap && self.is_clear(&out.motion[out.before..])).then_some(out)
         })
     }
 
     fn has_clear(&self, leave: f64) -> bool {
-        self.clear_outward_legs(leave).any(|out| {
+        self.clear_outward_legs(leave, f64::INFINITY).any(|out| {
             let few = self.endings(&out).into_iter().step_by(ENDING_STRIDE);
             few.into_iter().any(|ending| {
                 self.completed(&out, ending)
@@ -553,9 +559,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The cheapest clear manoeuvre that begins at a time.
     fn cheapest(&self, leave: f64) -> Option<Found> {
+        self.cheaper(leave, f64::INFINITY)
+    }
+
+    /// The cheapest clear manoeuvre that begins at a time, if it is cheaper than a rank.
+    fn cheaper(&self, leave: f64, below: f64) -> Option<Found> {
         let mut candidates: Vec<(f64, usize, Parameters)> = Vec::new();
         let outs = self
-            .clear_outward_legs(leave)
+            .clear_outward_legs(leave, below)
             .take_while(|_| !self.clock.is_up());
         let outs: Vec<OutwardLeg> = outs.collect();
         for (index, out) in outs.iter().enumerate() {
@@ -565,7 +576,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     continue;
                 };
                 let rank = self.rank(&first, &motion, joined);
-                if rank.is_finite() {
+                if rank < below {
                     let manoeuvre = Parameters {
                         leave,
                         first,
@@ -600,9 +611,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             .windows(2)
             .next()
             .is_some_and(|pair| pair[0].duration < LEAST_S && pair[0].speed != pair[1].speed);
-        let slow = matches!(first, FirstAlteration::Slow { .. });
-        let price = |is: bool, price: f64| if is { price } else { 1.0 };
-        self.problem().error_to_end(motion) * price(slow, SPEED_PRICE) * price(short, SHORT_PRICE)
+        let short_price = if short { SHORT_PRICE } else { 1.0 };
+        self.problem().error_to_end(motion) * speed_price(first) * short_price
     }
 
     /// Pattern search: each parameter in turn, by steps that shrink.
@@ -858,6 +868,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let (on, _) = self.context.route.pose_at(along);
         (pose.position - on.position).norm() <= tolerance::JOINT_M
             && wrap(pose.heading - on.heading).abs() <= tolerance::JOINT_RAD
+    }
+}
+
+/// Factor of the cost of a manoeuvre by less speed.
+fn speed_price(first: &FirstAlteration) -> f64 {
+    match first {
+        FirstAlteration::Slow { .. } => SPEED_PRICE,
+        FirstAlteration::Turn { .. } => 1.0,
     }
 }
 
