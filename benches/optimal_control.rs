@@ -1,4 +1,4 @@
-//! The optimal-control planner: cold and warm solves, random scenes, and what they are worth.
+//! The optimal-control planner: solves, random scenes, and what they are worth.
 //!
 //! ```text
 //! cargo bench --no-default-features --bench optimal_control
@@ -14,13 +14,12 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use rand::{Rng, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use searoom::planner::optimal_control::solver::{Iterate, Workspace, solve};
 use searoom::planner::optimal_control::{
-    KeepOut, Measured, RecedingHorizon, Settings, SolverStatus, StartAttempt, attempt, family,
+    KeepOut, Settings, SolverStatus, StartAttempt, attempt, family,
 };
-use searoom::vessel::StateVector;
 
 /// The best of the starts that need no other planner.
 fn best(keep_outs: &[KeepOut], intervals: usize) -> (Option<StartAttempt>, Vec<f64>) {
@@ -68,29 +67,10 @@ fn solves(c: &mut Criterion) {
                 });
             },
         );
-        let start = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
-        assert!(start.plan().is_feasible());
-        let off = StateVector::new(0.03, -0.03, 0.02, 0.01, -0.01, 0.005);
-        let state = start.plan().profile.states[1] + off;
-        c.bench_function(&format!("warm, N = {intervals}, 3 ellipsoids"), |b| {
-            b.iter_batched(
-                || start.clone(),
-                |mut horizon| {
-                    let measured = Measured {
-                        state,
-                        keep_outs: &keep_outs,
-                    };
-                    horizon.step(&task, measured, &|| true);
-                    assert!(horizon.plan().is_feasible());
-                    horizon
-                },
-                criterion::BatchSize::SmallInput,
-            );
-        });
     }
 }
 
-/// 200 scenes each: every one solved, and how a controller gets on from there.
+/// 200 scenes each: every one solved.
 fn random(_: &mut Criterion) {
     let wanted = std::env::args()
         .skip(1)
@@ -100,39 +80,20 @@ fn random(_: &mut Criterion) {
     }
     let desired = scenes::desired();
     for count in [3, 6] {
-        let (mut times, mut warm, mut failed) = (Vec::new(), Vec::new(), 0);
-        let mut rng = ChaCha8Rng::seed_from_u64(99);
+        let mut times = Vec::new();
         for keep_outs in scenes::random_scenes(200, count) {
             let (found, took) = best(&keep_outs, 50);
             times.extend(took);
-            let found = found.expect("every scene has a plan");
-            let task = scenes::task(&desired, &keep_outs, 50);
-            let mut horizon =
-                RecedingHorizon::new(&task, &found.profile, Settings::default(), &|| true);
-            let noise = StateVector::new(0.03, 0.03, 0.02, 0.01, 0.01, 0.005);
-            let off = noise.map(|size| size * rng.random_range(-1.0..1.0));
-            let measured = Measured {
-                state: horizon.plan().profile.states[1] + off,
-                keep_outs: &keep_outs,
-            };
-            let begun = Instant::now();
-            horizon.step(&task, measured, &|| true);
-            warm.push(begun.elapsed().as_secs_f64() * 1e3);
-            failed += usize::from(!horizon.plan().is_feasible());
+            found.expect("every scene has a plan");
         }
         times.sort_by(f64::total_cmp);
-        warm.sort_by(f64::total_cmp);
         let at = |v: &[f64], part: f64| v[((v.len() - 1) as f64 * part) as usize];
         println!(
-            "{count} ellipsoids: 200 of 200 scenes have a plan, {} solves, ms median {:.1} p95 {:.1} most {:.1}; \
-             warm ms median {:.2} p95 {:.2} most {:.2}, not clear {failed}",
+            "{count} ellipsoids: 200 of 200 scenes have a plan, {} solves, ms median {:.1} p95 {:.1} most {:.1}",
             times.len(),
             at(&times, 0.5),
             at(&times, 0.95),
             at(&times, 1.0),
-            at(&warm, 0.5),
-            at(&warm, 0.95),
-            at(&warm, 1.0),
         );
     }
     // the best of 40 wandering starts is not better than the plan

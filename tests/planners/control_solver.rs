@@ -1,10 +1,8 @@
-//! Tests of the solver of the optimal-control planner: optimum, warm starts, settings and clock.
+//! Tests of the solver of the optimal-control planner: optimum, settings and clock.
 
 use std::cell::Cell;
 use std::time::Duration;
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::planner::optimal_control::solver::{
@@ -13,22 +11,12 @@ use searoom::planner::optimal_control::solver::{
 };
 use searoom::planner::optimal_control::transcription::Transcription;
 use searoom::planner::optimal_control::{
-    Controls, Measured, Profile, RecedingHorizon, Settings, SolverStatus, StartAttempt, Task,
-    Weights, attempt, family, plan,
+    Controls, Profile, Settings, SolverStatus, Task, Weights, family, plan,
 };
 use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
 use searoom::vessel::{CyberShip2, ForceVector, StateVector, VesselKind};
 
 use crate::campaigns::forces::scenes;
-
-/// Cheapest of the starts that need no other planner.
-fn best(task: &Task<CyberShip2>) -> Option<StartAttempt> {
-    family(task)
-        .into_iter()
-        .map(|(_, guess)| attempt(task, &guess, &Settings::default(), &|| true))
-        .filter(StartAttempt::is_feasible)
-        .min_by(|a, b| a.objective.total_cmp(&b.objective))
-}
 
 /// Problem with an additional terminal cost toward a goal.
 struct Drawn<'a> {
@@ -119,42 +107,6 @@ fn another_solver_finds_the_same_optimum() {
         let cost = report.objective * unit;
         assert!((cost - known).abs() < 1e-3, "{cost} {known}");
     }
-}
-
-#[test]
-fn a_controller_goes_on_warm_and_stays_clear() {
-    let desired = scenes::desired();
-    let keep_outs = scenes::figure_9();
-    let mut task = scenes::task(&desired, &keep_outs, 50);
-    let guess = best(&task).expect("a plan").profile;
-    let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
-    let mut rng = ChaCha8Rng::seed_from_u64(4);
-    let mut steps = 0;
-    for k in 0..25 {
-        let plan = &horizon.plan().profile;
-        let noise = StateVector::new(0.01, 0.01, 0.01, 0.005, 0.005, 0.002);
-        let mut state = plan.states[1] + noise.map(|n| n * rng.random_range(-1.0..1.0));
-        // no plan exists from a measurement inside a set
-        let time = task.time(1);
-        for keep in &keep_outs {
-            while keep.at(time).level(Vector::new(state[0], state[1])) < 1.02 {
-                let out = Vector::new(state[0], state[1]) - keep.at(time).center;
-                state[0] += 0.01 * out.x;
-                state[1] += 0.01 * out.y;
-            }
-        }
-        let measured = Measured {
-            state,
-            keep_outs: &keep_outs,
-        };
-        task = horizon.step(&task, measured, &|| true);
-        let report = &horizon.plan().report;
-        assert!(horizon.plan().is_feasible(), "{k}: {report:?}");
-        assert!((task.start_time - 2.0 * f64::from(k + 1)).abs() < 1e-9);
-        assert_eq!(horizon.plan().profile.states[0], state);
-        steps += horizon.plan().iterations;
-    }
-    assert!(steps < 25 * 30, "{steps}");
 }
 
 /// Tests settings that permit no plan. Scenario files are validated more strictly than library

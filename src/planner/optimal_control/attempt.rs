@@ -56,10 +56,6 @@ pub struct StartAttempt {
     /// True where rows were violated and no solution was found with a higher penalty: the motion is
     /// the one with the lower penalty.
     pub priced_out: bool,
-    /// Iterate for later warm starts.
-    pub(super) iterate: Iterate<6, 3>,
-    /// Rows of each interval: `(set, fraction)`.
-    pub(super) rows: Vec<Vec<(usize, f64)>>,
 }
 
 impl StartAttempt {
@@ -82,7 +78,7 @@ pub fn attempt<V: Manoeuvring>(
     settings: &Settings,
     keep_going: &dyn Fn() -> bool,
 ) -> StartAttempt {
-    let problem = task.transcription();
+    let mut problem = task.transcription();
     let states = guess
         .states
         .iter()
@@ -93,27 +89,11 @@ pub fn attempt<V: Manoeuvring>(
         .iter()
         .map(|u| problem.scaled_force(u))
         .collect();
-    let iterate = Iterate::guess(states, forces);
-    let work = Workspace::new(&problem);
-    resume(task, problem, iterate, work, settings, keep_going)
-}
-
-/// Solves from an iterate, with or without multipliers. The problem may already have more rows than
-/// the base ones.
-pub(super) fn resume<V: Manoeuvring>(
-    task: &Task<V>,
-    mut problem: Transcription<V>,
-    mut iterate: Iterate<6, 3>,
-    mut work: Workspace<6, 3>,
-    settings: &Settings,
-    keep_going: &dyn Fn() -> bool,
-) -> StartAttempt {
+    let mut iterate = Iterate::guess(states, forces);
+    let mut work = Workspace::new(&problem);
     let tight = settings.tolerance;
     let mut settings = *settings;
-    // the multipliers include those of rows added earlier
-    if iterate.multipliers.is_empty() {
-        settings.tolerance = tight.max(LOOSE_TOLERANCE);
-    }
+    settings.tolerance = tight.max(LOOSE_TOLERANCE);
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
     // solved but with violated rows, before the penalty was raised
@@ -136,13 +116,13 @@ pub(super) fn resume<V: Manoeuvring>(
         }
         let short = report.shortfall > SOLVER_VIOLATION.max(settings.tolerance);
         if report.status != SolverStatus::Solved || rounds == MAX_ROUNDS || (short && raised) {
-            return found.attempt(&problem, iterate);
+            return found.attempt(&problem, &iterate);
         }
         settings.barrier = WARM_BARRIER;
         if short {
             // the penalty may be too low: the problem is locally infeasible only if a higher one
             // does not help
-            cheaper = Some(found.attempt(&problem, iterate.clone()));
+            cheaper = Some(found.attempt(&problem, &iterate));
             raised = true;
             settings.penalty *= PENALTY_FACTOR;
             settings.barrier = 1e2 * WARM_BARRIER;
@@ -150,7 +130,7 @@ pub(super) fn resume<V: Manoeuvring>(
         let fresh = add_rows(task, &mut problem, &mut iterate, &added, &settings);
         if !fresh && !short {
             if settings.tolerance <= tight {
-                return found.attempt(&problem, iterate);
+                return found.attempt(&problem, &iterate);
             }
             settings.tolerance = tight;
         }
@@ -175,7 +155,7 @@ impl Progress {
     fn attempt<V: Manoeuvring>(
         self,
         problem: &Transcription<V>,
-        iterate: Iterate<6, 3>,
+        iterate: &Iterate<6, 3>,
     ) -> StartAttempt {
         StartAttempt {
             profile: Profile {
@@ -187,12 +167,6 @@ impl Progress {
             objective: self.report.objective * problem.cost_unit(),
             inside: self.inside,
             priced_out: false,
-            iterate,
-            rows: problem
-                .row_sets()
-                .iter()
-                .map(|rows| rows.iter().map(|r| (r.obstacle, r.fraction)).collect())
-                .collect(),
         }
     }
 }

@@ -16,7 +16,6 @@ mod guess;
 mod keep_out;
 mod passing;
 mod plan;
-mod receding;
 mod reference;
 mod report;
 // needed by tests and benches of the solver only; not part of the public interface
@@ -25,16 +24,17 @@ pub mod solver;
 mod task;
 #[doc(hidden)]
 pub mod transcription;
+mod warm_start;
 
 pub use attempt::{Inside, StartAttempt, attempt};
 pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
 pub use plan::plan;
-pub use receding::{Measured, RecedingHorizon, WarmStart};
 pub use report::{ControlReport, HomotopyClass, StartReport};
 pub use solver::{Settings, SolverReport, SolverStatus};
 pub use task::{Controls, Profile, Task, force, node, state};
 pub use transcription::Weights;
+pub use warm_start::WarmStart;
 
 use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
 use crate::obstacle::Obstacle;
