@@ -134,6 +134,9 @@ class Plan:
     def plan_s(self) -> float:
         """Seconds that planning took."""
     @property
+    def _library_s(self) -> float:
+        """Seconds of the library for this plan, its check and its document."""
+    @property
     def cost(self) -> dict[str, Any] | None: ...
     @property
     def relaxations(self) -> list[dict[str, Any]]: ...
@@ -265,8 +268,14 @@ def assess(
     times of the sets. With `domains` the sets include the ship domains.
     """
 
-def compare(scenario: Scenario, *, max_risks: ArrayLike | None = None) -> dict[str, Any]:
-    """Every planner that applies and two baselines on one scenario, at each accepted risk."""
+def compare(
+    scenario: Scenario, *, max_risks: ArrayLike | None = None, bound: bool = False
+) -> dict[str, Any]:
+    """Every planner that applies and two baselines on one scenario, at each accepted risk.
+
+    With `bound` each plan also has a lower bound of J around the sets of its method, which takes
+    some seconds.
+    """
 
 def summarise(
     folder: str | PathLike[str], *, allow_other_builds: bool = False

@@ -139,12 +139,16 @@ fn py_assess<'py>(
 }
 
 /// Every planner that applies and two baselines on one scenario, at each accepted risk.
+///
+/// With `bound` each plan also has a lower bound of J around the sets of its method, which takes
+/// some seconds.
 #[pyfunction]
-#[pyo3(name = "compare", signature = (scenario, *, max_risks = None))]
+#[pyo3(name = "compare", signature = (scenario, *, max_risks = None, bound = false))]
 fn py_compare<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     max_risks: Option<&Bound<'py, PyAny>>,
+    bound: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let scenario = &scenario.inner;
     let risks = match max_risks {
@@ -159,7 +163,11 @@ fn py_compare<'py>(
     let found = methods(scenario);
     let mut entries: Vec<Entry> = Vec::new();
     for candidate in candidates(&found.methods, &risks) {
-        entries.push(detached(py, || candidate.run(scenario))?);
+        let run = || match bound {
+            true => candidate.run(scenario).with_bound(),
+            false => candidate.run(scenario),
+        };
+        entries.push(detached(py, run)?);
         py.check_signals()?;
     }
     let (file, others) = (String::new(), &found.inapplicable);

@@ -1,6 +1,7 @@
 //! Plans.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -27,17 +28,22 @@ pub struct Plan {
     scenario: Scenario,
     run: Run,
     document: PlanDocument,
+    library_s: f64,
 }
 
 impl Plan {
     /// Plans a scenario, with the memory of an earlier plan in `asked`.
     pub fn new(py: Python, scenario: &Scenario, asked: Asked) -> PyResult<Self> {
         detached(py, || {
+            let begun = Instant::now();
             let run = searoom::pipeline::run(asked);
+            let document = PlanDocument::of(&run);
+            let library_s = begun.elapsed().as_secs_f64();
             Self {
                 scenario: scenario.clone(),
-                document: PlanDocument::of(&run),
+                document,
                 run,
+                library_s,
             }
         })
     }
@@ -100,6 +106,12 @@ impl Plan {
     #[getter]
     fn plan_s(&self) -> f64 {
         self.document.timing.plan_s
+    }
+
+    /// Seconds of the library for this plan, its check and its document.
+    #[getter]
+    fn _library_s(&self) -> f64 {
+        self.library_s
     }
 
     #[getter]

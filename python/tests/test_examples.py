@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import searoom
 from searoom import ShipState
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -28,6 +29,15 @@ MISSION = [(0.0, 0.0), (1500.0, 0.0)]
 @pytest.fixture(autouse=True)
 def on_path(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(EXAMPLES))
+
+
+def test_a_plan_from_python_takes_as_long_as_that_of_the_library() -> None:
+    import overhead
+
+    scenarios = Path(__file__).parents[2] / "scenarios" / "colregs"
+    head_on = searoom.Scenario.read(scenarios / "head-on.toml")
+    library, beyond = overhead.overhead(head_on, calls=50)
+    assert library > 0.0 and beyond < 50e-6
 
 
 def sail(

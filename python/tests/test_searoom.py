@@ -252,6 +252,15 @@ def test_a_comparison_has_every_method() -> None:
     assert outcomes["hold course"] == "collides"
 
 
+def test_plans_of_a_comparison_are_no_better_than_their_bounds() -> None:
+    found = searoom.compare(scenario("colregs/give-way.toml"), bound=True)
+    bounded = [entry for entry in found["entries"] if "lower_bound" in entry]
+    error = "space_time_error_m2"
+    assert bounded and all(0.0 < e["lower_bound"][error] <= e["cost"][error] for e in bounded)
+    plain = searoom.compare(scenario("colregs/give-way.toml"))
+    assert not any("lower_bound" in entry for entry in plain["entries"])
+
+
 def test_without_a_plan_there_are_no_samples() -> None:
     values = tomllib.loads(COLREGS[0].read_text())
     values["horizon_s"] = 20.0

@@ -1,5 +1,7 @@
 //! Contacts too rare for plain rows, by multilevel splitting of simulations.
 
+use std::sync::atomic::AtomicBool;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -8,10 +10,6 @@ use super::splitting::{Effort, Process, Seeds, estimate};
 use super::summary::CONFIDENCE;
 use crate::document::{RARE_FORMAT, RareContactDocument, RareLevelDocument};
 use crate::simulation::Simulation;
-
-/// m/s: added to a predicted distance for each second until it is reached. A rough choice: 2 and 3
-/// were tried, on too few trajectories to tell them apart.
-const PER_SECOND: f64 = 3.0;
 
 /// A simulation that is split by how near a contact is; `None` where none could be drawn.
 #[derive(Clone)]
@@ -44,7 +42,7 @@ impl Process for Sailing {
 
     fn distance(&self) -> f64 {
         let simulation = self.0.as_ref();
-        simulation.map_or(f64::INFINITY, |s| s.distance_from_contact(PER_SECOND))
+        simulation.map_or(f64::INFINITY, |s| s.distance_from_contact())
     }
 
     fn is_over(&self) -> bool {
@@ -52,22 +50,23 @@ impl Process for Sailing {
     }
 }
 
-/// Estimates the probability that hulls meet in a row of the stratum with this name, by multilevel
-/// splitting; `None` where no stratum has the name. The same on any number of threads.
+/// Estimates the probability that hulls meet in a row of a stratum, by multilevel splitting. The same
+/// on any number of threads. Where `stop` is set, from the replicas that had ended; `None` with fewer
+/// than two.
 pub fn rare_contacts(
     specification: &Specification,
-    name: &str,
+    stratum: usize,
     effort: &Effort,
+    stop: &AtomicBool,
     tick: &dyn Fn(),
 ) -> Option<RareContactDocument> {
-    let index = specification.strata.iter().position(|s| s.name == name)?;
-    let stratum = &specification.strata[index];
+    let (index, stratum) = (stratum, &specification.strata[stratum]);
     let seeds = Seeds {
         seed: specification.seed,
         stream: index as u32,
     };
     let new = |seed| Sailing::of(stratum, seed);
-    let found = estimate(&new, seeds, effort, CONFIDENCE, tick);
+    let found = estimate(&new, seeds, effort, CONFIDENCE, stop, tick)?;
     let rows = found.probability * (1.0 - found.probability) / found.standard_error.powi(2);
     let level = |(distance_m, fraction): &(f64, Option<f64>)| RareLevelDocument {
         distance_m: *distance_m,
@@ -78,7 +77,7 @@ pub fn rare_contacts(
         build: super::part::build(),
         campaign: specification.name.clone(),
         specification: specification.hash.clone(),
-        stratum: name.to_owned(),
+        stratum: stratum.name.clone(),
         trajectories: effort.trajectories,
         confidence: CONFIDENCE,
         contact: found.probability,

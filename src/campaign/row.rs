@@ -155,12 +155,7 @@ pub const COLUMNS: [Column; 58] = [
     }),
     Column::count("alarms", |s| Some(s.document?.alarms.len())),
     // of the machine
-    Column::count("late", |s| {
-        let delay = s.document?.settings.delay_s;
-        // the first plan is made before the start
-        let plans = s.document?.timing.plan_s.iter().skip(1);
-        Some(plans.filter(|seconds| **seconds > delay).count())
-    }),
+    Column::count("late", |s| Some(late_plans(s.document?))),
     Column::number("plan_ms_median", |s| {
         Some(s.document?.timing.quantile_ms(0.5))
     }),
@@ -169,6 +164,14 @@ pub const COLUMNS: [Column; 58] = [
     }),
     Column::number("cpu_s", |s| Some(s.cpu_s)),
 ];
+
+/// Plans that took longer than the delay.
+fn late_plans(document: &SimulationDocument) -> usize {
+    let delay = document.settings.delay_s;
+    // the first plan is made before the start
+    let plans = document.timing.plan_s.iter().skip(1);
+    plans.filter(|seconds| **seconds > delay).count()
+}
 
 /// The index of a column that is in [`COLUMNS`].
 pub(super) fn column(name: &str) -> usize {
@@ -281,7 +284,7 @@ pub struct Row {
     /// One cell for each of [`COLUMNS`].
     pub cells: Vec<Cell>,
     /// The document of a row that somebody has to look at: with a contact, a cycle without a plan
-    /// or with one that is not safe, or a broken rule.
+    /// or with one that is late or not safe, or a broken rule.
     pub document: Option<Box<SimulationDocument>>,
 }
 
@@ -337,7 +340,8 @@ impl Row {
             document: document.map(Box::new).filter(|document| {
                 let conduct = &document.conduct;
                 let without_safe_plan = conduct.without_plan + conduct.unsafe_plans > 0;
-                document.contact || without_safe_plan || !conduct.breaks.is_empty()
+                let is_late = late_plans(document) > 0;
+                document.contact || without_safe_plan || is_late || !conduct.breaks.is_empty()
             }),
         }
     }

@@ -7,6 +7,8 @@
 //! M. J. J. Garvels, "The splitting method in rare event simulation", 2000; P. Del Moral,
 //! "Feynman-Kac Formulae", 2004, section 12.2.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -96,10 +98,10 @@ struct Went<P> {
     cost: f64,
 }
 
-/// Goes on until the event is no farther than `level`, or to the end.
-fn follow<P: Process>(mut process: P, level: f64) -> Went<P> {
+/// Goes on until the event is no farther than `level`, or to the end; `None` once `stop` is set.
+fn follow<P: Process>(mut process: P, level: f64, stop: &AtomicBool) -> Option<Went<P>> {
     let (mut cost, mut least) = (0.0, f64::INFINITY);
-    loop {
+    while !stop.load(Ordering::Relaxed) {
         let distance = process.distance();
         // negated so that a NaN is the event
         if !(distance > 0.0) {
@@ -108,15 +110,16 @@ fn follow<P: Process>(mut process: P, level: f64) -> Went<P> {
         least = least.min(distance);
         let reached = least <= level;
         if reached || process.is_over() {
-            return Went {
+            return Some(Went {
                 process,
                 reached,
                 least,
                 cost,
-            };
+            });
         }
         cost += process.step();
     }
+    None
 }
 
 /// One run by way of levels: where its trajectories begin at each of them.
@@ -126,33 +129,58 @@ struct Stage<'a, P, N> {
     seeds: Seeds,
     replica: usize,
     trajectories: usize,
+    stop: &'a AtomicBool,
     /// The states in which the last level was reached; none before the first.
     reached: Vec<P>,
 }
 
 impl<P: Process, N: Fn(u64) -> P + Sync> Stage<'_, P, N> {
-    /// All trajectories that begin at a level and go on to `next`.
-    fn go(&self, level: usize, next: f64) -> Vec<Went<P>> {
+    /// All trajectories that begin at a level and go on to `next`; `None` once `stop` is set.
+    fn go(&self, level: usize, next: f64) -> Option<Vec<Went<P>>> {
         // copies are spread evenly; the offset makes each state's number of them unbiased
         let offset: f64 = self.seeds.rng(self.replica, level, 0).random();
         let share = self.reached.len() as f64 / self.trajectories as f64;
         let numbers: Vec<usize> = (0..self.trajectories).collect();
-        map(&numbers, |_, number| {
+        let went = map(&numbers, |_, number| {
+            if self.stop.load(Ordering::Relaxed) {
+                return None;
+            }
             let mut rng = self.seeds.rng(self.replica, level, number + 1);
             let seed = rng.random::<u64>() >> 12;
             if level == 0 {
-                return follow((self.new)(seed), next);
+                return follow((self.new)(seed), next, self.stop);
             }
             let from = ((*number as f64 + offset) * share) as usize;
             let mut process = self.reached[from.min(self.reached.len() - 1)].clone();
             process.reseed(seed);
-            follow(process, next)
-        })
+            follow(process, next, self.stop)
+        });
+        went.into_iter().collect()
+    }
+
+    /// The product of the fractions that go on from level to level. Adds to the counts of each, and
+    /// to the cost. `None` once `stop` is set.
+    fn estimate(mut self, levels: &[f64], hits: &mut [[u64; 2]], cost: &mut f64) -> Option<f64> {
+        let mut product = 1.0;
+        for (index, (level, hits)) in levels.iter().zip(hits).enumerate() {
+            let went = self.go(index, *level)?;
+            *cost += went.iter().map(|w| w.cost).sum::<f64>();
+            self.reached = reached(went);
+            let count = self.reached.len();
+            hits[0] += count as u64;
+            hits[1] += self.trajectories as u64;
+            product *= count as f64 / self.trajectories as f64;
+            if count == 0 {
+                break;
+            }
+        }
+        Some(product)
     }
 }
 
 /// Estimates the probability that a process reaches its event. `new` makes one from a seed; `tick`
-/// is called after the pilot run and after each replica.
+/// is called after the pilot run and after each replica. Where `stop` is set, the estimate is that of
+/// the replicas that had ended, and `None` with fewer than two.
 ///
 /// A pilot run of as many trajectories fixes the levels: each is what a given fraction reaches. Its
 /// trajectories count for nothing else. O(replicas × levels × trajectories), on all cores.
@@ -161,20 +189,22 @@ pub(super) fn estimate<P: Process>(
     seeds: Seeds,
     effort: &Effort,
     confidence: f64,
+    stop: &AtomicBool,
     tick: &dyn Fn(),
-) -> Estimate {
+) -> Option<Estimate> {
     let stage = |replica| Stage {
         new,
         seeds,
         replica,
         trajectories: effort.trajectories,
+        stop,
         reached: Vec::new(),
     };
     let (mut levels, mut cost, mut whole_cost) = (Vec::new(), [0.0; 2], 0.0);
     let mut pilot = stage(0);
     let mut last = f64::INFINITY;
     while levels.len() < MOST_LEVELS {
-        let went = pilot.go(levels.len(), 0.0);
+        let went = pilot.go(levels.len(), 0.0)?;
         let sum: f64 = went.iter().map(|w| w.cost).sum();
         cost[0] += sum;
         if levels.is_empty() {
@@ -188,7 +218,7 @@ pub(super) fn estimate<P: Process>(
         if !(next > 0.0 && next < last) {
             break;
         }
-        let again = pilot.go(levels.len(), next);
+        let again = pilot.go(levels.len(), next)?;
         cost[0] += again.iter().map(|w| w.cost).sum::<f64>();
         pilot.reached = reached(again);
         levels.push(next);
@@ -197,32 +227,26 @@ pub(super) fn estimate<P: Process>(
     levels.push(0.0);
     tick();
     let mut hits = vec![[0_u64; 2]; levels.len()];
-    let replicas: Vec<f64> = (1..=effort.replicas)
-        .map(|replica| {
-            let (mut run, mut product) = (stage(replica), 1.0);
-            for (index, level) in levels.iter().enumerate() {
-                let went = run.go(index, *level);
-                cost[1] += went.iter().map(|w| w.cost).sum::<f64>();
-                run.reached = reached(went);
-                let count = run.reached.len();
-                hits[index][0] += count as u64;
-                hits[index][1] += effort.trajectories as u64;
-                product *= count as f64 / effort.trajectories as f64;
-                if count == 0 {
-                    break;
-                }
-            }
-            tick();
-            product
-        })
-        .collect();
+    let mut replicas = Vec::with_capacity(effort.replicas);
+    for replica in 1..=effort.replicas {
+        let mut own = hits.clone();
+        let Some(found) = stage(replica).estimate(&levels, &mut own, &mut cost[1]) else {
+            break;
+        };
+        hits = own;
+        replicas.push(found);
+        tick();
+    }
+    if replicas.len() < 2 {
+        return None;
+    }
     let (probability, standard_error, mut interval) = mean_interval(&replicas, confidence);
     if probability == 0.0 {
         // whatever reaches the event reaches the first level
         interval = [0.0, clopper_pearson(hits[0][0], hits[0][1], confidence)[1]];
     }
     let fraction = |[hits, of]: &[u64; 2]| (*of > 0).then(|| *hits as f64 / *of as f64);
-    Estimate {
+    Some(Estimate {
         probability,
         interval,
         standard_error,
@@ -230,7 +254,7 @@ pub(super) fn estimate<P: Process>(
         levels: levels.into_iter().zip(hits.iter().map(fraction)).collect(),
         cost,
         whole_cost,
-    }
+    })
 }
 
 /// The states of those that reached their level.
@@ -241,6 +265,8 @@ fn reached<P>(went: Vec<Went<P>>) -> Vec<P> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicUsize;
+
     use super::*;
 
     /// A walk by ±1, whose event is a height within 100 steps.
@@ -315,7 +341,9 @@ mod tests {
 
     fn of_walk(event: i32, seed: u64) -> Estimate {
         let seeds = Seeds { seed, stream: 0 };
-        estimate(&Walk::begin(event), seeds, &EFFORT, 0.95, &|| ())
+        let go_on = AtomicBool::new(false);
+        let found = estimate(&Walk::begin(event), seeds, &EFFORT, 0.95, &go_on, &|| ());
+        found.expect("not stopped")
     }
 
     /// Six seeds: an interval of 95 % is missed by more than one of them once in 30 times.
@@ -348,6 +376,26 @@ mod tests {
         let (estimate, [low, high]) = (found.probability, found.interval);
         println!("{exact:.3e}: {estimate:.3e}, {low:.2e} to {high:.2e}; {ratio:.0} times cheaper");
         assert!(ratio > 10.0, "{ratio}");
+    }
+
+    /// Ended in the middle of a replica, an estimate is that of the replicas before.
+    #[test]
+    fn a_stopped_estimate_has_the_replicas_that_had_ended() {
+        let seeds = Seeds { seed: 1, stream: 0 };
+        let of = |replicas: usize, last: usize| {
+            let (stop, ticks) = (AtomicBool::new(false), AtomicUsize::new(0));
+            let effort = Effort { replicas, ..EFFORT };
+            // the first tick is that of the pilot run
+            let tick = || {
+                let ended = ticks.fetch_add(1, Ordering::Relaxed);
+                stop.store(ended >= last, Ordering::Relaxed);
+            };
+            estimate(&Walk::begin(30), seeds, &effort, 0.95, &stop, &tick)
+        };
+        let stopped = of(20, 3).expect("three replicas");
+        assert_eq!(stopped.replicas.len(), 3);
+        assert_eq!(Some(stopped), of(3, 20));
+        assert_eq!((of(20, 1), of(20, 0)), (None, None));
     }
 
     #[test]

@@ -107,14 +107,15 @@ fn sound(
     Err(InputError::faults(&folder.parts(), faults).into())
 }
 
-/// Columns that are an event of a row where they are true or above zero.
-const EVENTS: [&str; 6] = [
-    "contact",
-    "no_plan",
-    "unsafe_plans",
-    "outside_sets",
-    "broken",
-    "late",
+/// Events of a row: columns of which one is true or above zero.
+const EVENTS: [&[&str]; 7] = [
+    &["contact"],
+    &["no_plan"],
+    &["unsafe_plans"],
+    &["outside_sets"],
+    &["outside_velocities", "outside_places"],
+    &["broken"],
+    &["late"],
 ];
 
 /// Counts over some rows.
@@ -135,12 +136,13 @@ impl Tally {
             return;
         }
         self.rows += 1;
-        for (count, name) in self.events.iter_mut().zip(EVENTS) {
-            *count += match cell(name) {
-                Cell::Count(Some(count)) => u64::from(*count > 0),
-                Cell::Truth(Some(truth)) => u64::from(*truth),
-                _ => 0,
-            };
+        let happened = |name: &&str| match cell(name) {
+            Cell::Count(Some(count)) => *count > 0,
+            Cell::Truth(Some(truth)) => *truth,
+            _ => false,
+        };
+        for (count, names) in self.events.iter_mut().zip(EVENTS) {
+            *count += u64::from(names.iter().any(happened));
         }
         if let Cell::Word(Some(breaks)) = cell("breaks") {
             for name in breaks.split(';') {
@@ -175,6 +177,7 @@ impl Tally {
             no_plan,
             unsafe_plan,
             outside_sets,
+            measured_outside,
             rule_broken,
             late,
         ] = shares;
@@ -201,6 +204,7 @@ impl Tally {
             no_plan,
             unsafe_plan,
             outside_sets,
+            measured_outside,
             rule_broken,
             timing: GroupTimingDocument { late },
             clearance_m: quantiles(),

@@ -1,11 +1,11 @@
 //! Text of the summary of a campaign.
 
 use super::plan::monitors_key;
-use super::table::{Display, Grid, Styled, Tone, or_dash, plain};
+use super::table::{Display, Grid, Tone, or_dash, plain};
 use crate::document::{
     CampaignDocument, GroupDocument, RareContactDocument, ShareDocument, WorstRowDocument,
 };
-use crate::text::{counted, tenths};
+use crate::text::{broken, counted, tenths};
 
 /// Caption of the table of [`clearances`].
 pub(super) const CLEARANCES: &str =
@@ -28,7 +28,7 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
             "Probabilities in percent, {confidence:.0} % confidence; \"anytime\" holds for a run that \
              is watched."
         ),
-        bounds(&groups).text(display),
+        bounds(&groups, &EVENTS).text(display),
     ];
     let breaks = summary.all.breaks.iter();
     let breaks: Vec<String> = breaks.map(|(name, n)| format!("{name} {n}")).collect();
@@ -85,13 +85,14 @@ pub(super) fn counts(groups: &[(String, &GroupDocument)]) -> Grid {
             count(&group.no_plan, Tone::Bad),
             count(&group.unsafe_plan, Tone::Bad),
             count(&group.outside_sets, Tone::Fair),
+            count(&group.measured_outside, Tone::Fair),
             count(&group.rule_broken, Tone::Fair),
             count(&group.timing.late, Tone::Fair),
         ]
     });
-    let header =
-        "stratum, rows, contact, no\nplan, unsafe\nplan, left\nits set, rule\nbroken, late";
-    Grid::new(header, 1..8, rows).breaking("stratum", 20)
+    let header = "stratum, rows, contact, no\nplan, unsafe\nplan, left\nset, measured\noutside, \
+                  rule\nbroken, late";
+    Grid::new(header, 1..9, rows).breaking("stratum", 16)
 }
 
 pub(super) fn clearances(groups: &[(String, &GroupDocument)]) -> Grid {
@@ -106,25 +107,61 @@ pub(super) fn clearances(groups: &[(String, &GroupDocument)]) -> Grid {
     Grid::new("stratum, smallest, 1 %, 5 %, 50 %", 1..5, rows).breaking("stratum", 20)
 }
 
-pub(super) fn bounds(groups: &[(String, &GroupDocument)]) -> Grid {
-    let interval = |[low, high]: [f64; 2]| -> Styled {
-        // rounded outwards
-        let percent = |share: f64, round: fn(f64) -> f64| round(share * 1e5) / 1e3;
+/// An event of rows: its name, and how many have it.
+type Event = (&'static str, fn(&GroupDocument) -> &ShareDocument);
+
+/// All events; the last one is of the machine.
+pub(super) const EVENTS: [Event; 7] = [
+    ("contact", |group| &group.contact),
+    ("no plan", |group| &group.no_plan),
+    ("unsafe plan", |group| &group.unsafe_plan),
+    ("left set", |group| &group.outside_sets),
+    ("measured outside", |group| &group.measured_outside),
+    ("rule broken", |group| &group.rule_broken),
+    ("late", |group| &group.timing.late),
+];
+
+/// Least width of a list of events, in characters.
+const LISTED: usize = 19;
+
+/// The bounds of each event. Events of a group with equal counts have equal bounds, and one line.
+pub(super) fn bounds(groups: &[(String, &GroupDocument)], events: &[Event]) -> Grid {
+    let interval = |[low, high]: [f64; 2]| {
         let (low, high) = (percent(low, f64::floor), percent(high, f64::ceil));
         plain(format!("{low} to {high}"))
     };
-    let rows = groups.iter().map(|(name, group)| {
-        let shares = [&group.contact, &group.no_plan, &group.rule_broken];
-        let pairs = shares.map(|share| [interval(share.exact), interval(share.anytime)]);
-        let cells = pairs.into_iter().flatten();
-        std::iter::once(plain(name.clone())).chain(cells).collect()
-    });
-    let header = "stratum, contact\nexact, contact\nanytime, no plan\nexact, no plan\nanytime, \
-                  rule broken\nexact, rule broken\nanytime";
-    let grid = Grid::new(header, 1..7, rows);
-    let columns = grid.header.clone();
-    let grid = (columns[1..].iter()).fold(grid, |grid, name| grid.breaking(name, 8));
-    grid.breaking("stratum", 12)
+    let mut rows = Vec::new();
+    for (name, group) in groups {
+        let mut alike: Vec<(&ShareDocument, String)> = Vec::new();
+        for (event, of) in events {
+            // lines are broken between events alone
+            let (share, event) = (of(group), event.replace(' ', "\u{a0}"));
+            match alike
+                .iter_mut()
+                .find(|(other, _)| other.count == share.count)
+            {
+                Some((_, names)) => *names += &format!(", {event}"),
+                None => alike.push((share, event)),
+            }
+        }
+        rows.extend(alike.into_iter().map(|(share, events)| {
+            vec![
+                plain(name.clone()),
+                plain(broken(&events, LISTED, "")),
+                plain(share.count.to_string()),
+                interval(share.exact),
+                interval(share.anytime),
+            ]
+        }));
+    }
+    Grid::new("stratum, event, rows, exact, anytime", 2..5, rows).breaking("stratum", 12)
+}
+
+/// A probability in percent, rounded to three digits.
+fn percent(share: f64, round: fn(f64) -> f64) -> f64 {
+    let percent = 100.0 * share;
+    let scale = 10_f64.powi(2 - percent.max(1e-12).log10().floor() as i32);
+    round(percent * scale) / scale
 }
 
 /// The rows with the least clearance, each with the command that sails it again.

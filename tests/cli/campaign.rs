@@ -362,7 +362,7 @@ fn documents_of_rows_with_a_fault_are_kept() {
     };
     let looked_at: Vec<String> = (parts[0].rows.iter().enumerate())
         .filter(|(_, row)| {
-            ["contact", "no_plan", "unsafe_plans", "broken"]
+            ["contact", "no_plan", "unsafe_plans", "broken", "late"]
                 .iter()
                 .any(|name| yes(row, name))
         })
@@ -374,6 +374,17 @@ fn documents_of_rows_with_a_fault_are_kept() {
     let sum = |name: &str| parts[0].rows.iter().filter(|row| yes(row, name)).count();
     assert_eq!(summary["all"]["rule_broken"]["count"], sum("broken"));
     assert_eq!(summary["all"]["contact"]["count"], sum("contact"));
+    let outside = |row: &&Vec<Cell>| {
+        let names = ["outside_velocities", "outside_places"];
+        names.iter().any(|name| yes(row, name))
+    };
+    let outside = parts[0].rows.iter().filter(outside).count();
+    assert!(outside > 0);
+    assert_eq!(summary["all"]["measured_outside"]["count"], outside);
+    assert_eq!(
+        summary["all"]["timing"]["late"]["exact"][0].as_f64() > Some(0.0),
+        sum("late") > 0
+    );
     assert_eq!(summary["strata"][0]["rows"], 20);
     assert_eq!(summary["classes"][2]["name"], "scenario");
     let text = stdout(&run(&format!("campaign summarise {folder}/out")).success());
@@ -471,6 +482,74 @@ fn rare_contacts_are_estimated_alike_each_time() {
     );
 }
 
+/// What a command prints on both streams that gets Ctrl-C after two seconds.
+#[cfg(unix)]
+fn interrupted(words: &str) -> (String, String) {
+    let working = std::process::Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .args(words.split_whitespace())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("started");
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let kill = std::process::Command::new("kill")
+        .args(["-INT", &working.id().to_string()])
+        .status();
+    assert!(kill.expect("kill").success());
+    let ended = working.wait_with_output().expect("ended");
+    assert_eq!(ended.status.code(), Some(130));
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (text(ended.stdout), text(ended.stderr))
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_estimate_says_how_many_replicas_it_has() {
+    let folder = folder();
+    let rare =
+        format!("campaign rare {folder}/spec.toml --stratum crossing --replicas 9999 --json");
+    let (none, said) = interrupted(&format!("{rare} --trajectories 9999"));
+    says(&said, "interrupted before two replicas had ended");
+    assert_eq!(none, "");
+    let (found, said) = interrupted(&format!("{rare} --trajectories 10"));
+    // a slow machine has none either
+    if !found.is_empty() {
+        let found: serde_json::Value = serde_json::from_str(&found).expect("a document");
+        let ended = found["replicas"].as_array().expect("a list").len();
+        says(
+            &said,
+            &format!("interrupted; the estimate is that of {ended} of 9999"),
+        );
+    }
+}
+
+/// Files that cannot be written, as on a full disk, are named; nothing is half there.
+#[cfg(unix)]
+#[test]
+fn a_part_that_cannot_be_written_is_named_and_sailed_again() {
+    let folder = folder();
+    sail(&folder, "whole", 1, 2);
+    let words = format!("campaign run {folder}/spec.toml --out {folder}/out");
+    // no file above 8 KiB, and an error instead of the signal
+    let limited = format!(
+        "trap '' XFSZ; ulimit -f 8; exec {} {words}",
+        env!("CARGO_BIN_EXE_searoom")
+    );
+    let ended = std::process::Command::new("bash")
+        .args(["-c", &limited])
+        .output()
+        .expect("started");
+    assert_eq!(ended.status.code(), Some(2), "{ended:?}");
+    let said = String::from_utf8_lossy(&ended.stderr);
+    says(&said, "out/ | File too large");
+    assert!(parts(&folder, "out").is_empty());
+    says(
+        &stdout(&run(&words).success()),
+        "40 rows sailed, 0 were there",
+    );
+    assert_eq!(rows(&folder, "out"), rows(&folder, "whole"));
+}
+
 /// Ctrl-C ends the run with the rows that were begun; the same command goes on.
 #[cfg(unix)]
 #[test]
@@ -478,27 +557,9 @@ fn an_interrupted_run_keeps_its_rows() {
     let folder = folder();
     let long = SPECIFICATION.replace("rows = 40", "rows = 4000");
     folder.write("spec.toml", long);
-    let args = [
-        "campaign",
-        "run",
-        &folder.at("spec.toml"),
-        "--out",
-        &folder.at("out"),
-    ];
-    let sailing = std::process::Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .args(args)
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .expect("started");
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &sailing.id().to_string()])
-        .status();
-    assert!(kill.expect("kill").success());
-    let ended = sailing.wait_with_output().expect("ended");
-    assert_eq!(ended.status.code(), Some(130));
-    let said = String::from_utf8(ended.stdout).expect("text");
+    let (said, _) = interrupted(&format!(
+        "campaign run {folder}/spec.toml --out {folder}/out"
+    ));
     says(&said, "interrupted, the same command goes on");
     let kept = rows(&folder, "out").len();
     assert!((1..4000).contains(&kept), "{kept}");

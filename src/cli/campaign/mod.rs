@@ -322,26 +322,45 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
 fn rare(args: &RareArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let specification = Specification::read(&args.specification)?;
     let names: Vec<&str> = specification.strata.iter().map(|s| &*s.name).collect();
-    let name = match (&args.stratum, names.as_slice()) {
-        (Some(name), _) => name,
-        (None, [only]) => *only,
+    let stratum = match (&args.stratum, names.as_slice()) {
+        (Some(name), _) => names.iter().position(|own| own == name),
+        (None, [_]) => Some(0),
         (None, _) => bail!("--stratum: found none; allowed: one of {names:?}"),
+    };
+    let name = args.stratum.as_deref().unwrap_or(names[0]);
+    let Some(stratum) = stratum else {
+        bail!("--stratum: found {name:?}; allowed: one of {names:?}");
     };
     let effort = Effort {
         trajectories: args.trajectories as usize,
         replicas: args.replicas as usize,
         fraction: FRACTION,
     };
+    let stop = catch_interrupt(output);
     // the pilot run is one step
     let bar = output.progress(effort.replicas + 1);
-    let found = guarded(|| rare_contacts(&specification, name, &effort, &|| bar.inc(1)));
+    let tick = || bar.inc(1);
+    let found = guarded(|| rare_contacts(&specification, stratum, &effort, &stop, &tick));
     bar.finish_and_clear();
-    match found {
-        Err(fault) => Ok(output.fault(&format_args!("{name}: {fault}"))),
-        Ok(None) => bail!("--stratum: found {name:?}; allowed: one of {names:?}"),
-        Ok(Some(found)) => {
-            let text = || rare_contacts_text(&found, output.display);
-            Ok(output.show(args.json, &found, text))
-        }
+    let found = match found {
+        Ok(found) => found,
+        Err(fault) => return Ok(output.fault(&format_args!("{name}: {fault}"))),
+    };
+    let (ended, of) = (
+        found.as_ref().map_or(0, |f| f.replicas.len()),
+        effort.replicas,
+    );
+    let shown = found.map_or(ExitStatus::Good, |found| {
+        output.show(args.json, &found, || {
+            rare_contacts_text(&found, output.display)
+        })
+    });
+    if ended == of {
+        return Ok(shown);
     }
+    output.note(&match ended {
+        0 => "interrupted before two replicas had ended; nothing is estimated".to_owned(),
+        _ => format!("interrupted; the estimate is that of {ended} of {of} replicas"),
+    });
+    Ok(shown.max(ExitStatus::Interrupted))
 }

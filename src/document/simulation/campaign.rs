@@ -52,8 +52,10 @@ pub struct GroupDocument {
     pub no_plan: ShareDocument,
     /// Rows with a plan that is not safe.
     pub unsafe_plan: ShareDocument,
-    /// Rows with a target outside the sets of a plan.
+    /// Rows with a target outside the sets of a plan, in truth or as it was measured.
     pub outside_sets: ShareDocument,
+    /// Rows with a target that was measured outside the sets of the plan before.
+    pub measured_outside: ShareDocument,
     /// Rows with a broken rule or a violated monitor.
     pub rule_broken: ShareDocument,
     /// Rows that break each rule or monitor.

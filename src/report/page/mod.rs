@@ -9,7 +9,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::campaign::{CLEARANCES, bounds, clearances, counts, groups, worst_grid};
+use super::campaign::{CLEARANCES, EVENTS, bounds, clearances, counts, groups, worst_grid};
 use super::comparison::{comparison_grid, is_sweep, remarks};
 use super::figure::{
     Figure, Panel, Style, comparison_panels, diagram_panels, distribution_panel, plan_panels,
@@ -178,7 +178,7 @@ impl HtmlReport {
             p.quiet {
                 (format!("{confidence:.0} % confidence; \"anytime\" holds for a run that is watched."))
             }
-            (table(bounds(&groups), &[]))
+            (table(bounds(&groups, &EVENTS[..EVENTS.len() - 1]), &[]))
             h2 { "Distributions" }
             (figures)
             h2 { "Least clearance" }

@@ -115,6 +115,23 @@ impl TrueTarget {
         }
     }
 
+    /// The ship `ahead` seconds after `time`: as it moves now, and from the next draw of a course and
+    /// speed on with those in the middle.
+    pub fn expected(&self, time: f64, ahead: f64) -> SteadyShip {
+        let draws = matches!(
+            self.behaviour,
+            Behaviour::Random { .. } | Behaviour::Extremes { .. }
+        );
+        let until = (self.next_change - time).max(0.0);
+        if !draws || ahead <= until {
+            return self.now.moved(ahead);
+        }
+        let mut then = self.now.moved(until);
+        then.pose.heading = self.file.middle_course();
+        then.speed = self.file.speed;
+        then.moved(ahead - until)
+    }
+
     pub fn advance(&mut self, step: f64) {
         self.now.pose.position += self.now.velocity() * step;
     }

@@ -47,6 +47,12 @@ const INSTANT: f64 = 1e-9;
 /// A step ends at the next event; one shorter than this fraction of it is joined to the one before.
 const SHORT_STEP: f64 = 1e-6;
 
+/// Of the distance from a contact: m/s and seconds, of a few that were tried, and the fraction by
+/// which samples grow apart.
+const CLOSING: f64 = 1.0;
+const EARLY: f64 = 5.0;
+const COARSER: f64 = 0.03;
+
 /// A scenario that is sailed: own ship plans again and again and follows its plans, among targets
 /// that do what they like.
 ///
@@ -277,11 +283,13 @@ impl Simulation {
         }
     }
 
-    /// How far a contact of hulls is: the least distance of the hulls, in metres, from now on, if
-    /// own ship keeps to its plan and the target holds course and speed, with `per_second` metres
-    /// added for each second until then. Zero after a contact, and never before.
-    /// Sampled: O(distance / `per_second`) for each target.
-    pub(crate) fn distance_from_contact(&self, per_second: f64) -> f64 {
+    /// How far a contact of hulls is, in metres: zero after a contact, and never before.
+    ///
+    /// The least, over the times `t` from now to the end, of `(d + CLOSING t) / sqrt(1 + t / EARLY)`.
+    /// Here `d` is the distance of the hulls at `t`, if own ship keeps to its plan and the target moves
+    /// as it is expected to. The root is the growth of a random walk: what is far now can still meet
+    /// later. Sampled; O(log duration) for each target.
+    pub(crate) fn distance_from_contact(&self) -> f64 {
         if self.targets.iter().any(|t| t.clearance.is_contact()) {
             return 0.0;
         }
@@ -289,23 +297,24 @@ impl Simulation {
         let in_plan = self.time - plan.start;
         let now = self.own.pose(&plan.trajectory, in_plan);
         let planned = plan.trajectory.pose_at(in_plan);
+        let left = plan.end().min(self.duration) - self.time;
+        let far = |apart: f64, ahead: f64| (apart + CLOSING * ahead) / (1.0 + ahead / EARLY).sqrt();
         let mut least = f64::INFINITY;
         for target in &self.targets {
-            let ship = target.truth.now;
             let reach = hull.half_diagonal() + target.truth.hull.half_diagonal();
             let mut ahead = 0.0;
-            while ahead * per_second < least {
+            while ahead <= left && far(0.0, ahead) < least {
                 let mut own = plan.trajectory.pose_at(in_plan + ahead);
                 own.position += now.position - planned.position;
-                let mut pose = ship.pose;
-                pose.position += ship.velocity() * ahead;
+                let pose = target.truth.expected(self.time, ahead).pose;
                 // centres are farther apart than hulls
-                if (pose.position - own.position).norm() - reach + ahead * per_second < least {
+                let bound = (pose.position - own.position).norm() - reach;
+                if far(bound, ahead) < least {
                     let hulls = [hull.polygon(&own), target.truth.hull.polygon(&pose)];
                     let apart = hulls[0].separation(&hulls[1]).max(0.0);
-                    least = least.min(apart + ahead * per_second);
+                    least = least.min(far(apart, ahead));
                 }
-                ahead += self.settings().step;
+                ahead += self.settings().step.max(ahead * COARSER);
             }
         }
         least.max(f64::MIN_POSITIVE)
