@@ -104,20 +104,43 @@ pub fn counted(count: usize, word: &str) -> String {
     format!("{count} {word}{plural}")
 }
 
-/// Formats a space-time error; small values have one decimal.
+/// Formats a space-time error: one decimal below 1000, more below 1.
 pub(crate) fn square_metres(value: f64) -> String {
     if value.is_nan() {
         "undefined".to_owned()
     } else if value < 1000.0 {
-        format!("{value:.1}")
+        tenths(value)
     } else {
         format!("{value:.0}")
     }
 }
 
-/// Formats one decimal; values that round to zero have no sign.
+/// Most decimals of a quantity; models are metres long or less.
+const DECIMALS: i32 = 4;
+
+/// Formats one decimal, and three significant digits below 1. Values that round to zero have no
+/// sign.
 pub(crate) fn tenths(value: f64) -> String {
-    short_numbers(&format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0))
+    let decimals = match value.abs() {
+        small if (0.5 * 0.1_f64.powi(DECIMALS)..0.95).contains(&small) => decimals(value),
+        _ => 1,
+    };
+    let power = 10.0_f64.powi(decimals);
+    let rounded = (value * power).round() / power + 0.0;
+    short_numbers(&format!("{rounded:.*}", decimals as usize))
+}
+
+/// Formats three significant digits, or all before the decimal point.
+pub(crate) fn significant(value: f64) -> String {
+    format!("{value:.*}", decimals(value).max(0) as usize)
+}
+
+/// Decimals of three significant digits; a value near zero has one.
+fn decimals(value: f64) -> i32 {
+    match value.abs().log10().floor() {
+        power if power >= f64::from(-DECIMALS) - 1.0 => (2 - power as i32).min(DECIMALS),
+        _ => 1,
+    }
 }
 
 /// A line broken between words to a width, with an indent before all but the first. A number stays
@@ -177,13 +200,22 @@ mod tests {
     #[test]
     fn zero_has_no_sign() {
         assert_eq!(
-            (tenths(-0.04), signed(-0.04)),
+            (tenths(-0.00004), signed(-0.04)),
             ("0.0".into(), "+0.0".into())
         );
-        assert_eq!(
-            (tenths(-0.06), signed(0.06)),
-            ("-0.1".into(), "+0.1".into())
-        );
+        assert_eq!(signed(0.06), "+0.1");
+    }
+
+    #[test]
+    fn small_quantities_have_three_digits() {
+        let values = [-3.12, 0.96, 0.9439, -0.0432, 0.00432, 0.00004, -1e-9, 12.0];
+        let expected = [
+            "-3.1", "1.0", "0.944", "-0.0432", "0.0043", "0.0", "0.0", "12.0",
+        ];
+        assert_eq!(values.map(tenths), expected);
+        let values = [1953.4, 225.2, 64.04, 2.284, 0.0432, 0.0, f64::NAN];
+        let expected = ["1953", "225", "64.0", "2.28", "0.0432", "0.0", "NaN"];
+        assert_eq!(values.map(significant), expected);
     }
 
     #[test]

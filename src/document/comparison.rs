@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::parts::{
     CostDocument, LowerBoundDocument, PositionDocument, SearchStatsDocument, TimingDocument,
 };
+use super::plan::departure::Departure;
 
 /// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,6 +40,9 @@ pub struct EntryDocument {
     pub lower_bound: Option<LowerBoundDocument>,
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
+    /// For texts alone.
+    #[serde(skip)]
+    pub departure: Option<Departure>,
     pub breaks: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collision: Option<CollisionDocument>,

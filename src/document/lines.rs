@@ -12,7 +12,7 @@ use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
 use crate::planner::SearchKind;
-use crate::text::{counted, knots, printable, rounded, signed, square_metres, tenths};
+use crate::text::{counted, knots, printable, rounded, signed, significant, square_metres, tenths};
 
 const LISTED: usize = 3;
 
@@ -127,11 +127,12 @@ fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
         add("goes on", goes_on.join("; "));
     }
     if memory.off_plan_m > 0.0 {
-        let (off, most) = (memory.off_plan_m, plan.own_ship.tracking_margin_m);
-        let text = match off <= most {
-            true => format!("{off:.1} m off the plan; its tracking margin is {most} m"),
+        let most = plan.own_ship.tracking_margin_m;
+        let off = tenths(memory.off_plan_m);
+        let text = match memory.off_plan_m <= most {
+            true => format!("{off} m off the plan; its tracking margin is {most} m"),
             false => format!(
-                "{off:.1} m from the previous plan, more than its tracking margin of {most} m: the \
+                "{off} m from the previous plan, more than its tracking margin of {most} m: the \
                  rest of that plan is not used"
             ),
         };
@@ -156,7 +157,10 @@ fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
 fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
     let text = match relaxation.kind.as_str() {
-        "domain" => format!("the domain of '{target}', which is reduced by {amount:.1} m"),
+        "domain" => format!(
+            "the domain of '{target}', which is reduced by {} m",
+            tenths(*amount)
+        ),
         "risk" => {
             let until = relaxation.until_s.map_or(String::new(), |time| {
                 format!("; the plan is clear of it only from {time:.1} s on")
@@ -165,7 +169,8 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
             return ("enters", text);
         }
         "arrival" => {
-            format!("the arrival: {amount:.0} m are left at the horizon, '{target}' is in the way")
+            let left = significant(*amount);
+            format!("the arrival: {left} m are left at the horizon, '{target}' is in the way")
         }
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
@@ -370,6 +375,7 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
     let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
     let short = match monitor.unit.as_str() {
         _ if short == 0.0 => String::new(),
+        "m" if short < 1.0 => format!(", missed by {} m", tenths(short)),
         "m" => format!(", missed by {:.1} m", 0.1 * (10.0 * short).ceil()),
         "deg" => format!(", missed by {:.0}°", short.ceil()),
         unit => format!(", missed by {:.0} {unit}", short.ceil()),
@@ -392,13 +398,7 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
             format!("first alteration {lead} s before the closest approach without it")
         }
     };
-    let smallest = manoeuvre
-        .smallest_turn_deg
-        .map(|degrees| match manoeuvre.turns {
-            1 => format!(" of {degrees:.0}°"),
-            _ => format!(" of {degrees:.0}° or more"),
-        });
-    let turns = counted(manoeuvre.turns, "turn") + &smallest.unwrap_or_default();
+    let turns = counted(manoeuvre.turns, "turn");
     let speeds = match manoeuvre.speed_changes {
         1 => "1 change of speed".to_owned(),
         count => format!("{count} changes of speed"),
@@ -413,12 +413,15 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
 }
 
 fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
-    add("turn", turn(cost));
+    let none = || "none".to_owned();
+    let departure = plan.departure().map(|departure| departure.to_string());
+    add("manoeuvre", departure.unwrap_or_else(none));
     let error = square_metres(cost.space_time_error_m2);
     let by_length = cost.space_time_error_arc_length_m2;
     let by_length = square_metres(by_length.unwrap_or(f64::NAN));
     add("J", format!("{error} m² ({by_length} m² by arc length)"));
-    let way = format!("{:.1} s and {:.0} m", cost.duration_s, cost.length_m);
+    let (lasts, length) = (tenths(cost.duration_s), significant(cost.length_m));
+    let way = format!("{lasts} s and {length} m");
     match cost.delay_s {
         Some(delay) => {
             let delay = signed(delay);
@@ -465,7 +468,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         }
     }
     if let Some(distance) = cost.min_land_distance_m {
-        add("land", format!("{distance:.1} m off"));
+        add("land", format!("{} m off", tenths(distance)));
     }
     if !plan.encounters.is_empty() {
         add("risk", risk(plan, cost.max_risk));
@@ -550,13 +553,6 @@ pub(crate) fn met(encounters: &[EncounterDocument]) -> Vec<&EncounterDocument> {
     let time = |e: &EncounterDocument| e.undisturbed_tcpa_s.unwrap_or(f64::INFINITY);
     met.sort_by(|a, b| time(a).total_cmp(&time(b)));
     met
-}
-
-pub(crate) fn turn(cost: &CostDocument) -> String {
-    match &cost.first_turn {
-        Some(turn) => format!("{} {:.0}°", turn.side, turn.turn_deg),
-        None => "none".to_owned(),
-    }
 }
 
 /// Side of own ship on which the target lies at the closest approach. In a crossing, it also states

@@ -30,13 +30,16 @@ pub use check::*;
 pub use comparison::*;
 pub use encounter::*;
 pub(crate) use lines::{
-    TIME_LINE, headline, in_brackets, met, passing, plan_lines, turn, verdict_line, verdict_parts,
+    TIME_LINE, headline, in_brackets, met, passing, plan_lines, verdict_line, verdict_parts,
 };
 pub use lint::*;
 pub use memory::*;
 pub use parts::*;
 pub use plan::control::*;
+pub use plan::departure::Departure;
+pub(crate) use plan::departure::departure;
 pub use plan::legs::PlannedLeg;
+pub(crate) use plan::legs::longest;
 pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;

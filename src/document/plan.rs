@@ -1,6 +1,7 @@
 //! Plan document, see docs/documents.md.
 
 pub(super) mod control;
+pub(super) mod departure;
 pub(super) mod legs;
 pub(super) mod path_time;
 pub(super) mod phases;
@@ -353,26 +354,30 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     let segments = trajectory.segments().iter().map(segment_document);
     TrajectoryDocument {
         segments: trajectory.steered().is_none().then(|| segments.collect()),
-        samples: trajectory
-            .sample_times(SAMPLE_STEP, MOST_SAMPLES)
-            .into_iter()
-            .map(|time| {
-                let mut pose = trajectory.pose_at(time);
-                if let Some(motion) = trajectory.steered() {
-                    pose.heading = course(motion, time);
-                }
-                let at = start(pose, time);
-                SampleDocument {
-                    t_s: at.t_s,
-                    east_m: at.east_m,
-                    north_m: at.north_m,
-                    course_deg: at.course_deg,
-                    speed_mps: trajectory.speed_at(time),
-                    node: trajectory.steered().and_then(|motion| node(motion, time)),
-                }
-            })
-            .collect(),
+        samples: samples(trajectory),
     }
+}
+
+pub(crate) fn samples(trajectory: &Trajectory) -> Vec<SampleDocument> {
+    trajectory
+        .sample_times(SAMPLE_STEP, MOST_SAMPLES)
+        .into_iter()
+        .map(|time| {
+            let mut pose = trajectory.pose_at(time);
+            if let Some(motion) = trajectory.steered() {
+                pose.heading = course(motion, time);
+            }
+            let at = start(pose, time);
+            SampleDocument {
+                t_s: at.t_s,
+                east_m: at.east_m,
+                north_m: at.north_m,
+                course_deg: at.course_deg,
+                speed_mps: trajectory.speed_at(time),
+                node: trajectory.steered().and_then(|motion| node(motion, time)),
+            }
+        })
+        .collect()
 }
 
 fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::encounter::{EncounterDocument, breaks};
 use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
 use super::plan::PlanDocument;
+use super::plan::departure::Departure;
 use crate::evaluation::{NOT_BY_THE_RULES, outcome_word};
 use crate::pipeline::Verdict;
 use crate::text::counted;
@@ -42,6 +43,9 @@ pub struct SuiteRunDocument {
     pub verified: bool,
     pub safe: bool,
     pub cost: Option<CostDocument>,
+    /// For texts alone.
+    #[serde(skip)]
+    pub departure: Option<Departure>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,
     #[serde(default)]
@@ -139,6 +143,7 @@ impl SuiteRunDocument {
             verified: plan.verified,
             safe: plan.is_safe(),
             cost: plan.cost.clone(),
+            departure: plan.departure(),
             encounters: plan.encounters.clone(),
             targets: Some(plan.targets.len()),
             search_stats: Some(plan.search_stats),

@@ -5,7 +5,8 @@ use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, veri
 use crate::document::{CollisionDocument, CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 use crate::obstacle::LAND;
-use crate::text::{signed, square_metres, tenths};
+use crate::report::plan::manoeuvre;
+use crate::text::{signed, significant, square_metres, tenths};
 
 pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
@@ -96,25 +97,25 @@ fn listed(values: impl Iterator<Item = Option<String>>) -> Styled {
 /// Builds one row per motion; in a sweep, with the accepted risk.
 pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let groups = groups(entries);
-    let header = "method, outcome, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
-                  clearance\n[m], risk, largest\nturn, nodes, time\n[ms], verified, safe, breaks";
+    let header = "method, outcome, manoeuvre, J\n[m²], arc J\n[m²], duration\n[s], delay\n[s], length\n[m], \
+                  clearance\n[m], risk, nodes, time\n[ms], verified, safe, breaks";
     let rows = groups.iter().map(|group| row(group));
-    let mut grid = Grid::new(header, 2..12, rows)
+    let mut grid = Grid::new(header, 3..12, rows)
         .breaking("method", 22)
         .breaking("breaks", 9);
     if entries.iter().any(|entry| entry.lower_bound.is_some()) {
-        grid.header.insert(3, "bound\n[m²]");
+        grid.header.insert(4, "bound\n[m²]");
         grid.numbers.end += 1;
         for (row, group) in grid.rows.iter_mut().zip(&groups) {
             let bound = group[0].lower_bound.map(|b| b.space_time_error_m2);
-            row.insert(3, or_dash(bound.map(square_metres)));
+            row.insert(4, or_dash(bound.map(square_metres)));
         }
     }
     if is_sweep(entries) {
-        grid.header.insert(2, "accepted\nrisk");
+        grid.header.insert(3, "accepted\nrisk");
         grid.numbers.end += 1;
         for (row, group) in grid.rows.iter_mut().zip(&groups) {
-            row.insert(2, plain(group[0].max_risk.to_string()));
+            row.insert(3, plain(group[0].max_risk.to_string()));
         }
     }
     grid
@@ -142,14 +143,14 @@ fn row(group: &[&EntryDocument]) -> Vec<Styled> {
     vec![
         plain(joined(&methods)),
         verdict(&entry.verdict),
+        or_dash(cost.map(|_| manoeuvre(entry.departure))),
         error_of(|c| Some(c.space_time_error_m2)),
         error_of(|c| c.space_time_error_arc_length_m2),
         figure(|c| c.duration_s, tenths),
         or_dash(cost.and_then(|c| c.delay_s).map(signed)),
-        figure(|c| c.length_m, |length| format!("{length:.0}")),
+        figure(|c| c.length_m, significant),
         or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
         figure(|c| c.max_risk, risk_figure),
-        or_dash(cost.map(|_| largest_turn(entry))),
         listed(group.iter().map(nodes)),
         listed(group.iter().map(|entry| entry.timing.map(milliseconds))),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
@@ -158,17 +159,6 @@ fn row(group: &[&EntryDocument]) -> Vec<Styled> {
             (entry.breaks.as_ref()).map(|rules| rules.iter().map(String::as_str).collect()),
         ),
     ]
-}
-
-/// Formats the largest turn, for example `S 39°` or `P 12°`.
-fn largest_turn(entry: &EntryDocument) -> String {
-    match (&entry.largest_turn_side, entry.largest_turn_deg) {
-        (Some(side), Some(degrees)) => {
-            let side = if side == "port" { 'P' } else { 'S' };
-            format!("{side} {degrees:.0}°")
-        }
-        _ => "none".to_owned(),
-    }
 }
 
 /// Remarks, one sentence each: the end of the interval of J, reasons for missing motions, and
@@ -288,7 +278,7 @@ mod tests {
             inapplicable: Vec::new(),
         };
         let header =
-            "method | outcome | J [m²] | clearance [m] | largest turn | verified | safe | breaks";
+            "method | outcome | manoeuvre | J [m²] | clearance [m] | verified | safe | breaks";
         let table = comparison_markdown(&empty);
         assert!(table.contains(&format!("| {header} |\n")), "{table}");
     }

@@ -7,8 +7,8 @@ use super::table::{
     Display, Grid, Styled, Tone, or_dash, painted, plain, verdict, verified, yes_or_no,
 };
 use crate::document::{
-    EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument, breaks,
-    in_brackets, met, passing, plan_lines, turn, verdict_parts,
+    Departure, EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument,
+    breaks, in_brackets, longest, met, passing, plan_lines, verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -28,10 +28,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
-    let header = "scenario, outcome, encounter, turn, passing, J\n[m²], delay\n[s], \
+    let header = "scenario, outcome, encounter, manoeuvre, passing, J\n[m²], delay\n[s], \
                   clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
     let rows = runs.iter().zip(row_names(runs));
-    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name)))
+    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name))).dropping("J")
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -86,7 +86,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         plain(printable(&name)),
         verdict(&run.verdict),
         or_dash(roles.or_else(|| run.search_stats.map(|_| "none".to_owned()))),
-        or_dash(cost.map(turn)),
+        or_dash(cost.map(|_| manoeuvre(run.departure))),
         or_dash(per_target(&passing).filter(|_| planned)),
         or_dash(cost.map(|c| square_metres(c.space_time_error_m2))),
         or_dash(cost.and_then(|c| c.delay_s).map(signed)),
@@ -98,6 +98,11 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
         yes_or_no(cost.map(|_| run.safe)),
     ]
+}
+
+/// The departure of a motion in brief.
+pub(super) fn manoeuvre(departure: Option<Departure>) -> String {
+    departure.map_or("none".to_owned(), |departure| departure.brief())
 }
 
 pub(super) fn milliseconds(timing: TimingDocument) -> String {
@@ -184,6 +189,8 @@ pub fn legs_text(plan: &PlanDocument, display: Display) -> String {
 }
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
+    let legs = plan.legs();
+    let longest = longest(&legs);
     let row = |(index, leg): (usize, PlannedLeg)| {
         let motion = &leg.motion;
         vec![
@@ -192,15 +199,14 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
             plain(tenths(motion.end_time())),
             plain(leg.course_figure()),
             plain(knots_figure(motion.speed)),
-            plain(format!("{:.0}", motion.length())),
+            plain(leg.length_figure(longest)),
             plain(leg.turn_words().unwrap_or("–".to_owned())),
             plain(leg.events.join("\n")),
         ]
     };
     let header =
         "leg, from\n[s], to\n[s], course\n[°], speed\n[kn], length\n[m], turn, what happens";
-    Grid::new(header, 0..6, plan.legs().into_iter().enumerate().map(row))
-        .breaking("what happens", 22)
+    Grid::new(header, 0..6, legs.into_iter().enumerate().map(row)).breaking("what happens", 22)
 }
 
 /// The note where no lower bound is found.

@@ -193,8 +193,8 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
         (
             "Off the plan",
             format!(
-                "at most {:.2} m, at {:.0} s, {} the tracking margin",
-                sailed.largest_off_plan_m,
+                "at most {} m, at {:.0} s, {} the tracking margin",
+                tenths(sailed.largest_off_plan_m),
                 sailed.largest_off_plan_t_s,
                 match sailed.within_tracking_margin {
                     true => "within",

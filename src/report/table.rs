@@ -14,12 +14,11 @@ const DETAILS: [&str; 9] = [
 ];
 
 /// Columns that a table drops next, in this order.
-const FURTHER: [&str; 7] = [
+const FURTHER: [&str; 6] = [
     "passing",
     "verified",
     "encounter",
-    "largest",
-    "turn",
+    "manoeuvre",
     "clearance",
     "J",
 ];
@@ -55,6 +54,8 @@ pub(super) struct Grid {
     pub rows: Vec<Vec<Styled>>,
     /// The columns whose lines may be broken where the table is too wide, and their least widths.
     breaking: Vec<(&'static str, usize)>,
+    /// A column that is dropped right after the details.
+    minor: Option<&'static str>,
 }
 
 impl Grid {
@@ -69,12 +70,19 @@ impl Grid {
             numbers,
             rows: rows.into_iter().collect(),
             breaking: Vec::new(),
+            minor: None,
         }
     }
 
     /// Allows lines of a column to be broken, to no less than this width, after those before.
     pub fn breaking(mut self, name: &'static str, least: usize) -> Self {
         self.breaking.push((name, least));
+        self
+    }
+
+    /// Drops a column before all others but the details.
+    pub fn dropping(mut self, name: &'static str) -> Self {
+        self.minor = Some(name);
         self
     }
 
@@ -94,7 +102,8 @@ impl Grid {
 
     /// The table without details.
     pub fn brief(self) -> Self {
-        DETAILS.iter().fold(self, |grid, name| grid.without(name))
+        let minor = self.minor;
+        (DETAILS.into_iter().chain(minor)).fold(self, |grid, name| grid.without(name))
     }
 
     /// Formats the table for a terminal. A table that is too wide breaks the lines of one column and
@@ -106,7 +115,8 @@ impl Grid {
             return self.brief().cards(display);
         }
         let mut grid = self;
-        for name in DETAILS.into_iter().chain(FURTHER) {
+        let minor = grid.minor;
+        for name in DETAILS.into_iter().chain(minor).chain(FURTHER) {
             grid = match grid.fitted(width, display) {
                 Ok(fitted) => return fitted.table(display).trim_fmt(),
                 Err(wide) => wide.without(name),

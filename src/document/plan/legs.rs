@@ -86,10 +86,26 @@ impl PlannedLeg {
         format!("{:03.0}", self.course_deg().round() % 360.0)
     }
 
+    /// Length in metres, with a decimal where the `longest` leg is short.
+    pub(crate) fn length_figure(&self, longest: f64) -> String {
+        let length = self.motion.length();
+        match longest < 100.0 {
+            true => tenths(length),
+            false => format!("{length:.0}"),
+        }
+    }
+
     /// True where own ship lies still, or moves too slowly for any log to show it.
     pub fn waits(&self) -> bool {
         self.motion.speed < STILL_MPS
     }
+}
+
+/// Length of the longest leg, metres.
+pub(crate) fn longest(legs: &[PlannedLeg]) -> f64 {
+    legs.iter()
+        .map(|leg| leg.motion.length())
+        .fold(0.0, f64::max)
 }
 
 impl PlanDocument {

@@ -55,7 +55,8 @@ fn log_filling(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     }
     let filling = LineStrips2D::new(lines)
         .with_colors([style::toward_background(style::LAND, 0.5)])
-        .with_radii([Radius::new_scene_units((0.75 * step) as f32)])
+        // each line covers the soft edges of its neighbours, else these are seen as streaks
+        .with_radii([Radius::new_scene_units(step as f32)])
         // below the grid
         .with_draw_order(1.0);
     rec.log_static(path(&[MAP, "land", "filling"]), &filling)

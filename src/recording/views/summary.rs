@@ -2,14 +2,14 @@
 
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
-use crate::document::{PlanDocument, TIME_LINE, breaks, headline, plan_lines};
+use crate::document::{PlanDocument, TIME_LINE, breaks, headline, longest, plan_lines};
 use crate::evaluation::Evaluation;
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::recording::canvas::{ShownMotion, ViewModel, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
-use crate::text::{broken, knots_figure};
+use crate::text::{broken, knots_figure, rounded, significant};
 
 /// Characters of a line that a window 1280 wide shows.
 const CELL_WIDTH: usize = 78;
@@ -38,14 +38,16 @@ pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String
 
 /// The legs of the plan as a table of markdown; `None` where it has none.
 pub fn legs(plan: &PlanDocument) -> Option<String> {
-    let rows = plan.legs().into_iter().flat_map(|leg| {
+    let legs = plan.legs();
+    let longest = longest(&legs);
+    let rows = legs.into_iter().flat_map(|leg| {
         let motion = &leg.motion;
         let cells = [
             clock(motion.start_time),
             clock(motion.end_time()),
             leg.course_figure(),
             knots_figure(motion.speed),
-            format!("{:.0}", motion.length()),
+            leg.length_figure(longest),
             leg.turn_words().unwrap_or("–".to_owned()),
         ];
         table_rows(cells, &leg.events.join("\n"), EVENT_WIDTH)
@@ -134,8 +136,8 @@ fn claim(model: &ViewModel) -> String {
     }
     let ships = run.scenario.targets.iter().filter(|t| t.ship().is_some());
     let margin = format!(
-        "so at least {:.0} m remain between the hulls, ",
-        run.scenario.own_ship.safety_margin
+        "so at least {} m remain between the hulls, ",
+        significant(run.scenario.own_ship.safety_margin)
     );
     let hulls = match ships.count() {
         0 => String::new(),
@@ -161,10 +163,10 @@ fn key(model: &ViewModel) -> String {
         "Chart: own ship is white, its plan yellow and thick where it is faster than desired, blue \
          and thin where it is slower; the desired trajectory is dashed. A target has a colour: \
          thick for its hard set, thin for the set with its ship domain. Thin lines ahead of ships \
-         are speed vectors of {:.0} s; dots on the tracks are every {} min; the grid has {:.0} m. \
+         are speed vectors of {:.0} s; dots on the tracks are every {} min; the grid has {} m. \
          Sets apply to own ship's centre: they include its hull and the margin.",
         vector_seconds(model),
         clock(super::chart::mark_step(model)),
-        super::chart::grid_spacing(model),
+        rounded(super::chart::grid_spacing(model)),
     )
 }

@@ -10,6 +10,7 @@ use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
+use crate::text::rounded;
 
 /// An alarm goes on where it is raised again within this many times between plans.
 const GOES_ON: f64 = 1.5;
@@ -101,10 +102,10 @@ fn key(model: &ClosedLoop) -> String {
          speed; yellow and thick is faster, blue and thin slower. Each target has a colour for its \
          true hull, its track, and thick for the hard set that the plan assumes; grey is the hull \
          that the plan assumes. Sets apply to own ship's centre. Speed vectors are of {:.0} s, \
-         dots every {:.0} s; the grid has {:.0} m.",
+         dots every {:.0} s; the grid has {} m.",
         ships::vector_seconds(&model.canvas),
         model.canvas.cursor_times.get(1).copied().unwrap_or(0.0),
-        chart::grid_spacing(&model.canvas),
+        rounded(chart::grid_spacing(&model.canvas)),
     )
 }
 

@@ -5,14 +5,15 @@ use std::collections::BTreeSet;
 use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    CollisionDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
-    TrackPointDocument, cost_of, finite, minimised, objective, position, timing,
+    CollisionDocument, Departure, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
+    TrackPointDocument, cost_of, departure, finite, minimised, objective, position, samples,
+    timing,
 };
 use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
 use crate::obstacle::LAND;
 use crate::pipeline::{Run, Verdict};
 use crate::scenario::Scenario;
-use crate::trajectory::{Segment, largest_alteration};
+use crate::trajectory::Segment;
 
 /// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
 /// steps.
@@ -51,7 +52,6 @@ impl EntryDocument {
     fn of(scenario: &Scenario, entry: &Entry) -> Self {
         let (run, motion) = (entry.run.as_deref(), entry.motion.as_ref());
         let plan = run.and_then(|run| run.planned.outcome.plan());
-        let trajectory = entry.trajectory();
         let verified = motion.is_some_and(|motion| motion.evaluation.verified());
         let max_risk = entry.candidate.max_risk;
         let largest_risk = entry.largest_risk();
@@ -63,8 +63,15 @@ impl EntryDocument {
             _ if max_risk > 0.0 && largest_risk > 0.0 => Verdict::Relaxed.word(),
             _ => "clear",
         };
-        let turn = trajectory
-            .and_then(|motion| largest_alteration(motion, scenario.own_ship.pose.heading));
+        let is_along_path = run.is_some_and(|run| run.planned.path_time.is_some());
+        let radius = scenario.own_ship.turning_radius;
+        let departure = entry.trajectory().and_then(|motion| {
+            departure(&samples(motion), &scenario.desired, radius, is_along_path)
+        });
+        let turn = match departure {
+            Some(Departure::Course { side, degrees, .. }) => Some((side, degrees)),
+            _ => None,
+        };
         let conduct = entry.conduct(scenario);
         let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
         let broken = broken.into_iter().map(str::to_owned).collect();
@@ -97,8 +104,9 @@ impl EntryDocument {
                 cost
             }),
             lower_bound: entry.lower_bound,
-            largest_turn_deg: turn.map(|turn| turn.degrees),
-            largest_turn_side: turn.map(|turn| turn.side.to_string()),
+            largest_turn_deg: turn.map(|(_, degrees)| degrees),
+            largest_turn_side: turn.map(|(side, _)| side.to_string()),
+            departure,
             breaks: (!conduct.is_empty()).then_some(broken),
             collision: collision(scenario, entry),
             search_stats: run.map(|run| run.planned.stats),

@@ -1,0 +1,294 @@
+//! Own ship's alteration in a few words: its greatest departure from the desired course, or where
+//! there is none from the desired speed.
+
+use super::PlanDocument;
+use crate::document::parts::SampleDocument;
+use crate::frame::{
+    Side, Vector, cross, deg_from_radians, heading_from_course_deg, heading_of, wrap,
+};
+use crate::text::{knots, significant};
+use crate::trajectory::{DesiredLeg, DesiredTrajectory};
+
+/// Degrees. A smaller departure from the desired course is steering.
+const COURSE_DEG: f64 = 5.0;
+
+/// Fraction of the desired speed. A smaller departure from it is none.
+const SPEED: f64 = 0.02;
+
+/// m/s. A slower ship lies still.
+const STILL_MPS: f64 = 1e-3;
+
+/// Greatest departure of a motion from the desired course, or else from the desired speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Departure {
+    /// The greatest one to the side on which a manoeuvre first departs by 5° or more, at `from_s`.
+    Course {
+        side: Side,
+        degrees: f64,
+        from_s: f64,
+    },
+    /// The longest wait, and the distance sailed before it.
+    Waits { for_s: f64, at_m: f64 },
+    /// Speed farthest from the desired one, and since when it is lower or higher.
+    Speed {
+        slower: bool,
+        speed_mps: f64,
+        from_s: f64,
+    },
+}
+
+impl Departure {
+    /// Side and degrees, with a wait its duration, or the speed.
+    pub fn brief(&self) -> String {
+        match *self {
+            Self::Course { side, degrees, .. } => format!("{side} {degrees:.0}°"),
+            Self::Waits { for_s, .. } => format!("waits {for_s:.0} s"),
+            Self::Speed {
+                slower, speed_mps, ..
+            } => {
+                let verb = if slower { "slows" } else { "speeds up" };
+                format!("{verb} to {}", knots(speed_mps))
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Departure {
+    /// [`Departure::brief`], and when or where.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let place = match *self {
+            Self::Course { from_s, .. } => format!("from {from_s:.0} s"),
+            Self::Waits { at_m, .. } => format!("at {} m", significant(at_m)),
+            Self::Speed { from_s, .. } => format!("at {from_s:.0} s"),
+        };
+        write!(f, "{} {place}", self.brief())
+    }
+}
+
+impl PlanDocument {
+    /// The plan's departure from its mission; `None` without a plan, or where it has none.
+    pub fn departure(&self) -> Option<Departure> {
+        let points = self.mission.waypoints.iter().map(|point| point.point());
+        let points: Vec<Vector> = points.collect();
+        let desired = DesiredTrajectory::new(&points, &self.mission.leg_speeds_mps).ok()?;
+        let radius = self.own_ship.turning_radius_m;
+        let samples = &self.trajectory.as_ref()?.samples;
+        departure(samples, &desired, radius, self.path_time.is_some())
+    }
+}
+
+/// Departure of a sampled motion from the desired trajectory. At a corner, every course between
+/// those of its legs is a desired one: within two turning `radius` in metres. A departure toward the
+/// desired path is the return from a manoeuvre. A motion along given paths departs in speed alone.
+pub(crate) fn departure(
+    samples: &[SampleDocument],
+    desired: &DesiredTrajectory,
+    radius: f64,
+    is_along_path: bool,
+) -> Option<Departure> {
+    let legs = desired.legs();
+    let turn = || turn(samples, legs, radius);
+    let turn = if is_along_path { None } else { turn() };
+    turn.or_else(|| wait(samples))
+        .or_else(|| change(samples, legs))
+}
+
+/// Index of the leg nearest to a place, metres along it, and metres from it, positive to port.
+fn nearest(legs: &[DesiredLeg], place: Vector) -> Option<(usize, f64, f64)> {
+    let of_leg = |(index, leg): (usize, &DesiredLeg)| {
+        let offset = place - leg.start;
+        let along = leg.direction.dot(&offset).clamp(0.0, leg.length);
+        let off = (offset - leg.direction * along).norm();
+        (index, along, off.copysign(cross(leg.direction, offset)))
+    };
+    let all = legs.iter().enumerate().map(of_leg);
+    all.min_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
+}
+
+fn turn(samples: &[SampleDocument], legs: &[DesiredLeg], radius: f64) -> Option<Departure> {
+    let mut greatest: Option<(Side, f64, f64)> = None;
+    // the side of the present departure, its start, and whether it is a return
+    let mut current: Option<(Side, f64, bool)> = None;
+    for sample in samples.iter().filter(|s| s.speed_mps > STILL_MPS) {
+        let place = Vector::new(sample.east_m, sample.north_m);
+        let (index, along, off) = nearest(legs, place)?;
+        let heading = heading_from_course_deg(sample.course_deg);
+        let from = |leg: &DesiredLeg| wrap(heading - heading_of(leg.direction));
+        let leg = &legs[index];
+        let mut turned = from(leg);
+        let before = index.checked_sub(1).filter(|_| along < 2.0 * radius);
+        let after = (leg.length - along < 2.0 * radius).then_some(index + 1);
+        for other in [before, after]
+            .into_iter()
+            .flatten()
+            .filter_map(|i| legs.get(i))
+        {
+            let (this, that) = (from(leg), from(other));
+            let corner = wrap(heading_of(other.direction) - heading_of(leg.direction));
+            let is_between = this.abs() + that.abs() <= corner.abs() + 1e-6;
+            let least = if that.abs() < turned.abs() {
+                that
+            } else {
+                turned
+            };
+            turned = if is_between { 0.0 } else { least };
+        }
+        let degrees = deg_from_radians(turned.abs());
+        let side = Side::of_turn(turned).filter(|_| degrees >= COURSE_DEG);
+        if side != current.map(|(side, ..)| side) {
+            let returns = off.abs() > 0.1 * radius && off * turned < 0.0;
+            current = side.map(|side| (side, sample.t_s, returns));
+        }
+        if let Some((side, from_s, false)) = current
+            && greatest.is_none_or(|(_, most, _)| degrees > most)
+        {
+            greatest = Some((side, degrees, from_s));
+        }
+    }
+    let (side, degrees, from_s) = greatest?;
+    Some(Departure::Course {
+        side,
+        degrees,
+        from_s,
+    })
+}
+
+fn wait(samples: &[SampleDocument]) -> Option<Departure> {
+    let mut longest: Option<(f64, f64)> = None;
+    let (mut sailed, mut waited) = (0.0, 0.0);
+    for pair in samples.windows(2) {
+        let (here, next) = (&pair[0], &pair[1]);
+        let lasts = next.t_s - here.t_s;
+        if here.speed_mps > STILL_MPS {
+            sailed += here.speed_mps * lasts;
+            waited = 0.0;
+        } else {
+            waited += lasts;
+            if longest.is_none_or(|(most, _)| waited > most) {
+                longest = Some((waited, sailed));
+            }
+        }
+    }
+    longest.map(|(for_s, at_m)| Departure::Waits { for_s, at_m })
+}
+
+fn change(samples: &[SampleDocument], legs: &[DesiredLeg]) -> Option<Departure> {
+    let mut greatest: Option<(f64, Departure)> = None;
+    let mut current: Option<(bool, f64)> = None;
+    // the speed of a sample holds from then on, so that of the last does not matter
+    for sample in samples.iter().take(samples.len().saturating_sub(1)) {
+        let place = Vector::new(sample.east_m, sample.north_m);
+        let desired = legs[nearest(legs, place)?.0].speed;
+        let ratio = sample.speed_mps / desired;
+        let slower = ratio < 1.0;
+        if (ratio - 1.0).abs() <= SPEED {
+            current = None;
+            continue;
+        }
+        let from_s = match current {
+            Some((same, from_s)) if same == slower => from_s,
+            _ => sample.t_s,
+        };
+        current = Some((slower, from_s));
+        let size = ratio.max(STILL_MPS).ln().abs();
+        if greatest.is_none_or(|(most, _)| size > most * (1.0 + SPEED)) {
+            let speed_mps = sample.speed_mps;
+            let change = Departure::Speed {
+                slower,
+                speed_mps,
+                from_s,
+            };
+            greatest = Some((size, change));
+        }
+    }
+    greatest.map(|(_, change)| change)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Samples of a motion from the origin: seconds, course in degrees, and speed, each until the
+    /// next.
+    fn sailed(parts: &[(u32, f64, f64)]) -> Vec<SampleDocument> {
+        let mut place = Vector::zeros();
+        let mut samples = Vec::new();
+        for (seconds, course_deg, speed_mps) in parts {
+            for _ in 0..*seconds {
+                samples.push(SampleDocument {
+                    t_s: samples.len() as f64,
+                    east_m: place.x,
+                    north_m: place.y,
+                    course_deg: *course_deg,
+                    speed_mps: *speed_mps,
+                    node: None,
+                });
+                place += crate::frame::direction(heading_from_course_deg(*course_deg)) * *speed_mps;
+            }
+        }
+        samples
+    }
+
+    fn found(points: &[(f64, f64)], parts: &[(u32, f64, f64)]) -> String {
+        let points: Vec<Vector> = points.iter().map(|(x, y)| Vector::new(*x, *y)).collect();
+        let speeds = vec![5.0; points.len() - 1];
+        let desired = DesiredTrajectory::new(&points, &speeds).expect("a path");
+        let found = departure(&sailed(parts), &desired, 30.0, false);
+        found.map_or("none".to_owned(), |found| found.to_string())
+    }
+
+    #[test]
+    fn the_greatest_departure_of_a_manoeuvre_counts_and_its_return_does_not() {
+        let east = [(0.0, 0.0), (2000.0, 0.0)];
+        for (parts, expected) in [
+            (vec![(100, 90.0, 5.0)], "none"),
+            (vec![(50, 90.0, 5.0), (50, 93.0, 5.0)], "none"),
+            // one degree to port first, and a return by more than the manoeuvre
+            (
+                vec![
+                    (9, 89.0, 5.0),
+                    (20, 120.0, 5.0),
+                    (9, 90.0, 5.0),
+                    (9, 20.0, 5.0),
+                ],
+                "starboard 30° from 9 s",
+            ),
+            // a smaller manoeuvre to port before
+            (
+                vec![
+                    (5, 80.0, 5.0),
+                    (5, 100.0, 5.0),
+                    (9, 90.0, 5.0),
+                    (30, 172.0, 5.0),
+                ],
+                "starboard 82° from 19 s",
+            ),
+            (
+                vec![(80, 90.0, 5.0), (30, 90.0, 2.5), (9, 90.0, 5.0)],
+                "slows to 4.9 kn at 80 s",
+            ),
+            (
+                vec![(40, 90.0, 5.0), (30, 90.0, 7.5), (9, 90.0, 5.0)],
+                "speeds up to 14.6 kn at 40 s",
+            ),
+            (
+                vec![(100, 90.0, 5.0), (104, 90.0, 0.0), (9, 90.0, 5.0)],
+                "waits 104 s at 500 m",
+            ),
+        ] {
+            assert_eq!(found(&east, &parts), expected);
+        }
+    }
+
+    #[test]
+    fn a_corner_of_the_mission_is_no_departure() {
+        let corner = [(0.0, 0.0), (500.0, 0.0), (500.0, -500.0)];
+        let around = [(95, 90.0, 5.0), (7, 135.0, 5.0), (60, 180.0, 5.0)];
+        assert_eq!(found(&corner, &around), "none");
+        let wide = [(95, 90.0, 5.0), (7, 135.0, 5.0), (60, 210.0, 5.0)];
+        assert_eq!(found(&corner, &wide), "starboard 30° from 102 s");
+        // out and back
+        let back = [(0.0, 0.0), (500.0, 0.0), (0.0, 1.0)];
+        assert_eq!(found(&back, &[(50, 120.0, 5.0)]), "starboard 30° from 0 s");
+    }
+}
