@@ -94,7 +94,8 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     let drawn = args.drawn.figure.as_ref().map(|path| {
         let title = format!("{}, {sets} sets", scenario.title);
         let options = args.drawn.options(&[], false);
-        let figure = assessment_figure(&situation, &query.sections, &options, &title);
+        let land = scenario.land.as_ref();
+        let figure = assessment_figure(&situation, land, &query.sections, &options, &title);
         match figure.and_then(|figure| figure.write(path)) {
             Ok(()) => output.wrote(path),
             Err(error) => return output.refuse(&error),

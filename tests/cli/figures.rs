@@ -44,7 +44,7 @@ fn titled(obstacles: &[Obstacle], speed: f64, times: &[f64], title: &str) -> Fig
         horizon: 300.0,
         obstacles,
     };
-    assessment_figure(&situation, times, &FigureOptions::default(), title).expect("drawn")
+    assessment_figure(&situation, None, times, &FigureOptions::default(), title).expect("drawn")
 }
 
 #[test]
@@ -180,11 +180,19 @@ fn figures_fit_the_columns_of_papers() {
         let svg = drawn(&format!(
             "plan {GIVE_WAY_FILE} --quiet --size {size} --figure"
         ));
-        for text in ["own ship", "target", "208.7 m, 2:03", ">closest approach<"] {
+        for text in ["own ship", "target", "209 m, 2:03", ">closest approach<"] {
             assert!(svg.contains(text), "{size} {text}");
         }
         assert_eq!(svg.matches(">Give-way<").count(), titles, "{size}");
     }
+    // panels below each other, and land below the sets
+    let compared = drawn(&format!(
+        "compare {GIVE_WAY_FILE} --quiet --size 85x120 --figure"
+    ));
+    assert!(compared.contains(">Distance [m]<"));
+    let assessed = "assess scenarios/sound/kronborg.toml --quiet --size 85x260 --figure";
+    let assessed = drawn(assessed);
+    assert!(assessed.contains(">land<") && assessed.contains("#d9cba3"));
     let refused = run(&format!("{GIVE_WAY} {file} --size 25x25")).failure();
     let error = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
     let least = error.split("at least ").nth(1).expect("a size");
@@ -220,7 +228,7 @@ fn panels_show_one_time_each() {
         assert_eq!(svg.matches(">East [m]<").count(), east, "{options}");
         assert_eq!(svg.matches(">North [m]<").count(), north, "{options}");
         assert_eq!(
-            svg.contains(">208.7 m<"),
+            svg.contains(">209 m<"),
             titles.contains(&"2:03"),
             "{options}"
         );

@@ -3,10 +3,12 @@
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::mark;
 use super::panel::window_around;
+use super::plan::{LAND, land_areas};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
+use crate::scenario::Land;
 use crate::study::assess::OwnSituation;
 
 /// Limit of the velocity panel as a multiple of the maximum speed.
@@ -21,17 +23,23 @@ const COLUMNS: usize = 2;
 /// Without times: the start, a third, two thirds and the end of the horizon.
 pub fn assessment_figure(
     situation: &OwnSituation,
+    land: Option<&Land>,
     times: &[f64],
     options: &FigureOptions,
     title: &str,
 ) -> Result<Figure, FigureError> {
     options.draw(situation.horizon, |style| {
-        let figure = Figure::new(COLUMNS, assessment_panels(situation, times, style));
+        let figure = Figure::new(COLUMNS, assessment_panels(situation, land, times, style));
         figure.titled(title)
     })
 }
 
-fn assessment_panels(situation: &OwnSituation, times: &[f64], style: &Style) -> Vec<Panel> {
+fn assessment_panels(
+    situation: &OwnSituation,
+    land: Option<&Land>,
+    times: &[f64],
+    style: &Style,
+) -> Vec<Panel> {
     let thirds: Vec<f64> = (0..4)
         .map(|i| situation.horizon * f64::from(i) / 3.0)
         .collect();
@@ -45,6 +53,8 @@ fn assessment_panels(situation: &OwnSituation, times: &[f64], style: &Style) -> 
     sections.line_key("own course held", OWN);
     name(&mut sections, situation);
     let window = sections.window();
+    let inside = sections.inside();
+    let areas = || land_areas(land, inside);
     let limit = FASTEST * situation.max_speed.max(situation.speed).max(1.0);
     let velocities = VelocityWindow {
         window: window_around([Vector::repeat(-limit), Vector::repeat(limit)], 0.0),
@@ -60,9 +70,15 @@ fn assessment_panels(situation: &OwnSituation, times: &[f64], style: &Style) -> 
             &velocities,
         ),
     ];
+    panels[0].plots.splice(0..0, areas());
+    if land.is_some() {
+        panels[0].area_key("land", LAND, 1.0);
+    }
     panels.extend(times.iter().map(|time| {
         let title = format!("Risk at {} s", seconds(*time));
         let mut panel = risk_panel(&title, targets, *time, window);
+        // above the colour of no risk
+        panel.plots.splice(1..1, areas());
         let now = start + velocity * *time;
         panel.curve(&[start, now], false, OWN_ON_FIELD);
         panel.plots.push(mark(now, field::OWN));
@@ -83,6 +99,10 @@ fn name(panel: &mut Panel, situation: &OwnSituation) {
     for target in situation.obstacles {
         let reach = |x: f64, y: f64| target.section(0.0).support(Vector::new(x, y));
         let east = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));
-        panel.note(target.name(), Vector::new(east, reach(0.0, 1.0) + gap));
+        panel.note(
+            target.name(),
+            Vector::new(east, reach(0.0, 1.0) + gap),
+            OWN.colour,
+        );
     }
 }

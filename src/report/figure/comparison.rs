@@ -200,7 +200,8 @@ fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
             panel.ship(&ship.hull, &ship.pose_at(*time), target_colour(index));
         }
         if panel.window().contains(place) {
-            panel.label(&[(shortened(&target.name, NAME_LETTERS), place)], true);
+            let name = shortened(&target.name, NAME_LETTERS);
+            panel.label(&[(name, place)], target_colour(index), true);
         }
     }
     for curve in curves

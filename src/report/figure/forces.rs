@@ -13,6 +13,9 @@ const YAW: Stroke = Stroke::solid("#d55e00", 1.8);
 /// Least span of a panel in its unit, so that rounding is not drawn in full size.
 const LEAST_SPAN: f64 = 0.01;
 
+/// Value from which on a panel has thousands of its unit.
+const THOUSANDS: f64 = 1e4;
+
 type Quantity = (&'static str, Stroke, fn(&ForceNode) -> f64);
 
 /// Builds panels for speeds, turn rate, forces and moment, because their units differ. Starboard
@@ -56,15 +59,25 @@ fn over_time(
             .map(|(time, value)| Vector::new(time, value))
             .collect()
     };
-    let curves: Vec<Vec<Vector>> = quantities
+    let mut curves: Vec<Vec<Vector>> = quantities
         .iter()
         .map(|(.., value)| points(*value))
         .collect();
+    let largest = curves
+        .iter()
+        .flatten()
+        .map(|p| p.y.abs())
+        .fold(0.0, f64::max);
+    let thousands = largest >= THOUSANDS;
+    if thousands {
+        curves.iter_mut().flatten().for_each(|p| p.y *= 1e-3);
+    }
+    let prefix = if thousands { "k" } else { "" };
     let shown = window_around(curves.iter().flatten().copied(), 0.0);
     let size = shown.size();
     let air = Vector::new(0.02 * size.x, 0.08 * size.y.max(LEAST_SPAN));
     let window = Window::new(shown.low - air, shown.high + air);
-    let axis = format!("{title} [{unit}]");
+    let axis = format!("{title} [{prefix}{unit}]");
     let mut panel = Panel::free(title.to_owned(), ["Time [s]", &axis], window);
     for ((label, stroke, _), points) in quantities.iter().zip(&curves) {
         panel.curve(points, false, *stroke);

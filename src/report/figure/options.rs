@@ -85,26 +85,37 @@ impl FigureOptions {
             return Ok(make(&style));
         };
         let pixels = size.map(|mm| mm * PIXELS_PER_MM);
-        let mut least = [0.0; 2];
-        let mut fits = true;
-        for _ in 0..2 {
-            let figure = make(&style).sized(style.area);
-            let (grid, frame) = (figure.grid().map(|count| count as f64), figure.frame());
-            let area = |size: [f64; 2], i: usize| {
-                let legend = [0.0, figure.legend_height(size[0])];
-                (size[i] - frame[i] - legend[i]) / grid[i]
-            };
-            least = [0, 1].map(|i| frame[i] + grid[i] * LEAST_AREA[i]);
-            least[1] += figure.legend_height(least[0]);
-            let found = [0, 1].map(|i| area(pixels, i));
-            fits = found[0] >= LEAST_AREA[0] && found[1] >= LEAST_AREA[1];
-            style.area = [0, 1].map(|i| found[i].max(LEAST_AREA[i]));
-        }
-        if !fits {
+        let most = make(&style).grid()[0];
+        let arranged = (1..=most).rev().map(|columns| {
+            let mut style = style.clone();
+            let mut least = [0.0; 2];
+            let mut found = LEAST_AREA;
+            for _ in 0..2 {
+                let figure = make(&style).in_columns(columns).sized(style.area);
+                let (grid, frame) = (figure.grid().map(|count| count as f64), figure.frame());
+                let area = |size: [f64; 2], i: usize| {
+                    let legend = [0.0, figure.legend_height(size[0])];
+                    (size[i] - frame[i] - legend[i]) / grid[i]
+                };
+                least = [0, 1].map(|i| frame[i] + grid[i] * LEAST_AREA[i]);
+                least[1] += figure.legend_height(least[0]);
+                found = [0, 1].map(|i| area(pixels, i));
+                style.area = [0, 1].map(|i| found[i].max(LEAST_AREA[i]));
+            }
+            let room = (found[0] / LEAST_AREA[0]).min(found[1] / LEAST_AREA[1]);
             let least = least.map(|pixels| (pixels / PIXELS_PER_MM).ceil());
+            (room, columns, style, least)
+        });
+        // the arrangement with the largest panels
+        let arranged: Vec<_> = arranged.collect();
+        let best = arranged.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, columns, style, _)) = best.filter(|(room, ..)| *room >= 1.0) else {
+            let least = arranged.iter().map(|(.., least)| *least).collect();
             return Err(FigureError::Size { found: size, least });
-        }
-        Ok(make(&style).with_size(style.area, pixels))
+        };
+        Ok(make(style)
+            .in_columns(*columns)
+            .with_size(style.area, pixels))
     }
 }
 

@@ -34,7 +34,7 @@ const TOP: [f64; 2] = [31.0, 8.0];
 const AXIS: f64 = 38.0;
 
 /// Letters of a title that fit above a panel.
-const LETTERS: usize = 58;
+pub(super) const LETTERS: usize = 58;
 
 /// Least pixels between two numbers of the lower axis, and of the left one.
 const TICKS: [f64; 2] = [44.0, 28.0];
@@ -59,10 +59,16 @@ const LEADER_PX: f64 = 14.0;
 const LEADER: Stroke = Stroke::solid("#555555", 0.6);
 
 /// Pixels that a label goes farther to keep off the frame, a text or ship, a filled area, a line.
-const COSTS: [f64; 4] = [1000.0, 300.0, 150.0, 28.0];
+const COSTS: [f64; 4] = [1000.0, 300.0, 60.0, 28.0];
 
 /// Cost in pixels of the next best position of a text.
 const NEXT: f64 = 20.0;
+
+/// Separates the colour of a note from its text, as the drawing library has black notes alone.
+pub(super) const COLOURED: char = '\0';
+
+/// Brightness of a text in the colour of a ship, as a fraction of it.
+const TEXT_SHADE: f64 = 0.75;
 
 /// Sides of a position in eighths of a circle from east, in order of preference.
 const SIDES: [usize; 8] = [2, 6, 0, 4, 1, 3, 7, 5];
@@ -215,10 +221,11 @@ impl Panel {
         }
     }
 
-    pub(super) fn note(&mut self, text: &str, at: Vector) {
-        let size = text_size(self.area);
-        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(size);
-        self.notes.push(note);
+    /// Writes a text in a darker shade of a colour.
+    pub(super) fn note(&mut self, text: &str, at: Vector, colour: &str) {
+        let text = format!("{}{COLOURED}{text}", shaded(colour));
+        let note = TextAnnotation::new(text, at.x, at.y);
+        self.notes.push(note.with_font_size(text_size(self.area)));
     }
 
     /// Metres of a pixel.
@@ -242,8 +249,14 @@ impl Panel {
 
     /// Adds one of some texts beside its position, where it covers least of what is there: the
     /// frame, texts and ships first, then filled areas, then lines. A text that is not `needed`
-    /// gives way to others, and in a small area to filled ones. Returns the position.
-    pub(super) fn label(&mut self, texts: &[(String, Vector)], needed: bool) -> Option<Vector> {
+    /// stands close to its position or nowhere; it gives way to others, and in a small area to
+    /// filled ones. Returns the position.
+    pub(super) fn label(
+        &mut self,
+        texts: &[(String, Vector)],
+        colour: &str,
+        needed: bool,
+    ) -> Option<Vector> {
         let (size, pixel) = (f64::from(text_size(self.area)), self.pixel());
         let places = texts.iter().enumerate().flat_map(|(index, (text, at))| {
             let half = Vector::new(0.5 * text_width(text, self.area), 0.5 * size);
@@ -288,7 +301,7 @@ impl Panel {
         let best = places.min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let (far, index, best) = best.filter(|place| {
             let free = if is_small(self.area) { 3 } else { 2 };
-            let near = free < 3 || place.0 <= LEADER_PX;
+            let near = place.0 <= LEADER_PX;
             needed || (near && covers(place)[..free].iter().all(|count| *count == 0))
         })?;
         if let Some(leader) = leader(far, index, &best) {
@@ -300,7 +313,7 @@ impl Panel {
         self.fill_hull(&around, "#ffffff", 0.6);
         // a note is above its position
         let (text, at) = &texts[index];
-        self.note(text, best.center() - Vector::new(0.0, size * pixel));
+        self.note(text, best.center() - Vector::new(0.0, size * pixel), colour);
         self.taken.push(best);
         Some(*at)
     }
@@ -390,6 +403,14 @@ pub(super) fn round_step(least: f64) -> f64 {
     steps.iter().find(fits).copied().unwrap_or(10.0 * power)
 }
 
+/// A darker shade of a colour `#rrggbb`.
+fn shaded(colour: &str) -> String {
+    let part = |at: usize| u8::from_str_radix(colour.get(at..at + 2)?, 16).ok();
+    let shade = |part: Option<u8>| (TEXT_SHADE * f64::from(part.unwrap_or(0))) as u8;
+    let [red, green, blue] = [1, 3, 5].map(|at| shade(part(at)));
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
 /// True where a line runs through a box.
 fn crosses(line: &[Vector], place: &Window) -> bool {
     let Window { low, high } = *place;
@@ -439,7 +460,7 @@ mod tests {
         let mut panel = panel();
         for (at, count) in [(Vector::new(500.0, 400.0), 6), (Vector::new(2.0, 2.0), 2)] {
             for k in 0..count {
-                panel.label(&[(format!("{k}00 s"), at)], true);
+                panel.label(&[(format!("{k}00 s"), at)], "#000000", true);
             }
         }
         let taken = &panel.taken;
@@ -461,7 +482,11 @@ mod tests {
         ];
         let corners = corners.map(|(x, y)| Vector::new(x, y));
         panel.fill_set(&corners, "#000000", 0.5);
-        panel.label(&[("600 s".to_owned(), Vector::new(470.0, 380.0))], true);
+        panel.label(
+            &[("600 s".to_owned(), Vector::new(470.0, 380.0))],
+            "#000000",
+            true,
+        );
         assert!(panel.taken[0].part_of(&panel.filled[0]).is_empty());
     }
 
@@ -471,7 +496,11 @@ mod tests {
         for line in [ends, ends.map(|p| Vector::new(p.y, p.x))] {
             let mut panel = panel();
             panel.curve(&line, false, Stroke::solid("#000000", 1.0));
-            panel.label(&[("600 s".to_owned(), 0.5 * (line[0] + line[1]))], true);
+            panel.label(
+                &[("600 s".to_owned(), 0.5 * (line[0] + line[1]))],
+                "#000000",
+                true,
+            );
             assert!(!crosses(&line, &panel.taken[0]));
             assert!(crosses(&line, &Window::at(line[1]).grown(1.0)));
         }

@@ -5,7 +5,7 @@ use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
 use super::outline::{area, curve, sampled_boundary};
-use super::panel::{AREA, window_around};
+use super::panel::{AREA, LETTERS, window_around};
 use super::path_time::{run_panel, target_colour};
 use super::render::shortened;
 use super::sections::{PLAN, minutes, sections_beside};
@@ -17,7 +17,7 @@ use crate::obstacle::Obstacle;
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
 use crate::scenario::{Land, Scenario};
-use crate::text::tenths;
+use crate::text::significant;
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
 
@@ -33,8 +33,10 @@ const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
 
 pub(super) const OTHER_SETS: Stroke = Stroke::dashed("#777777", 0.8);
 
-/// Opacity of a filled set.
+/// Opacity of a filled set, of the hard set in it, and of both.
 pub(super) const FILLED: f64 = 0.25;
+const HARD: f64 = 0.35;
+const BOTH: f64 = 1.0 - (1.0 - FILLED) * (1.0 - HARD);
 
 /// Margin of a chart, and the reach in which it shows sets, as fractions of own ship's tracks.
 const AIR: f64 = 0.07;
@@ -155,12 +157,14 @@ pub(in crate::report) fn plan_panels(
 ) -> Vec<Panel> {
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
-    let mut panels = vec![chart(
-        &document::verdict_line(document),
-        run,
-        style,
-        Vec::new(),
-    )];
+    let mut title = document::verdict_line(document);
+    if let Some(departure) = document.departure() {
+        let headlines = [departure.to_string(), departure.brief()];
+        let mut headlines = headlines.map(|text| format!("{title}: {text}")).into_iter();
+        let fits = |headline: &String| headline.chars().count() <= LETTERS;
+        title = headlines.find(fits).unwrap_or(title);
+    }
+    let mut panels = vec![chart(&title, run, style, Vec::new())];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(motion));
     }
@@ -210,9 +214,12 @@ fn traffic(run: &Run, style: &Style) -> Traffic {
         Some(trajectory) => trajectory.sample_times(STEP, MOST_POINTS),
         None => vec![0.0, end],
     };
-    let obstacles: Vec<&Obstacle> = run.obstacles().collect();
-    let targets = scenario.targets.iter().zip(&obstacles);
-    let targets = targets.map(|(target, obstacle)| Charted {
+    let sections = |set: &Obstacle| -> Vec<Vec<Vector>> {
+        let section = |time: &f64| sampled_boundary(&set.section(*time));
+        times.iter().map(section).collect()
+    };
+    let targets = scenario.targets.iter().zip(&run.targets);
+    let targets = targets.map(|(target, sets)| Charted {
         name: target.name.clone(),
         hull: target.ship().map(|ship| ship.hull),
         track: sampled
@@ -222,9 +229,11 @@ fn traffic(run: &Run, style: &Style) -> Traffic {
         poses: (times.iter())
             .map(|time| target.ship().map(|ship| ship.pose_at(*time)))
             .collect(),
-        areas: (times.iter())
-            .map(|time| sampled_boundary(&obstacle.section(*time)))
-            .collect(),
+        areas: sections(&sets.obstacle),
+        hard: match sets.obstacle.sets() == sets.sets.hard.sets() {
+            true => Vec::new(),
+            false => sections(&sets.sets.hard),
+        },
     });
     let targets: Vec<Charted> = targets.collect();
     let pose = |time: &f64| trajectory.map(|t| t.pose_at(*time));
@@ -233,7 +242,7 @@ fn traffic(run: &Run, style: &Style) -> Traffic {
             pose(&passage.tcpa)?.position,
             target.position_at(passage.tcpa),
         ];
-        Some((ends, format!("{} m", tenths(passage.dcpa))))
+        Some((ends, format!("{} m", significant(passage.dcpa))))
     });
     Traffic {
         own: times.iter().filter_map(pose).collect(),
@@ -258,6 +267,8 @@ pub(super) struct Charted {
     pub poses: Vec<Option<Pose>>,
     /// The boundary of its set at each of the times; empty without one.
     pub areas: Vec<Vec<Vector>>,
+    /// The boundary of its hard set at each of the times; empty where the set is the hard one.
+    pub hard: Vec<Vec<Vector>>,
 }
 
 impl Charted {
@@ -317,6 +328,9 @@ fn shown(scenario: &Scenario, style: &Style, traffic: &Traffic) -> Window {
     window_around(shown, AIR)
 }
 
+/// Colour and name of a ship, and its texts with their places.
+type Labelled = (&'static str, String, Vec<(String, Vector)>);
+
 /// Draws the mission, land, the targets and own ship, with the times beside the ships; in a panel
 /// of one time, at that one alone. `others` are above the sets and below own ship.
 pub(super) fn traffic_chart(
@@ -341,6 +355,9 @@ pub(super) fn traffic_chart(
             // sets of other times are no place that own ship has to avoid at this one
             if k == filled {
                 panel.fill_set(area, colour, FILLED);
+                if let Some(hard) = target.hard.get(k) {
+                    panel.fill_hull(hard, colour, HARD);
+                }
             } else if outlined {
                 panel
                     .plots
@@ -370,7 +387,7 @@ pub(super) fn traffic_chart(
         true => String::new(),
         false => minutes(traffic.times[k]),
     };
-    let mut ships: Vec<(String, Vec<(String, Vector)>)> = Vec::new();
+    let mut ships: Vec<Labelled> = Vec::new();
     let mut places = Vec::new();
     for (k, pose) in traffic.own.iter().enumerate() {
         if instants.contains(&k) && window.contains(pose.position) {
@@ -380,7 +397,7 @@ pub(super) fn traffic_chart(
     }
     let again = only.is_some() && style.is_small() && instants.start > 0;
     let name = if again { "" } else { "own ship" };
-    ships.push((name.to_owned(), places));
+    ships.push((PLANNED.colour, name.to_owned(), places));
     let mut outside: Vec<(Stroke, String)> = Vec::new();
     for (index, target) in traffic.targets.iter().enumerate() {
         let name = shortened(&target.name, NAME_LETTERS);
@@ -400,7 +417,8 @@ pub(super) fn traffic_chart(
         // small charts of one time have each name once
         let seen = |k: usize| target.place(k).is_some_and(|place| window.contains(place));
         let again = only.is_some() && style.is_small() && (0..instants.start).any(seen);
-        ships.push((if again { String::new() } else { name }, places));
+        let name = if again { String::new() } else { name };
+        ships.push((target_colour(index), name, places));
     }
     if let Some((ends, apart)) = closest {
         let text = match only.is_some() {
@@ -408,24 +426,30 @@ pub(super) fn traffic_chart(
             false => format!("{apart}, {}", minutes(traffic.times[filled])),
         };
         let middle = 0.5 * (ends[0] + ends[1]);
-        panel.label(&[(text.clone(), middle), (text, ends[0])], true);
+        panel.label(
+            &[(text.clone(), middle), (text, ends[0])],
+            CLOSEST.colour,
+            true,
+        );
     }
     // names first
     let mut labelled: Vec<Vector> = Vec::new();
-    for (name, places) in ships.iter().filter(|(name, _)| !name.is_empty()) {
+    for (colour, name, places) in ships.iter().filter(|(_, name, _)| !name.is_empty()) {
         let named = |(time, place): &(String, Vector)| match time.is_empty() {
             true => (name.clone(), *place),
             false => (format!("{name}, {time}"), *place),
         };
         let named: Vec<(String, Vector)> = places.iter().map(named).collect();
-        labelled.extend(panel.label(&named, true));
+        labelled.extend(panel.label(&named, colour, true));
     }
     // a ship that hardly moves has one label, own ship first
     let apart = LABELS_APART * window.size().x;
-    for (time, place) in ships.into_iter().flat_map(|(_, places)| places) {
-        if !time.is_empty() && labelled.iter().all(|p| (p - place).norm() > apart) {
-            panel.label(&[(time, place)], !style.times.is_empty());
-            labelled.push(place);
+    for (colour, _, places) in ships {
+        for (time, place) in places {
+            if !time.is_empty() && labelled.iter().all(|p| (p - place).norm() > apart) {
+                panel.label(&[(time, place)], colour, !style.times.is_empty());
+                labelled.push(place);
+            }
         }
     }
     if !traffic.track.is_empty() {
@@ -452,10 +476,13 @@ pub(super) fn traffic_chart(
     if has_sets(filled) {
         let label = match closest {
             _ if only.is_some() => "sets".to_owned(),
-            Some(_) => "sets at that time".to_owned(),
+            Some(_) => "sets at the closest approach".to_owned(),
             None => format!("sets at {}", minutes(traffic.times[filled])),
         };
         panel.area_key(&label, colour, FILLED);
+        if traffic.targets.iter().any(|target| !target.hard.is_empty()) {
+            panel.area_key("hard sets", colour, BOTH);
+        }
         if outlined && traffic.times.len() > 1 {
             panel.line_key("sets at other times", OTHER_SETS);
         }

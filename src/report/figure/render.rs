@@ -12,7 +12,7 @@ use kuva::render::figure::Figure as Canvas;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 use super::Panel;
-use super::panel::{AREA, Key, text_size, text_width};
+use super::panel::{AREA, COLOURED, Key, text_size, text_width};
 use crate::report::{WriteError, write_atomically};
 
 /// Dots per inch: of a PNG unless asked otherwise, of SVG pixels, of PDF points.
@@ -90,14 +90,14 @@ pub enum FigureError {
     },
     /// A size in millimetres that leaves no room between the axes.
     #[error(
-        "--size: found {}x{} mm; allowed: at least {}x{} mm for this figure",
-        found[0], found[1], least[0], least[1]
+        "--size: found {}x{} mm; allowed: at least {} mm for this figure",
+        found[0], found[1], sizes(least)
     )]
     Size {
         /// The size.
         found: [f64; 2],
-        /// The least size.
-        least: [f64; 2],
+        /// The least size of each arrangement of the panels.
+        least: Vec<[f64; 2]>,
     },
     /// Too many pixels.
     #[error(
@@ -111,6 +111,13 @@ pub enum FigureError {
     /// Writing failed.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+fn sizes(all: &[[f64; 2]]) -> String {
+    let sizes = all
+        .iter()
+        .map(|[width, height]| format!("{width}x{height}"));
+    sizes.collect::<Vec<_>>().join(" or ")
 }
 
 /// Panels in rows of `columns`, with an optional title.
@@ -200,6 +207,12 @@ impl Figure {
             size: Some(size),
             ..self.sized(area)
         }
+    }
+
+    /// Arranges the panels in at most as many columns.
+    pub(super) fn in_columns(self, most: usize) -> Self {
+        let columns = self.columns.min(most);
+        Self { columns, ..self }
     }
 
     /// Columns and rows.
@@ -311,6 +324,7 @@ impl Figure {
             canvas = canvas.with_row_height(i, top + area[1] + below);
         }
         let mut scene = canvas.render();
+        scene.elements.iter_mut().for_each(colour_note);
         legend.into_iter().for_each(|part| scene.add(part));
         [scene.width, scene.height] = [width, height];
         scene
@@ -360,6 +374,15 @@ impl Figure {
             }
         };
         Ok(write_atomically(file, &bytes)?)
+    }
+}
+
+/// Gives a note its colour.
+fn colour_note(part: &mut Primitive) {
+    if let Primitive::Text { content, color, .. } = part
+        && let Some((shade, text)) = content.split_once(COLOURED)
+    {
+        (*color, *content) = (Some(shade.into()), text.to_owned());
     }
 }
 

@@ -6,7 +6,7 @@ use crate::document::{SimulatedTargetDocument, SimulationDocument};
 use crate::frame::{Pose, Vector};
 use crate::report::simulation::headline;
 use crate::scenario::Scenario;
-use crate::text::tenths;
+use crate::text::significant;
 
 /// Most instants after the start at which hulls are drawn.
 const INSTANTS: f64 = 6.0;
@@ -81,6 +81,7 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
                 })
                 .collect(),
         },
+        hard: Vec::new(),
     });
     let closest = nearest.and_then(|target| {
         let time = target.least_clearance_t_s;
@@ -88,7 +89,7 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
         let apart = target
             .least_clearance_m
             .filter(|_| target.contact_t_s.is_none());
-        let apart = apart.map_or("CONTACT".to_owned(), |m| format!("{} m", tenths(m)));
+        let apart = apart.map_or("CONTACT".to_owned(), |m| format!("{} m", significant(m)));
         Some((ends, apart))
     });
     Traffic {

@@ -75,7 +75,7 @@ fn a_figure_shows_the_closest_approach_and_ships_at_round_times() {
     let time = number(&least["least_clearance_t_s"]);
     let whole = time.round() as u32;
     let at = format!("{}:{:02}", whole / 60, whole % 60);
-    let closest = format!(">{apart:.1} m, {at}<");
+    let closest = format!(">{apart:.0} m, {at}<");
     let words = [">sailed<", ">own ship, 0:00<", ">target, 0:00<", ">3:00<"];
     for label in words
         .into_iter()
