@@ -24,8 +24,8 @@ pub(super) struct Route {
 
 impl Route {
     /// Reads a file. The speed of a leg is that of the schedule at the waypoint where it ends, else
-    /// the highest that the leg allows. Radii, dates and everything else are left out; a stay is a
-    /// fault, as a desired trajectory does not wait.
+    /// the highest that the leg allows. Radii and everything else are left out, and dates, which only
+    /// must not run backwards. A stay is a fault, as a desired trajectory does not wait.
     pub fn read(file: &Path) -> Result<Self, InputError> {
         let text = read_text(file, limits::FILE_MEBIBYTES, "a route file")?;
         Self::parse(&text).map_err(|faults| InputError::faults(file, faults))
@@ -107,6 +107,9 @@ fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<
         .iter()
         .flat_map(|first| SCHEDULES.map(|kind| first.take(kind)))
     {
+        if let Some(kind) = kind.as_ref() {
+            refuse_backward(kind, waypoints);
+        }
         for element in kind.iter().flat_map(|kind| kind.all("scheduleElement")) {
             let at = element.attribute("waypointId");
             if let Some(at) = at.filter(|at| waypoints.iter().all(|w| id(Some(w)) != Some(at))) {
@@ -130,6 +133,31 @@ fn planned_speeds<'a>(root: &Xml<'a>, waypoints: &[Xml<'a>]) -> Option<BTreeMap<
         }
     }
     Some(speeds)
+}
+
+/// Refuses times of arrival and departure that run backwards along the route. Those that are not in
+/// UTC, with a Z at the end, are not compared.
+fn refuse_backward(kind: &Xml, waypoints: &[Xml]) {
+    let elements: Vec<Xml> = kind.all("scheduleElement").collect();
+    let mut last = "";
+    for waypoint in waypoints {
+        let id = waypoint.attribute("id");
+        let of_it = |element: &&Xml| id.is_some() && element.attribute("waypointId") == id;
+        for element in elements.iter().filter(of_it) {
+            for time in ["eta", "etd"].map(|name| element.attribute(name)) {
+                let utc = |time: &&str| time.ends_with('Z') && time.get(10..11) == Some("T");
+                let Some(time) = time.filter(utc).and_then(|time| time.get(..19)) else {
+                    continue;
+                };
+                if time < last {
+                    let found = format_args!("{} after {}", abbreviated(time), abbreviated(last));
+                    let allowed = "times that do not run backwards along the route";
+                    return element.fault(found, allowed);
+                }
+                last = time;
+            }
+        }
+    }
 }
 
 /// True for a stay of any length: a time of day, the duration of RTZ 1.2, or what cannot be read.
@@ -195,6 +223,7 @@ mod tests {
         id="9" | id="3" | 8 | the id of a waypoint before
         lat="59.00" | lat=" 99 " | 6 | position: found
         waypointId="9" | waypointId="8" | 16 | scheduleElement: found waypointId "8"
+        waypointId="4" speed="6" | waypointId="4" eta="2026-05-01T07:59:59Z" | 13 | found "2026-05-01T07:59:59" after
         version="1.1" | version="2.0" | 2 | route: found version "2.0"
         route | track | 2 | the element "track"
     "#;
