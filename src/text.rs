@@ -132,7 +132,10 @@ pub(crate) fn tenths(value: f64) -> String {
 
 /// Formats three significant digits, or all before the decimal point.
 pub(crate) fn significant(value: f64) -> String {
-    format!("{value:.*}", decimals(value).max(0) as usize)
+    match value.abs() < 0.95 {
+        true => tenths(value),
+        false => format!("{value:.*}", decimals(value).max(0) as usize),
+    }
 }
 
 /// Decimals of three significant digits; a value near zero has one.
@@ -213,7 +216,7 @@ mod tests {
             "-3.1", "1.0", "0.944", "-0.0432", "0.0043", "0.0", "0.0", "12.0",
         ];
         assert_eq!(values.map(tenths), expected);
-        let values = [1953.4, 225.2, 64.04, 2.284, 0.0432, 0.0, f64::NAN];
+        let values = [1953.4, 225.2, 64.04, 2.284, 0.0432, 1e-5, f64::NAN];
         let expected = ["1953", "225", "64.0", "2.28", "0.0432", "0.0", "NaN"];
         assert_eq!(values.map(significant), expected);
     }
