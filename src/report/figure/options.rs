@@ -110,7 +110,8 @@ impl FigureOptions {
         let arranged: Vec<_> = arranged.collect();
         let best = arranged.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, columns, style, _)) = best.filter(|(room, ..)| *room >= 1.0) else {
-            let least = arranged.iter().map(|(.., least)| *least).collect();
+            let mut least: Vec<_> = arranged.iter().map(|(.., least)| *least).collect();
+            least.dedup();
             return Err(FigureError::Size { found: size, least });
         };
         Ok(make(style)
