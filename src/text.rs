@@ -134,14 +134,19 @@ pub(crate) fn tenths(value: f64) -> String {
 pub(crate) fn significant(value: f64) -> String {
     match value.abs() < 0.95 {
         true => tenths(value),
-        false => format!("{value:.*}", decimals(value).max(0) as usize),
+        false => short_numbers(&format!("{value:.*}", decimals(value).max(0) as usize)),
     }
 }
 
 /// Decimals of three significant digits; a value near zero has one.
 fn decimals(value: f64) -> i32 {
-    match value.abs().log10().floor() {
-        power if power >= f64::from(-DECIMALS) - 1.0 => (2 - power as i32).min(DECIMALS),
+    // the exponent of the rounded value: 9.996 has that of 10.0
+    let rounded = format!("{value:.2e}");
+    let power = rounded
+        .split_once('e')
+        .and_then(|(_, p)| p.parse::<i32>().ok());
+    match power {
+        Some(power) if power >= -DECIMALS - 1 => (2 - power).min(DECIMALS),
         _ => 1,
     }
 }

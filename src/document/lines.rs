@@ -371,11 +371,11 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
         "R6" => format!("did not hold its course{hold}"),
         name => format!("violated {name}"),
     };
-    // avoids a negative zero; rounded up, as a violation is more than nothing
+    // avoids a negative zero; a violation is more than nothing, so that none reads 0
     let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
     let short = match monitor.unit.as_str() {
         _ if short == 0.0 => String::new(),
-        "m" if short < 1.0 => format!(", missed by {} m", tenths(short)),
+        "m" if short < 1.0 => format!(", missed by {} m", tenths(short.max(5e-5))),
         "m" => format!(", missed by {:.1} m", 0.1 * (10.0 * short).ceil()),
         "deg" => format!(", missed by {:.0}°", short.ceil()),
         unit => format!(", missed by {:.0} {unit}", short.ceil()),

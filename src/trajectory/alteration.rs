@@ -7,7 +7,7 @@ use crate::frame::{Side, deg_from_radians};
 const LEAST_TURN_DEG: f64 = 0.5;
 
 /// Degrees: an alteration from which on own ship departs from its course.
-const DEPARTURE_DEG: f64 = 5.0;
+pub(crate) const DEPARTURE_DEG: f64 = 5.0;
 
 /// Alteration of course to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]

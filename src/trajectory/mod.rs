@@ -8,7 +8,7 @@ mod network;
 mod segment;
 mod steered;
 
-pub(crate) use alteration::{Alteration, first_alteration};
+pub(crate) use alteration::{Alteration, DEPARTURE_DEG, first_alteration};
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;

@@ -381,10 +381,8 @@ fn documents_of_rows_with_a_fault_are_kept() {
     let outside = parts[0].rows.iter().filter(outside).count();
     assert!(outside > 0);
     assert_eq!(summary["all"]["measured_outside"]["count"], outside);
-    assert_eq!(
-        summary["all"]["timing"]["late"]["exact"][0].as_f64() > Some(0.0),
-        sum("late") > 0
-    );
+    let late = &summary["all"]["timing"]["late"];
+    assert_eq!(late["count"], sum("late"));
     assert_eq!(summary["strata"][0]["rows"], 20);
     assert_eq!(summary["classes"][2]["name"], "scenario");
     let text = stdout(&run(&format!("campaign summarise {folder}/out")).success());
@@ -512,8 +510,10 @@ fn an_interrupted_estimate_says_how_many_replicas_it_has() {
     says(&said, "interrupted before two replicas had ended");
     assert_eq!(none, "");
     let (found, said) = interrupted(&format!("{rare} --trajectories 10"));
-    // a slow machine has none either
-    if !found.is_empty() {
+    // a slow machine has none either, and says so
+    if found.is_empty() {
+        says(&said, "interrupted before two replicas had ended");
+    } else {
         let found: serde_json::Value = serde_json::from_str(&found).expect("a document");
         let ended = found["replicas"].as_array().expect("a list").len();
         says(

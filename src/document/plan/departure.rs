@@ -2,26 +2,25 @@
 //! there is none from the desired speed.
 
 use super::PlanDocument;
+use super::legs::STILL_MPS;
 use crate::document::parts::SampleDocument;
 use crate::frame::{
     Side, Vector, cross, deg_from_radians, heading_from_course_deg, heading_of, wrap,
 };
 use crate::text::{knots, significant};
-use crate::trajectory::{DesiredLeg, DesiredTrajectory};
-
-/// Degrees. A smaller departure from the desired course is steering.
-const COURSE_DEG: f64 = 5.0;
+use crate::trajectory::{DEPARTURE_DEG, DesiredLeg, DesiredTrajectory};
 
 /// Fraction of the desired speed. A smaller departure from it is none.
 const SPEED: f64 = 0.02;
 
-/// m/s. A slower ship lies still.
-const STILL_MPS: f64 = 1e-3;
+/// Weight of time beside place, as a fraction of the desired speed. It decides between legs that
+/// cover the same ground.
+const TIME_WEIGHT: f64 = 0.1;
 
 /// Greatest departure of a motion from the desired course, or else from the desired speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Departure {
-    /// The greatest one to the side on which a manoeuvre first departs by 5° or more, at `from_s`.
+    /// The greatest one of 5° or more that does not begin toward the path, and its start.
     Course {
         side: Side,
         degrees: f64,
@@ -59,7 +58,7 @@ impl std::fmt::Display for Departure {
         let place = match *self {
             Self::Course { from_s, .. } => format!("from {from_s:.0} s"),
             Self::Waits { at_m, .. } => format!("at {} m", significant(at_m)),
-            Self::Speed { from_s, .. } => format!("at {from_s:.0} s"),
+            Self::Speed { from_s, .. } => format!("from {from_s:.0} s"),
         };
         write!(f, "{} {place}", self.brief())
     }
@@ -86,32 +85,35 @@ pub(crate) fn departure(
     radius: f64,
     is_along_path: bool,
 ) -> Option<Departure> {
-    let legs = desired.legs();
-    let turn = || turn(samples, legs, radius);
+    let turn = || turn(samples, desired, radius);
     let turn = if is_along_path { None } else { turn() };
     turn.or_else(|| wait(samples))
-        .or_else(|| change(samples, legs))
+        .or_else(|| change(samples, desired))
 }
 
-/// Index of the leg nearest to a place, metres along it, and metres from it, positive to port.
-fn nearest(legs: &[DesiredLeg], place: Vector) -> Option<(usize, f64, f64)> {
-    let of_leg = |(index, leg): (usize, &DesiredLeg)| {
-        let offset = place - leg.start;
-        let along = leg.direction.dot(&offset).clamp(0.0, leg.length);
-        let off = (offset - leg.direction * along).norm();
-        (index, along, off.copysign(cross(leg.direction, offset)))
-    };
-    let all = legs.iter().enumerate().map(of_leg);
-    all.min_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
+/// Index of the desired leg at a sample.
+fn leg_at(desired: &DesiredTrajectory, sample: &SampleDocument) -> usize {
+    let place = Vector::new(sample.east_m, sample.north_m);
+    let weight = TIME_WEIGHT * desired.legs()[0].speed;
+    desired.nearest(place, sample.t_s, weight * weight).leg
 }
 
-fn turn(samples: &[SampleDocument], legs: &[DesiredLeg], radius: f64) -> Option<Departure> {
+/// Metres along a leg, and metres from it, positive to port.
+fn place_on(leg: &DesiredLeg, sample: &SampleDocument) -> (f64, f64) {
+    let offset = Vector::new(sample.east_m, sample.north_m) - leg.start;
+    let along = leg.direction.dot(&offset).clamp(0.0, leg.length);
+    let off = (offset - leg.direction * along).norm();
+    (along, off.copysign(cross(leg.direction, offset)))
+}
+
+fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -> Option<Departure> {
+    let legs = desired.legs();
     let mut greatest: Option<(Side, f64, f64)> = None;
     // the side of the present departure, its start, and whether it is a return
     let mut current: Option<(Side, f64, bool)> = None;
     for sample in samples.iter().filter(|s| s.speed_mps > STILL_MPS) {
-        let place = Vector::new(sample.east_m, sample.north_m);
-        let (index, along, off) = nearest(legs, place)?;
+        let index = leg_at(desired, sample);
+        let (along, off) = place_on(&legs[index], sample);
         let heading = heading_from_course_deg(sample.course_deg);
         let from = |leg: &DesiredLeg| wrap(heading - heading_of(leg.direction));
         let leg = &legs[index];
@@ -134,7 +136,7 @@ fn turn(samples: &[SampleDocument], legs: &[DesiredLeg], radius: f64) -> Option<
             turned = if is_between { 0.0 } else { least };
         }
         let degrees = deg_from_radians(turned.abs());
-        let side = Side::of_turn(turned).filter(|_| degrees >= COURSE_DEG);
+        let side = Side::of_turn(turned).filter(|_| degrees >= DEPARTURE_DEG);
         if side != current.map(|(side, ..)| side) {
             let returns = off.abs() > 0.1 * radius && off * turned < 0.0;
             current = side.map(|side| (side, sample.t_s, returns));
@@ -172,14 +174,12 @@ fn wait(samples: &[SampleDocument]) -> Option<Departure> {
     longest.map(|(for_s, at_m)| Departure::Waits { for_s, at_m })
 }
 
-fn change(samples: &[SampleDocument], legs: &[DesiredLeg]) -> Option<Departure> {
+fn change(samples: &[SampleDocument], desired: &DesiredTrajectory) -> Option<Departure> {
     let mut greatest: Option<(f64, Departure)> = None;
     let mut current: Option<(bool, f64)> = None;
     // the speed of a sample holds from then on, so that of the last does not matter
     for sample in samples.iter().take(samples.len().saturating_sub(1)) {
-        let place = Vector::new(sample.east_m, sample.north_m);
-        let desired = legs[nearest(legs, place)?.0].speed;
-        let ratio = sample.speed_mps / desired;
+        let ratio = sample.speed_mps / desired.legs()[leg_at(desired, sample)].speed;
         let slower = ratio < 1.0;
         if (ratio - 1.0).abs() <= SPEED {
             current = None;
@@ -190,7 +190,7 @@ fn change(samples: &[SampleDocument], legs: &[DesiredLeg]) -> Option<Departure> 
             _ => sample.t_s,
         };
         current = Some((slower, from_s));
-        let size = ratio.max(STILL_MPS).ln().abs();
+        let size = ratio.ln().abs();
         if greatest.is_none_or(|(most, _)| size > most * (1.0 + SPEED)) {
             let speed_mps = sample.speed_mps;
             let change = Departure::Speed {
@@ -265,11 +265,11 @@ mod tests {
             ),
             (
                 vec![(80, 90.0, 5.0), (30, 90.0, 2.5), (9, 90.0, 5.0)],
-                "slows to 4.9 kn at 80 s",
+                "slows to 4.9 kn from 80 s",
             ),
             (
                 vec![(40, 90.0, 5.0), (30, 90.0, 7.5), (9, 90.0, 5.0)],
-                "speeds up to 14.6 kn at 40 s",
+                "speeds up to 14.6 kn from 40 s",
             ),
             (
                 vec![(100, 90.0, 5.0), (104, 90.0, 0.0), (9, 90.0, 5.0)],
@@ -290,5 +290,8 @@ mod tests {
         // out and back
         let back = [(0.0, 0.0), (500.0, 0.0), (0.0, 1.0)];
         assert_eq!(found(&back, &[(50, 120.0, 5.0)]), "starboard 30° from 0 s");
+        let turned_on_the_way_back = [(100, 90.0, 5.0), (40, 270.0, 5.0), (20, 291.0, 5.0)];
+        let expected = "starboard 21° from 140 s";
+        assert_eq!(found(&back, &turned_on_the_way_back), expected);
     }
 }

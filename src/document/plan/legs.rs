@@ -37,7 +37,7 @@ const LEAST_TURN_DEG: f64 = 0.05;
 const RETURNS: &str = "returns";
 
 /// m/s. A slower ship lies still.
-const STILL_MPS: f64 = 1e-3;
+pub(super) const STILL_MPS: f64 = 1e-3;
 
 /// A turn, a straight run or a wait at one speed.
 #[derive(Debug, Clone, PartialEq)]

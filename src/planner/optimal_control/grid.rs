@@ -109,7 +109,7 @@ fn finer(intervals: usize, defect: f64) -> usize {
 fn resampled<V: Manoeuvring>(task: &Task<V>, profile: &Profile, to: &Task<V>) -> Profile {
     let h = task.step();
     let at = |time: f64| {
-        let place = (time - task.start_time) / h;
+        let place = time / h;
         let interval = (place.floor().max(0.0) as usize).min(task.intervals - 1);
         (interval, place - interval as f64)
     };

@@ -100,7 +100,6 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
                 },
                 |warm| warm.state,
             ),
-            start_time: 0.0,
             duration: self.problem.horizon,
             intervals,
         }

@@ -47,8 +47,6 @@ pub struct Task<'a, V> {
     pub keep_outs: &'a [KeepOut],
     /// Initial state.
     pub first: StateVector,
-    /// Initial time in the clock of the sets and the desired trajectory, seconds.
-    pub start_time: f64,
     /// Duration, seconds.
     pub duration: f64,
     /// Number of intervals, at least one.
@@ -72,7 +70,7 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
 
     /// Time at the start of an interval; with the number of intervals, at the end.
     pub fn time(&self, interval: usize) -> f64 {
-        self.start_time + self.duration * interval as f64 / self.intervals as f64
+        self.duration * interval as f64 / self.intervals as f64
     }
 
     /// Stages with rows at the middle and end of every interval.

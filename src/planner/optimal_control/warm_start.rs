@@ -16,8 +16,6 @@ pub struct WarmStart {
 
 impl WarmStart {
     /// The last plan on the grid of a task. After its end it moves as the desired trajectory does.
-    ///
-    /// A grid of another plan has other intervals, so that multipliers have no place on it.
     pub(super) fn profile<V: Manoeuvring>(&self, task: &Task<V>) -> Profile {
         let nodes = self.plan.nodes();
         let end = nodes[nodes.len() - 1].time;

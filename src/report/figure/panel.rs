@@ -298,12 +298,12 @@ impl Panel {
             let covered: f64 = covered.map(|(count, cost)| count as f64 * cost).sum();
             place.0 + NEXT * place.1 as f64 + covered
         };
-        let best = places.min_by(|a, b| cost(a).total_cmp(&cost(b)));
-        let (far, index, best) = best.filter(|place| {
-            let free = if is_small(self.area) { 3 } else { 2 };
+        let free = if is_small(self.area) { 3 } else { 2 };
+        let allowed = places.filter(|place| {
             let near = place.0 <= LEADER_PX;
             needed || (near && covers(place)[..free].iter().all(|count| *count == 0))
-        })?;
+        });
+        let (far, index, best) = allowed.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         if let Some(leader) = leader(far, index, &best) {
             self.plots.push(curve(&leader, false, LEADER));
         }

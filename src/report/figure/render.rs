@@ -209,7 +209,7 @@ impl Figure {
         }
     }
 
-    /// Arranges the panels in at most as many columns.
+    /// Arranges the panels in at most `most` columns.
     pub(super) fn in_columns(self, most: usize) -> Self {
         let columns = self.columns.min(most);
         Self { columns, ..self }

@@ -115,8 +115,8 @@ impl TrueTarget {
         }
     }
 
-    /// The ship `ahead` seconds after `time`: as it moves now, and from the next draw of a course and
-    /// speed on with those in the middle.
+    /// The ship `ahead` seconds after `time`: present course and speed until the next random draw,
+    /// nominal ones after it.
     pub fn expected(&self, time: f64, ahead: f64) -> SteadyShip {
         let draws = matches!(
             self.behaviour,

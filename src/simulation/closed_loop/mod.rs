@@ -47,11 +47,14 @@ const INSTANT: f64 = 1e-9;
 /// A step ends at the next event; one shorter than this fraction of it is joined to the one before.
 const SHORT_STEP: f64 = 1e-6;
 
-/// Of the distance from a contact: m/s and seconds, of a few that were tried, and the fraction by
-/// which samples grow apart.
-const CLOSING: f64 = 1.0;
-const EARLY: f64 = 5.0;
-const COARSER: f64 = 0.03;
+/// m/s. Added to the distance from a contact per second ahead.
+const CLOSING_SPEED: f64 = 1.0;
+
+/// Seconds after which the growth of a random walk counts.
+const DIFFUSION_TIME: f64 = 5.0;
+
+/// Spacing of samples as a fraction of the time ahead.
+const SAMPLE_RATIO: f64 = 0.03;
 
 /// A scenario that is sailed: own ship plans again and again and follows its plans, among targets
 /// that do what they like.
@@ -285,7 +288,7 @@ impl Simulation {
 
     /// How far a contact of hulls is, in metres: zero after a contact, and never before.
     ///
-    /// The least, over the times `t` from now to the end, of `(d + CLOSING t) / sqrt(1 + t / EARLY)`.
+    /// The least, over the times `t` from now to the end, of `(d + CLOSING_SPEED t) / sqrt(1 + t / DIFFUSION_TIME)`.
     /// Here `d` is the distance of the hulls at `t`, if own ship keeps to its plan and the target moves
     /// as it is expected to. The root is the growth of a random walk: what is far now can still meet
     /// later. Sampled; O(log duration) for each target.
@@ -298,7 +301,9 @@ impl Simulation {
         let now = self.own.pose(&plan.trajectory, in_plan);
         let planned = plan.trajectory.pose_at(in_plan);
         let left = plan.end().min(self.duration) - self.time;
-        let far = |apart: f64, ahead: f64| (apart + CLOSING * ahead) / (1.0 + ahead / EARLY).sqrt();
+        let far = |apart: f64, ahead: f64| {
+            (apart + CLOSING_SPEED * ahead) / (1.0 + ahead / DIFFUSION_TIME).sqrt()
+        };
         let mut least = f64::INFINITY;
         for target in &self.targets {
             let reach = hull.half_diagonal() + target.truth.hull.half_diagonal();
@@ -314,7 +319,7 @@ impl Simulation {
                     let apart = hulls[0].separation(&hulls[1]).max(0.0);
                     least = least.min(far(apart, ahead));
                 }
-                ahead += self.settings().step.max(ahead * COARSER);
+                ahead += self.settings().step.max(ahead * SAMPLE_RATIO);
             }
         }
         least.max(f64::MIN_POSITIVE)

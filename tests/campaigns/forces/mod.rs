@@ -85,7 +85,6 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
         desired: &scenario.desired,
         keep_outs: &keep_outs,
         first: StateVector::new(place.x, place.y, heading, own.speed, 0.0, 0.0),
-        start_time: 0.0,
         duration: scenario.horizon,
         intervals: run.planned.control.as_ref().expect("forces").intervals,
     };

@@ -93,7 +93,6 @@ pub fn task<'a>(
         desired,
         keep_outs,
         first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-        start_time: 0.0,
         duration: DURATION,
         intervals,
     }

@@ -119,11 +119,6 @@ impl<'a, V: Manoeuvring> Transcription<'a, V> {
         &mut self.rows
     }
 
-    /// Rows of each interval.
-    pub fn row_sets(&self) -> &[Vec<Row>] {
-        &self.rows
-    }
-
     /// Unit of the solver's cost.
     pub fn cost_unit(&self) -> f64 {
         self.cost_unit

@@ -9,9 +9,10 @@ use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Ratio of the costs up to which a grouping is taken because it breaks fewer rules. One manoeuvre
-/// around ships that are met an hour apart breaks none, but no one would sail it.
-const FEWER_BROKEN_PRICE: f64 = 100.0;
+/// Greatest ratio of J at which a grouping that breaks fewer rules replaces the best so far. J is
+/// squared: ten times the distance. One manoeuvre around ships that are met an hour apart breaks no
+/// rule, but no one would sail it.
+const MOST_COST_RATIO: f64 = 100.0;
 
 /// A plan by the rules.
 pub(crate) struct RulePlan {
@@ -73,12 +74,13 @@ fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Opt
         let broken = broken_rules(context.problem, &plan.motion);
         let cost = context.problem.error_to_end(&plan.motion);
         let better = |(least, of, _): &(usize, f64, RulePlan)| {
-            broken < *least && cost <= FEWER_BROKEN_PRICE * of
+            broken < *least && cost <= MOST_COST_RATIO * of
         };
         if best.as_ref().is_none_or(better) {
             best = Some((broken, cost, plan));
         }
-        if broken == 0 || clock.is_up() {
+        let is_lawful = best.as_ref().is_some_and(|(least, ..)| *least == 0);
+        if is_lawful || clock.is_up() {
             break;
         }
     }

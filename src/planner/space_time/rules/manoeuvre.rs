@@ -8,9 +8,9 @@
 //!
 //! Where neither is clear, the turn is made at half speed or less.
 //!
-//! A manoeuvre has at most five parameters. For each of a few departures, the cheapest of a coarse
-//! grid is improved by a pattern search. There are few turns and few changes of speed by
-//! construction. A manoeuvre under way keeps the parameters that are done; the
+//! A manoeuvre has at most five parameters. Six departures are tried, the latest first. The cheapest
+//! manoeuvre of a coarse grid is improved by a pattern search where it beats the best so far. There
+//! are few turns and few changes of speed by construction. A manoeuvre under way keeps the parameters that are done; the
 //! search chooses the others.
 
 use crate::colregs::{
@@ -508,7 +508,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let alterations = self.alterations().into_iter();
         alterations.filter_map(move |first| {
             let out = self.out(&before, leave, first)?;
-            // what follows can only add to the cost
+            // what follows can only add to the cost; without a limit this needs no sum
             let cheap = below.is_infinite()
                 || self.problem().error_of(&out.motion) * speed_price(&first) < below;
             (cheap && self.is_clear(&out.motion[out.before..])).then_some(out)
