@@ -241,9 +241,12 @@ pub(super) fn estimate<P: Process>(
         return None;
     }
     let (probability, standard_error, mut interval) = mean_interval(&replicas, confidence);
-    if probability == 0.0 {
+    let of_first_level = clopper_pearson(hits[0][0], hits[0][1], confidence);
+    if levels.len() == 1 {
+        interval = of_first_level;
+    } else if probability == 0.0 {
         // whatever reaches the event reaches the first level
-        interval = [0.0, clopper_pearson(hits[0][0], hits[0][1], confidence)[1]];
+        interval = [0.0, of_first_level[1]];
     }
     let fraction = |[hits, of]: &[u64; 2]| (*of > 0).then(|| *hits as f64 / *of as f64);
     Some(Estimate {
@@ -404,7 +407,8 @@ mod tests {
         assert_eq!(never.probability, 0.0);
         assert!(never.interval[0] == 0.0 && never.interval[1] < 0.5);
         let always = of_walk(0, 1);
-        assert_eq!((always.probability, always.interval), (1.0, [1.0; 2]));
+        assert_eq!((always.probability, always.interval[1]), (1.0, 1.0));
+        assert!((0.9..1.0).contains(&always.interval[0]));
         assert_eq!(
             (always.levels, always.cost),
             (vec![(0.0, Some(1.0))], [0.0; 2])

@@ -293,7 +293,7 @@ pub struct InspectArgs {
 
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// Plan documents, as `plan --json` and `suite --plans` write them, recordings (.rrd), or
+    /// Plan documents, as `plan --json` and `suite --plans` write them, recordings of plans (.rrd), or
     /// folders of them; - is standard input
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,

@@ -204,7 +204,10 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
             thousands(seconds),
             seconds / spent
         ),
-        _ => "No replica had a contact: the upper end is that of the first level.".to_owned(),
+        _ if found.contact == 0.0 => {
+            "No replica had a contact: the upper end is that of the first level.".to_owned()
+        }
+        _ => "All replicas have the same result.".to_owned(),
     };
     if found.standard_error * (replicas as f64).sqrt() > found.contact {
         remarks += "\nReplicas differ by more than their mean: the interval may be too narrow, and \

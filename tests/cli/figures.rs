@@ -202,6 +202,25 @@ fn figures_fit_the_columns_of_papers() {
     ));
 }
 
+/// The legend names a few of the targets that are outside the chart, and counts the others.
+#[test]
+fn targets_outside_the_chart_are_counted() {
+    let folder = Folder::new();
+    let mut scene = fs::read_to_string(GIVE_WAY_FILE).expect("a scenario");
+    for k in 0..9 {
+        scene += &format!(
+            "[[targets]]\nname = \"far {k}\"\nposition = {{ east_m = 9e4, north_m = {k}e3 }}\n\
+             course_deg = 0\nspeed_mps = 3\nlength_m = 50\nbeam_m = 10\n"
+        );
+    }
+    let (file, figure) = (folder.at("far.toml"), folder.at("a.svg"));
+    fs::write(&file, scene).expect("written");
+    run(&format!("plan {file} --quiet --figure {figure}")).success();
+    let svg = fs::read_to_string(&figure).expect("written");
+    assert_eq!(svg.matches(": outside the chart<").count(), 5);
+    assert!(svg.contains(">5 more: outside the chart<"));
+}
+
 /// One chart per time with its sets, numbered at the left and at the foot.
 #[test]
 fn panels_show_one_time_each() {

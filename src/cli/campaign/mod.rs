@@ -108,10 +108,10 @@ pub struct RareArgs {
     /// The stratum; the only one by default
     #[arg(long, value_name = "NAME")]
     pub stratum: Option<String>,
-    /// Trajectories that begin at each level
+    /// Trajectories that begin at each level, 10 to 100000
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = whole(10..=100_000))]
     pub trajectories: u64,
-    /// Independent estimates
+    /// Independent estimates, 5 to 10000
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = whole(5..=10_000))]
     pub replicas: u64,
     /// Print one JSON document instead of text

@@ -539,7 +539,12 @@ impl Route {
             true => 1.0 / (fastest * slowness - 1.0),
             false => 1.0 / (1.0 - slowest * slowness),
         };
-        if takes > 0.0 && late.abs() * takes < self.least_change {
+        // a ship that is early at a desired speed of its own does not slow down for a moment
+        let least = match late < 0.0 && self.listed(slowness).is_some() {
+            true => self.least_change.max(self.speed_time),
+            false => self.least_change,
+        };
+        if takes > 0.0 && late.abs() * takes < least {
             return 0.0;
         }
         late

@@ -48,6 +48,9 @@ const ROUND: f64 = 10.0;
 /// Most letters of a name beside a ship.
 pub(super) const NAME_LETTERS: usize = 14;
 
+/// Targets outside the chart that the legend names.
+const MOST_OUTSIDE: usize = 4;
+
 /// Least interval between a round time and the closest approach, as a fraction of the interval
 /// between round times.
 const TIMES_APART: f64 = 0.25;
@@ -486,6 +489,11 @@ pub(super) fn traffic_chart(
         if outlined && traffic.times.len() > 1 {
             panel.line_key("sets at other times", OTHER_SETS);
         }
+    }
+    let more = outside.split_off(outside.len().min(MOST_OUTSIDE));
+    if !more.is_empty() {
+        let label = format!("{} more: outside the chart", more.len());
+        outside.push((ALTERNATIVE, label));
     }
     for (stroke, label) in outside {
         panel.line_key(&label, stroke);

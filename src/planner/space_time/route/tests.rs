@@ -56,3 +56,18 @@ fn the_speed_alternates_seldom_on_a_long_line() {
     let motion = line(0.3, 1e5).follow(0.0, 0.0);
     assert!(motion.len() < 200, "{}", motion.len());
 }
+
+/// A change of speed to be on schedule again lasts for the least time at a speed.
+#[test]
+fn a_ship_that_is_little_early_keeps_its_speed() {
+    let route = Route {
+        speed_time: 30.0,
+        ..line(0.25, 1000.0)
+    };
+    let speeds = |early: f64| -> Vec<f64> {
+        let motion = route.follow(0.0, -early);
+        motion.iter().map(|s| s.speed).collect()
+    };
+    assert_eq!(speeds(20.0), [4.0]);
+    assert_eq!(speeds(40.0), [0.0, 4.0]);
+}
