@@ -302,11 +302,17 @@ vessel = "cybership2-full"
         let figure = plan_figure(run, &PlanDocument::of(run), &FigureOptions::default());
         figure.expect("drawn").svg()
     };
-    for (svg, third) in [
-        (axes(&full), "Rate of turn [°/s]"),
-        (axes(&free), "Speed through water [m/s]"),
+    for (svg, names) in [
+        (
+            axes(&full),
+            ["Force [kN]", "Moment [kNm]", "Rate of turn [°/s]"],
+        ),
+        (
+            axes(&free),
+            ["Force [N]", "Moment [Nm]", "Speed through water [m/s]"],
+        ),
     ] {
-        for name in ["Force [N]", "Moment [Nm]", third] {
+        for name in names {
             assert!(svg.contains(name), "{name}");
         }
     }
