@@ -121,7 +121,7 @@ pub(super) const EVENTS: [Event; 7] = [
     ("late", |group| &group.timing.late),
 ];
 
-/// Least width of a list of events, in characters.
+/// Characters of a line of events, at most.
 const LISTED: usize = 19;
 
 /// The bounds of each event. Events of a group with equal counts have equal bounds, and one line.

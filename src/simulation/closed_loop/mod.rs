@@ -288,7 +288,8 @@ impl Simulation {
 
     /// How far a contact of hulls is, in metres: zero after a contact, and never before.
     ///
-    /// The least, over the times `t` from now to the end, of `(d + CLOSING_SPEED t) / sqrt(1 + t / DIFFUSION_TIME)`.
+    /// The least of `(d + CLOSING_SPEED t) / sqrt(1 + t / DIFFUSION_TIME)` over the times `t` from now
+    /// to the end.
     /// Here `d` is the distance of the hulls at `t`, if own ship keeps to its plan and the target moves
     /// as it is expected to. The root is the growth of a random walk: what is far now can still meet
     /// later. Sampled; O(log duration) for each target.

@@ -10,8 +10,8 @@
 //!
 //! A manoeuvre has at most five parameters. Six departures are tried, the latest first. The cheapest
 //! manoeuvre of a coarse grid is improved by a pattern search where it beats the best so far. There
-//! are few turns and few changes of speed by construction. A manoeuvre under way keeps the parameters that are done; the
-//! search chooses the others.
+//! are few turns and few changes of speed by construction. A manoeuvre under way keeps the parameters
+//! that are done; the search chooses the others.
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MayAct, ON_COURSE, Role, SMALL_TURN,
