@@ -85,8 +85,8 @@ cargo run --release --no-default-features --example leaderboard > docs/benchmark
 | score | mean over targets of their least score |
 | ms | planning time on one core: the median of {runs} plans for a scene, then statistics over scenes |
 
-Only the times depend on the machine. [rules.md](rules.md) measures plans by the rules on more
-random encounters, and [closed-loop.md](closed-loop.md) what is sailed.
+Only the times depend on the machine. [measured.md](measured.md) measures plans by the rules on more
+random encounters, and what is sailed.
 "
     );
     println!(
