@@ -18,6 +18,7 @@ use campaigns::encounter_generator::Meeting;
 use campaigns::plans::{compliance, encounters, harbour, invariance, mutations, tidiness};
 use campaigns::{Report, dense_search, forces, path_time, wild};
 use clap::{Args, Parser, Subcommand};
+use searoom::scenario::Compliance;
 
 #[derive(Parser)]
 #[command(about = "Runs a campaign over random scenes, prints its table, and checks its bounds")]
@@ -100,6 +101,9 @@ enum Campaign {
         /// Degrees: how much farther to starboard each target may steer, as own ship assumes
         #[arg(long, default_value_t = 0.0)]
         starboard_turn: f64,
+        /// What own ship plans by: none, shape or rules
+        #[arg(long, default_value = "rules", value_parser = compliance_level)]
+        compliance: Compliance,
     },
     /// Traffic among land, a third of the scenes in each of three waters
     Harbour {
@@ -158,6 +162,11 @@ impl<const COUNT: u64> Scenes<COUNT> {
     }
 }
 
+fn compliance_level(word: &str) -> Result<Compliance, &'static str> {
+    let found = Compliance::WORDS.iter().find(|(name, _)| *name == word);
+    found.map(|(_, level)| *level).ok_or("allowed: none, shape, rules")
+}
+
 fn run(campaign: Campaign) -> Report {
     match campaign {
         Campaign::Encounters { scenes, tidiness } => match tidiness {
@@ -199,6 +208,7 @@ fn run(campaign: Campaign) -> Report {
             ship,
             once,
             starboard_turn,
+            compliance,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             let how = simulation::How {
@@ -208,6 +218,7 @@ fn run(campaign: Campaign) -> Report {
                 ship,
                 replan: !once,
                 starboard_turn,
+                compliance,
             };
             simulation::run(scenes.of_each(5), &meeting, &how)
         }

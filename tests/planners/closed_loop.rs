@@ -6,7 +6,7 @@ use searoom::frame::{Pose, Vector};
 use searoom::geometry::Polygon;
 use searoom::map::Map;
 use searoom::scenario::{
-    Behaviour, Fault, Land, NotReported, Scenario, SimulationSettings, VesselModel,
+    Behaviour, Compliance, Fault, Land, NotReported, Scenario, SimulationSettings, VesselModel,
 };
 use searoom::simulation::Simulation;
 use searoom::vessel::Hull;
@@ -25,6 +25,7 @@ const CONSTANT: How = How {
     ship: Ship::Kinematic,
     replan: true,
     starboard_turn: 0.0,
+    compliance: Compliance::Rules,
 };
 
 fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {

@@ -3,7 +3,7 @@
 use searoom::document::SimulationDocument;
 use searoom::frame::radians_from_deg;
 use searoom::scenario::{
-    Behaviour, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
+    Behaviour, Compliance, Noise, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
 use searoom::simulation::Simulation;
 use searoom::target::Motion;
@@ -69,6 +69,7 @@ pub struct How {
     pub replan: bool,
     /// Degrees: how much farther to starboard each target may steer, as own ship assumes.
     pub starboard_turn: f64,
+    pub compliance: Compliance,
 }
 
 impl How {
@@ -154,6 +155,7 @@ impl How {
 
     /// Adds the settings of the loop to a scenario, and for a ship that is steered a margin.
     pub fn equip(&self, scenario: &mut Scenario, seed: u64) {
+        scenario.compliance = self.compliance;
         if self.ship != Ship::Kinematic {
             scenario.own_ship.tracking_margin = 0.5 * scenario.own_ship.safety_margin;
         }

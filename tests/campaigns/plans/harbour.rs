@@ -196,12 +196,13 @@ pub fn sail_all(seeds: Seeds) -> Report {
         ship: Ship::Kinematic,
         replan: true,
         starboard_turn: 0.0,
+        compliance: Compliance::Rules,
     };
     for waters in [&FJORD, &QUAYS] {
         let scenes = seeds.clone().into_par_iter().map(|seed| {
             let mut scenario = scene(&map, waters, seed);
-            scenario.compliance = [Compliance::Shape, Compliance::Rules][seed as usize % 2];
-            how.equip(&mut scenario, seed);
+            let compliance = [Compliance::Shape, Compliance::Rules][seed as usize % 2];
+            How { compliance, ..how }.equip(&mut scenario, seed);
             (seed, sail(scenario))
         });
         let all: Vec<(u64, SimulationDocument)> = scenes.collect();
