@@ -104,6 +104,12 @@ enum Campaign {
         /// What own ship plans by: none, shape or rules
         #[arg(long, default_value = "rules", value_parser = compliance_level)]
         compliance: Compliance,
+        /// Seconds of reports before the meeting begins
+        #[arg(long, default_value_t = 60.0)]
+        settle: f64,
+        /// Root of the spectral density of the acceleration that the tracker assumes, m/s^1.5
+        #[arg(long, default_value_t = 0.02)]
+        acceleration: f64,
     },
     /// Traffic among land, a third of the scenes in each of three waters
     Harbour {
@@ -209,6 +215,8 @@ fn run(campaign: Campaign) -> Report {
             once,
             starboard_turn,
             compliance,
+            settle,
+            acceleration,
         } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
             let how = simulation::How {
@@ -219,6 +227,8 @@ fn run(campaign: Campaign) -> Report {
                 replan: !once,
                 starboard_turn,
                 compliance,
+                settle,
+                acceleration,
             };
             simulation::run(scenes.of_each(5), &meeting, &how)
         }

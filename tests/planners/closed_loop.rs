@@ -26,6 +26,8 @@ const CONSTANT: How = How {
     replan: true,
     starboard_turn: 0.0,
     compliance: Compliance::Rules,
+    settle: 60.0,
+    acceleration: 0.02,
 };
 
 fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {

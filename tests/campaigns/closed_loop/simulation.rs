@@ -70,6 +70,10 @@ pub struct How {
     /// Degrees: how much farther to starboard each target may steer, as own ship assumes.
     pub starboard_turn: f64,
     pub compliance: Compliance,
+    /// Seconds of reports before t = 0.
+    pub settle: f64,
+    /// Root of the spectral density of the acceleration that the tracker assumes, m/s^1.5.
+    pub acceleration: f64,
 }
 
 impl How {
@@ -118,8 +122,8 @@ impl How {
             noise,
             assumed: noise,
             interval,
-            acceleration: 0.02,
-            settle: 60.0,
+            acceleration: self.acceleration,
+            settle: self.settle,
             stale: 180.0,
             ..Sensor::EXACT
         };

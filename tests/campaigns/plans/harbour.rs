@@ -197,6 +197,8 @@ pub fn sail_all(seeds: Seeds) -> Report {
         replan: true,
         starboard_turn: 0.0,
         compliance: Compliance::Rules,
+        settle: 60.0,
+        acceleration: 0.02,
     };
     for waters in [&FJORD, &QUAYS] {
         let scenes = seeds.clone().into_par_iter().map(|seed| {
