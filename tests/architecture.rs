@@ -61,6 +61,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/parry"]),
     ("geojson", &["map/", "report/route.rs"]),
+    ("chrono", &["input/", "scenario/", "report/route.rs"]),
     ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/import/"]),

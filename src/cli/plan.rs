@@ -21,6 +21,10 @@ use super::output::products::{Failure, Products, make_parent};
 use super::output::status::ExitStatus;
 use super::runner::{Previous, attempt};
 
+/// The note on an RTZ file without times.
+const NO_DATE: &str =
+    "the route has speeds but no times of arrival: 'start_utc' in the scenario gives them";
+
 pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
@@ -59,6 +63,8 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 )
             });
             let written = output.written(write(&products, &scene.found, &run, &document));
+            let undated = run.scenario.start.is_none()
+                && (route.as_ref()).is_some_and(|route| route.format == RouteFormat::Rtz);
             let routed = route.map_or(Ok(()), |route| route.write(&run, &document));
             let routed = match routed {
                 Ok(()) => ExitStatus::Good,
@@ -73,6 +79,9 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             products.announce(written, output);
             if let (ExitStatus::Good, Some(file)) = (routed, &args.route) {
                 output.wrote(file);
+                if undated {
+                    output.note(&NO_DATE);
+                }
             }
             shown
                 .max(written)
@@ -99,7 +108,9 @@ impl<'a> Route<'a> {
     }
 
     fn write(&self, run: &Run, plan: &PlanDocument) -> anyhow::Result<()> {
-        let route = self.format.write(plan, run.scenario.earth.as_ref());
+        let scenario = &run.scenario;
+        let earth = scenario.earth.as_ref();
+        let route = self.format.write(plan, earth, scenario.present());
         let route = route.with_context(|| format!("--route {}", self.file.display()))?;
         // the message already includes its cause
         write_atomically(self.file, route.as_bytes()).map_err(|error| anyhow!("{error}"))

@@ -4,6 +4,8 @@ use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
+use chrono::{DateTime, Utc};
+
 use super::value::{Node, Value};
 use super::{Fault, Faults, InputError, Table};
 use crate::frame::{Vector, mps_from_knots};
@@ -11,6 +13,16 @@ use crate::text::{LINE, is_line, is_unprintable, printable};
 
 /// Faults of another file that are listed: a map of another place has one in every feature.
 const MOST_LISTED: usize = 20;
+
+/// A date and a time of day, in words.
+pub(crate) const DATE_TIME: &str =
+    "a date and a time with its offset from UTC, such as 2026-05-01T12:00:00Z";
+
+/// The date and time of a text of RFC 3339.
+pub(crate) fn date_time(text: &str) -> Option<DateTime<Utc>> {
+    let read = DateTime::parse_from_rfc3339(text.trim()).ok()?;
+    Some(read.to_utc())
+}
 
 /// Limits nearer to zero than this are written with a power of ten.
 const SHORT: f64 = 1e-9;
@@ -291,6 +303,15 @@ impl<'a> Field<'a> {
                 None
             }
         }
+    }
+
+    /// A date and a time of day with its offset from UTC.
+    pub(crate) fn date_time(&self) -> Option<DateTime<Utc>> {
+        let date = match &self.node.value {
+            Value::Date(date) => date_time(date),
+            _ => None,
+        };
+        date.or_else(|| self.refuse(DATE_TIME))
     }
 
     pub(crate) fn truth(&self) -> Option<bool> {

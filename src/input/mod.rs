@@ -8,7 +8,7 @@ mod table;
 mod value;
 
 pub use field::abbreviated;
-pub(crate) use field::{Field, Range, every};
+pub(crate) use field::{DATE_TIME, Field, Range, date_time, every};
 pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 

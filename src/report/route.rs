@@ -4,12 +4,14 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 use std::path::Path;
 
+use chrono::{DateTime, SecondsFormat, Utc};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
 use crate::document::{PlanDocument, PlannedLeg};
 use crate::frame::{
     GEOREFERENCE_REACH_M, Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps,
 };
+use crate::scenario::after;
 use crate::text::printable;
 use crate::trajectory::Segment;
 
@@ -31,7 +33,7 @@ pub enum RouteFormat {
     GeoJson,
     /// Waypoints with turning radii and speeds for navigation systems: RTZ 1.1 of IEC 61174. Needs
     /// an origin. Legs are orthodromes, as straight lines of the plane nearly are; a wait is a
-    /// stay. A scenario has no date, so there are no times of arrival.
+    /// stay. Times of arrival need the date of the scenario.
     Rtz,
 }
 
@@ -77,11 +79,12 @@ impl RouteFormat {
         }
     }
 
-    /// The whole file.
+    /// The whole file. Where the date and time of the present is known, each place has its own.
     pub fn write(
         self,
         plan: &PlanDocument,
         earth: Option<&Georeference>,
+        present: Option<DateTime<Utc>>,
     ) -> Result<String, RouteError> {
         if plan.trajectory.is_none() {
             return Err(RouteError::NoPlan);
@@ -99,17 +102,32 @@ impl RouteFormat {
         let far = |place: Vector| place.norm() > GEOREFERENCE_REACH_M;
         let is_far = ends.into_iter().any(|end| far(end.position));
         match (self, earth) {
-            (Self::Csv, _) => Ok(csv(&legs, earth.filter(|_| !is_far))?),
+            (Self::Csv, _) => Ok(csv(&legs, earth.filter(|_| !is_far), present)?),
             (_, None) => Err(RouteError::NoOrigin),
             (_, Some(_)) if is_far => Err(RouteError::TooFar),
-            (Self::GeoJson, Some(earth)) => Ok(geojson(&legs, earth)),
-            (Self::Rtz, Some(earth)) => rtz(plan, &waypoints(&legs), earth),
+            (Self::GeoJson, Some(earth)) => Ok(geojson(&legs, earth, present)),
+            (Self::Rtz, Some(earth)) => rtz(plan, &waypoints(&legs), earth, present),
         }
     }
 }
 
-fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> csv::Result<String> {
+/// The date and time so many seconds after the present, as in `2026-05-01T12:00:13.300Z`.
+fn date(present: DateTime<Utc>, seconds: f64) -> String {
+    let time = after(present, seconds);
+    time.map_or(String::new(), |time| {
+        time.to_rfc3339_opts(SecondsFormat::Millis, true)
+    })
+}
+
+fn csv(
+    legs: &[PlannedLeg],
+    earth: Option<&Georeference>,
+    present: Option<DateTime<Utc>>,
+) -> csv::Result<String> {
     let mut header = vec!["leg", "from_s", "to_s"];
+    if present.is_some() {
+        header.extend(["from_utc", "to_utc"]);
+    }
     header.extend(["from_east_m", "from_north_m", "to_east_m", "to_north_m"]);
     if earth.is_some() {
         header.extend(["from_lat_deg", "from_lon_deg", "to_lat_deg", "to_lon_deg"]);
@@ -123,7 +141,11 @@ fn csv(legs: &[PlannedLeg], earth: Option<&Georeference>) -> csv::Result<String>
         let motion = &leg.motion;
         let ends = [motion.start.position, motion.end().position];
         let mut row = vec![(index + 1).to_string()];
-        row.extend([motion.start_time, motion.end_time()].map(fixed::<3>));
+        let times = [motion.start_time, motion.end_time()];
+        row.extend(times.map(fixed::<3>));
+        if let Some(present) = present {
+            row.extend(times.map(|time| date(present, time)));
+        }
         row.extend(ends.iter().flat_map(|p| [p.x, p.y]).map(fixed::<3>));
         if let Some(earth) = earth {
             let places = ends.map(|p| earth.to_geographic(p));
@@ -152,7 +174,7 @@ fn fixed<const DECIMALS: usize>(value: f64) -> String {
     }
 }
 
-fn geojson(legs: &[PlannedLeg], earth: &Georeference) -> String {
+fn geojson(legs: &[PlannedLeg], earth: &Georeference, present: Option<DateTime<Utc>>) -> String {
     let features = legs.iter().enumerate().map(|(index, leg)| {
         let motion = &leg.motion;
         let steps = (leg.turn_deg().abs() / POINT_DEG).ceil().max(1.0) as u32;
@@ -175,6 +197,14 @@ fn geojson(legs: &[PlannedLeg], earth: &Georeference) -> String {
             ("length_m", motion.length()),
         ] {
             properties.insert(key.to_owned(), value.into());
+        }
+        if let Some(present) = present {
+            for (key, time) in [
+                ("from_utc", motion.start_time),
+                ("to_utc", motion.end_time()),
+            ] {
+                properties.insert(key.to_owned(), date(present, time).into());
+            }
         }
         if motion.is_arc() {
             properties.insert("radius_m".to_owned(), motion.radius().abs().into());
@@ -206,6 +236,8 @@ struct Waypoint {
     radius: f64,
     /// m/s on the way to it.
     speed: f64,
+    /// When own ship arrives, or is in the middle of the turn here, seconds.
+    time: f64,
     /// Seconds that own ship lies here.
     stay: f64,
 }
@@ -214,15 +246,16 @@ struct Waypoint {
 /// changes at once is a waypoint of its own. At least two waypoints, as RTZ requires.
 fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     let first = &legs[0].motion;
-    let at = |place, radius, speed| Waypoint {
+    let at = |place, radius, speed, time| Waypoint {
         place,
         radius,
         speed,
+        time,
         stay: 0.0,
     };
     let moves = legs.iter().find(|leg| !leg.waits());
     let speed = moves.map_or(0.0, |leg| leg.motion.speed);
-    let mut all = vec![at(first.start.position, 0.0, speed)];
+    let mut all = vec![at(first.start.position, 0.0, speed, first.start_time)];
     for (index, leg) in legs.iter().enumerate() {
         let motion = &leg.motion;
         if leg.waits() {
@@ -231,7 +264,8 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
             continue;
         }
         if motion.is_arc() {
-            all.extend(corners(motion).map(|(place, radius)| at(place, radius, motion.speed)));
+            let corners = corners(motion);
+            all.extend(corners.map(|(place, radius, time)| at(place, radius, motion.speed, time)));
         }
         // the tangents of an arc lead on
         let leads_on = legs.get(index + 1).is_some_and(|next| {
@@ -239,7 +273,8 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
             curved && next.motion.speed == motion.speed && next.corner_deg == 0.0
         });
         if !leads_on {
-            all.push(at(motion.end().position, 0.0, motion.speed));
+            let end = motion.end().position;
+            all.push(at(end, 0.0, motion.speed, motion.end_time()));
         }
     }
     if let [only] = all[..] {
@@ -248,18 +283,25 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     all
 }
 
-/// The corners whose lines touch a turn, and its radius.
-fn corners(turn: &Segment) -> impl Iterator<Item = (Vector, f64)> {
+/// The corners whose lines touch a turn, its radius, and the times in the middle of its parts.
+fn corners(turn: &Segment) -> impl Iterator<Item = (Vector, f64, f64)> {
     let (radius, angle) = (turn.radius().abs(), turn.turn_rate * turn.duration);
     let parts = (angle.abs() / FRAC_PI_2).ceil().max(1.0);
     let ahead = radius * (0.5 * angle.abs() / parts).tan();
     (0..parts as u32).map(move |k| {
-        let begun = turn.pose_after(turn.duration * f64::from(k) / parts);
-        (begun.position + begun.ahead() * ahead, radius)
+        let part = turn.duration / parts;
+        let begun = turn.pose_after(part * f64::from(k));
+        let middle = turn.start_time + part * (f64::from(k) + 0.5);
+        (begun.position + begun.ahead() * ahead, radius, middle)
     })
 }
 
-fn rtz(plan: &PlanDocument, all: &[Waypoint], earth: &Georeference) -> Result<String, RouteError> {
+fn rtz(
+    plan: &PlanDocument,
+    all: &[Waypoint],
+    earth: &Georeference,
+    present: Option<DateTime<Utc>>,
+) -> Result<String, RouteError> {
     // own ship may be off its plan by this much to either side
     let off = match plan.own_ship.tracking_margin_m / NAUTICAL_MILE_M {
         off if off > 0.0 => format!(" starboardXTD=\"{off:.6}\" portsideXTD=\"{off:.6}\""),
@@ -297,9 +339,18 @@ fn rtz(plan: &PlanDocument, all: &[Waypoint], earth: &Georeference) -> Result<St
             0.0 => String::new(),
             seconds => format!(" stay=\"{}\"", time_of_day(seconds)),
         };
+        let arrives = (id > 1).then_some(("eta", waypoint.time));
+        let leaves = waypoint.time + waypoint.stay;
+        let leaves = (id == 1 || waypoint.stay > 0.0).then_some(("etd", leaves));
+        let times: String = (arrives
+            .into_iter()
+            .chain(leaves)
+            .zip(present.iter().cycle()))
+        .map(|((name, time), present)| format!(" {name}=\"{}\"", date(*present, time)))
+        .collect();
         let _ = writeln!(
             schedule,
-            "      <scheduleElement waypointId=\"{id}\" speed=\"{speed:.4}\"{stay}/>"
+            "      <scheduleElement waypointId=\"{id}\" speed=\"{speed:.4}\"{stay}{times}/>"
         );
     }
     let _ = write!(
@@ -345,7 +396,7 @@ mod tests {
     fn waypoints_and_their_radii_are_the_plan() {
         let (plan, earth) = give_way();
         let text = RouteFormat::Rtz
-            .write(&plan, Some(&earth))
+            .write(&plan, Some(&earth), None)
             .expect("a route");
         let read = roxmltree::Document::parse(&text).expect("XML");
         let number = |node: roxmltree::Node, key: &str| -> f64 {
@@ -392,12 +443,52 @@ mod tests {
         assert!(off.norm() < 0.01, "{off}");
     }
 
+    /// At the corner of a turn own ship is in the middle of it.
+    #[test]
+    fn times_of_arrival_are_those_of_the_plan() {
+        let (plan, earth) = give_way();
+        let present = DateTime::parse_from_rfc3339("2026-12-31T23:59:00Z").expect("a date");
+        let text = RouteFormat::Rtz.write(&plan, Some(&earth), Some(present.to_utc()));
+        let text = text.expect("a route");
+        let read = roxmltree::Document::parse(&text).expect("XML");
+        let elements = read.descendants();
+        let elements = elements.filter(|node| node.has_tag_name("scheduleElement"));
+        let mut last = 0.0;
+        let waypoints = waypoints(&plan.legs());
+        for (index, (element, waypoint)) in elements.zip(&waypoints).enumerate() {
+            let [eta, etd] = ["eta", "etd"].map(|name| element.attribute(name));
+            assert_eq!([eta.is_some(), etd.is_some()], [index > 0, index == 0]);
+            let time = eta.or(etd).expect("a time");
+            let time = DateTime::parse_from_rfc3339(time).expect("a date") - present;
+            let time = time.num_milliseconds() as f64 / 1e3;
+            assert!(
+                (time - waypoint.time).abs() < 1e-3 && time >= last,
+                "{text}"
+            );
+            last = time;
+        }
+        let cost = plan.cost.as_ref().expect("a plan");
+        assert!((last - cost.duration_s).abs() < 2e-3, "{last}");
+        assert!(
+            text.contains(" etd=\"2026-12-31T23:59:00.000Z\"/>") && text.contains("2027-01-01T")
+        );
+        for format in [RouteFormat::Csv, RouteFormat::GeoJson] {
+            let [with, without] = [Some(present.to_utc()), None]
+                .map(|present| format.write(&plan, Some(&earth), present).expect("a route"));
+            assert!(
+                with.contains("2027-01-01T00:0") && with.contains("to_utc"),
+                "{with}"
+            );
+            assert!(!without.contains("utc"), "{without}");
+        }
+    }
+
     #[test]
     fn rows_and_lines_are_the_legs() {
         let (plan, earth) = give_way();
         let legs = plan.legs();
         let text = RouteFormat::Csv
-            .write(&plan, Some(&earth))
+            .write(&plan, Some(&earth), None)
             .expect("a route");
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let column = |name: &str, reader: &mut csv::Reader<&[u8]>| {
@@ -413,15 +504,15 @@ mod tests {
             .sum();
         assert!((sum - plan.cost.as_ref().expect("a plan").length_m).abs() < 0.01);
         let text = RouteFormat::GeoJson
-            .write(&plan, Some(&earth))
+            .write(&plan, Some(&earth), None)
             .expect("a route");
         let read: FeatureCollection = text.parse().expect("GeoJSON");
         assert_eq!(read.features.len(), legs.len());
         let plain = RouteFormat::Csv
-            .write(&plan, None)
+            .write(&plan, None, None)
             .expect("without an origin");
         assert!(!plain.contains("lat_deg"));
-        let refused = RouteFormat::GeoJson.write(&plan, None);
+        let refused = RouteFormat::GeoJson.write(&plan, None, None);
         assert!(matches!(refused, Err(RouteError::NoOrigin)));
     }
 
@@ -466,7 +557,7 @@ mod tests {
     fn a_long_turn_has_a_corner_per_quarter() {
         let start = crate::frame::Pose::new(Vector::zeros(), 0.0);
         let turn = Segment::new(start, 0.0, 60.0, 5.0, 1.5 * std::f64::consts::PI / 60.0);
-        let all: Vec<(Vector, f64)> = corners(&turn).collect();
+        let all: Vec<(Vector, f64, f64)> = corners(&turn).collect();
         assert_eq!(all.len(), 3);
         let radius = turn.radius();
         for (k, expected) in [(1.0, 0.0), (1.0, 2.0), (-1.0, 2.0)]
@@ -475,6 +566,10 @@ mod tests {
         {
             let expected = Vector::new(expected.0, expected.1) * radius;
             assert!((all[k].0 - expected).norm() < 1e-9 * radius, "{all:?}");
+            assert!(
+                (all[k].2 - (10.0 + 20.0 * k as f64)).abs() < 1e-9,
+                "{all:?}"
+            );
         }
         assert_eq!(time_of_day(3725.4), "01:02:05");
         assert_eq!(

@@ -3,12 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use chrono::{DateTime, Utc};
+
 use super::plane::{Plane, near};
 use super::planner::{PlannerTable, planner};
 use super::route::Route;
 use super::simulation::simulation;
 use super::targets::targets;
-use super::{Compliance, Land, Memory, Scenario, SimulationSettings, land, limits};
+use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits};
 use crate::colregs::TargetMemory;
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Fault, Faults, Field, Node, Table, every, from_toml};
@@ -65,6 +67,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let time = root
         .take("time_s")
         .map_or(Some(0.0), |field| field.number(limits::CLOCK));
+    let start = root.take("start_utc").map(|field| field.date_time());
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
@@ -104,11 +107,13 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     root.finish();
     let (mission, own_ship) = (mission?, own_ship?);
     let desired = mission.desired;
+    let start = start.unwrap_or(mission.date);
     let (targets, known): (Vec<Target>, Vec<TargetMemory>) = targets?.into_iter().unzip();
     let known_any = known.iter().any(|known| known.role.is_some());
     let tracked = targets.iter().any(|target| target.ship().is_some());
     Some(Scenario {
         time: time?,
+        start,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         alternatives: mission.alternatives,
         targets,
@@ -145,6 +150,7 @@ pub(super) fn bare(
     Scenario {
         title: title.to_owned(),
         time: 0.0,
+        start: None,
         horizon,
         arrival_hold: DEFAULT_ARRIVAL_HOLD,
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
@@ -277,6 +283,8 @@ fn add_speeds(speeds: &mut Vec<f64>, desired: &DesiredTrajectory) {
 
 struct Mission {
     desired: DesiredTrajectory,
+    /// The date and time at 0 s on the clock of the file, by the schedule of the route.
+    date: Option<DateTime<Utc>>,
     alternatives: Vec<Vec<Vector>>,
 }
 
@@ -293,12 +301,12 @@ fn mission(
     let alternatives = table.read_or("alternatives", Vec::new(), |field| {
         alternatives(field, plane)
     });
-    let (waypoints, speeds) = if let Some(field) = table.take("route") {
+    let (waypoints, speeds, departs) = if let Some(field) = table.take("route") {
         table.forbid("waypoints", "nothing: the route has them");
-        let route = route(&field, folder, plane);
-        let (waypoints, speeds) = route.unzip();
-        let speeds = leg_speeds(&mut table, speeds.as_deref(), own_speed);
-        (waypoints, speeds)
+        let (waypoints, route) = route(&field, folder, plane).unzip();
+        let legs = route.as_ref().map(|route| route.speeds.as_slice());
+        let speeds = leg_speeds(&mut table, legs, own_speed);
+        (waypoints, speeds, route.and_then(|route| route.departs))
     } else {
         let fields = table
             .require(
@@ -311,6 +319,7 @@ fn mission(
         (
             waypoints,
             leg_speeds(&mut table, legs.as_deref(), own_speed),
+            None,
         )
     };
     table.finish();
@@ -318,6 +327,7 @@ fn mission(
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
     let elapsed = time? - start?;
     Some(Mission {
+        date: departs.and_then(|departs| after(departs, -start?)),
         desired: if elapsed > 0.0 {
             desired.remaining(elapsed)
         } else {
@@ -327,14 +337,15 @@ fn mission(
     })
 }
 
-/// The waypoints of a route file on the plane, and the speeds of its legs.
-fn route(field: &Field, folder: &Path, plane: &Plane) -> Option<(Vec<Vector>, Vec<Option<f64>>)> {
+/// A route file, and its waypoints on the plane.
+fn route(field: &Field, folder: &Path, plane: &Plane) -> Option<(Vec<Vector>, Route)> {
     let earth = plane.need_earth();
     let file = field.file_in(folder)?;
     let kind = "a route file, RTZ 1.0 to 1.2";
-    let Route { places, speeds } = field.contents(&file, Route::read(&file), kind)?;
+    let route = field.contents(&file, Route::read(&file), kind)?;
     let earth = earth?;
-    let points = every(places.iter().map(|place| near(field, *place, &earth)))?;
+    let places = route.places.iter();
+    let points = every(places.map(|place| near(field, *place, &earth)))?;
     let sound = (1..).zip(points.windows(2)).all(|(leg, pair)| {
         let length = (pair[1] - pair[0]).norm();
         let is_long = length >= limits::LENGTH.low;
@@ -347,7 +358,7 @@ fn route(field: &Field, folder: &Path, plane: &Plane) -> Option<(Vec<Vector>, Ve
         }
         is_long
     });
-    sound.then_some((points, speeds))
+    sound.then_some((points, route))
 }
 
 fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {

@@ -28,6 +28,7 @@ pub use simulation::{
 use std::path::Path;
 use std::sync::Arc;
 
+use chrono::{DateTime, TimeDelta, Utc};
 use planner::PlannerTable;
 
 use crate::colregs::Thresholds;
@@ -61,6 +62,8 @@ pub struct Scenario {
     pub title: String,
     /// The present on the clock of the file, seconds. All other times count from it.
     pub time: f64,
+    /// The date and time at 0 s on the clock of the file, if it is known.
+    pub start: Option<DateTime<Utc>>,
     /// Planning horizon, seconds.
     pub horizon: f64,
     /// Seconds after arrival for which own ship is observed at its berth; no effect on plans.
@@ -147,6 +150,11 @@ impl Scenario {
         }
     }
 
+    /// The date and time of the present, if it is known.
+    pub fn present(&self) -> Option<DateTime<Utc>> {
+        after(self.start?, self.time)
+    }
+
     /// Thresholds of the judges.
     pub fn judged_by(&self) -> &Thresholds {
         self.thresholds.as_deref().unwrap_or(&self.limits)
@@ -189,6 +197,12 @@ impl Scenario {
             _ => Err(faults.take()),
         }
     }
+}
+
+/// The date and time so many seconds later, to a millisecond; `None` beyond the calendar.
+pub fn after(start: DateTime<Utc>, seconds: f64) -> Option<DateTime<Utc>> {
+    let milliseconds = (1e3 * seconds).round() as i64;
+    start.checked_add_signed(TimeDelta::try_milliseconds(milliseconds)?)
 }
 
 words!(Compliance {

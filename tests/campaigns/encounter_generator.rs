@@ -181,6 +181,7 @@ fn scene(
         scenario: Scenario {
             title,
             time: 0.0,
+            start: None,
             horizon: meeting.horizon,
             acceleration: None,
             own_ship: OwnShip {

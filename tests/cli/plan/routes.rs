@@ -221,6 +221,75 @@ fn a_route_is_a_mission() {
         .stderr(contains("mission.route: found").and(contains("km from the origin")));
 }
 
+/// A date gives a route its times, of which one that is read gives the scenario its date.
+#[test]
+fn a_route_has_the_times_of_day_of_its_scenario() {
+    let folder = Folder::new();
+    let at = |name: &str| text(&folder.path().join(name)).to_owned();
+    let origin = "origin = { lat_deg = 59.0, lon_deg = 10.5 }";
+    let dated = |key: &str| folder.write("dated.toml", format!("{origin}\n{key}\n{HEAD_ON}"));
+    let plan = |file: &str, route: &str| {
+        searoom(&["plan", file, "--route", route])
+            .success()
+            .get_output()
+            .stderr
+            .clone()
+    };
+    let undated = plan(&dated(""), &at("undated.rtz"));
+    let undated = String::from_utf8_lossy(&undated).into_owned();
+    assert!(
+        undated.contains("no times of arrival: 'start_utc'"),
+        "{undated}"
+    );
+    let file = dated("start_utc = 2026-05-01T14:00:00+02:00\ntime_s = 60.0");
+    assert!(!String::from_utf8_lossy(&plan(&file, &at("dated.rtz"))).contains("start_utc"));
+    let route = fs::read_to_string(at("dated.rtz")).expect("written");
+    let [without, first] = ["undated.rtz", "dated.rtz"].map(|name| {
+        let route = fs::read_to_string(at(name)).expect("written");
+        route.matches(" eta=").count()
+    });
+    assert!(without == 0 && first > 3, "{route}");
+    assert!(
+        route.contains("etd=\"2026-05-01T12:01:00.000Z\""),
+        "{route}"
+    );
+    // the mission of the route begins at its departure
+    let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
+    let from = alone.find("waypoints = ").expect("waypoints");
+    let to = from + alone[from..].find('\n').expect("a line");
+    let with = |head: &str| {
+        let mission = "route = \"dated.rtz\"";
+        let text = format!(
+            "{origin}\n{head}\n{}{mission}{}",
+            &alone[..from],
+            &alone[to..]
+        );
+        folder.write("again.toml", text)
+    };
+    for (head, departs) in [
+        ("", "2026-05-01T12:01:00.000Z"),
+        (
+            "start_utc = 2027-01-01T00:00:00Z",
+            "2027-01-01T00:00:00.000Z",
+        ),
+    ] {
+        plan(&with(head), &at("again.csv"));
+        let rows = fs::read_to_string(at("again.csv")).expect("written");
+        let row = rows.lines().nth(1).expect("a row");
+        assert_eq!(row.split(',').nth(3), Some(departs), "{rows}");
+    }
+    for wrong in [
+        "\"2026-05-01T12:00:00Z\"",
+        "2026-05-01",
+        "2026-05-01T12:00:00",
+        "5",
+    ] {
+        searoom(&["check", &dated(&format!("start_utc = {wrong}"))])
+            .code(2)
+            .stderr(contains("start_utc: found").and(contains("offset from UTC, such as")));
+    }
+}
+
 /// Own ship begins a little off its route: the turn of a moment is no leg of its own.
 #[test]
 fn a_turn_of_a_moment_is_part_of_the_next_leg() {
