@@ -8,6 +8,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// A point or a displacement in the plane: `(east, north)`, metres (or m/s for a velocity).
 pub type Vector = nalgebra::Vector2<f64>;
 
@@ -52,7 +55,10 @@ impl Pose {
 }
 
 /// A side of a ship.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
 pub enum Side {
     /// Left, looking ahead.
     Port,

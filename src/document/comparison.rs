@@ -40,8 +40,7 @@ pub struct EntryDocument {
     pub lower_bound: Option<LowerBoundDocument>,
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
-    /// For texts alone.
-    #[serde(skip)]
+    /// The manoeuvre in brief; null without one.
     pub departure: Option<Departure>,
     pub breaks: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -395,7 +395,7 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
         // without a negative zero
         Some(lead) => {
             let lead = lead.round() + 0.0;
-            format!("first alteration {lead} s before the closest approach without it")
+            format!("first alteration {lead} s before the closest approach on the course before it")
         }
     };
     let turns = counted(manoeuvre.turns, "turn");

@@ -43,8 +43,7 @@ pub struct SuiteRunDocument {
     pub verified: bool,
     pub safe: bool,
     pub cost: Option<CostDocument>,
-    /// For texts alone.
-    #[serde(skip)]
+    /// The manoeuvre in brief; null without one.
     pub departure: Option<Departure>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,

@@ -19,8 +19,12 @@ fn title(compared: &ScenarioComparisonDocument) -> &str {
 /// Formats the table of one scenario and the methods that do not apply.
 pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display) -> String {
     let table = comparison_grid(&compared.entries).text(display);
+    // remarks on a column that is dropped are none
+    let has_cost = table.contains("[m²]");
+    let remarks = remarks(compared).into_iter();
+    let remarks = remarks.filter(|remark| has_cost || !remark.starts_with("J "));
     let mut lines = vec![title(compared).to_owned(), table];
-    lines.extend(remarks(compared));
+    lines.extend(remarks);
     lines.join("\n")
 }
 

@@ -31,7 +31,7 @@ pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     let header = "scenario, outcome, encounter, manoeuvre, passing, J\n[m²], delay\n[s], \
                   clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
     let rows = runs.iter().zip(row_names(runs));
-    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name))).dropping("J")
+    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name)))
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -195,8 +195,8 @@ pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
         let motion = &leg.motion;
         vec![
             plain((index + 1).to_string()),
-            plain(tenths(motion.start_time)),
-            plain(tenths(motion.end_time())),
+            plain(format!("{:.1}", motion.start_time)),
+            plain(format!("{:.1}", motion.end_time())),
             plain(leg.course_figure()),
             plain(knots_figure(motion.speed)),
             plain(leg.length_figure(longest)),

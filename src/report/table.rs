@@ -15,12 +15,12 @@ const DETAILS: [&str; 9] = [
 
 /// Columns that a table drops next, in this order.
 const FURTHER: [&str; 6] = [
-    "passing",
-    "verified",
-    "encounter",
-    "manoeuvre",
-    "clearance",
     "J",
+    "passing",
+    "encounter",
+    "clearance",
+    "verified",
+    "manoeuvre",
 ];
 
 /// Where a text is shown. The default is a file: no colour, and as wide as need be.
@@ -54,8 +54,6 @@ pub(super) struct Grid {
     pub rows: Vec<Vec<Styled>>,
     /// The columns whose lines may be broken where the table is too wide, and their least widths.
     breaking: Vec<(&'static str, usize)>,
-    /// A column that is dropped right after the details.
-    minor: Option<&'static str>,
 }
 
 impl Grid {
@@ -70,19 +68,12 @@ impl Grid {
             numbers,
             rows: rows.into_iter().collect(),
             breaking: Vec::new(),
-            minor: None,
         }
     }
 
     /// Allows lines of a column to be broken, to no less than this width, after those before.
     pub fn breaking(mut self, name: &'static str, least: usize) -> Self {
         self.breaking.push((name, least));
-        self
-    }
-
-    /// Drops a column before all others but the details.
-    pub fn dropping(mut self, name: &'static str) -> Self {
-        self.minor = Some(name);
         self
     }
 
@@ -102,8 +93,7 @@ impl Grid {
 
     /// The table without details.
     pub fn brief(self) -> Self {
-        let minor = self.minor;
-        (DETAILS.into_iter().chain(minor)).fold(self, |grid, name| grid.without(name))
+        DETAILS.into_iter().fold(self, Self::without)
     }
 
     /// Formats the table for a terminal. A table that is too wide breaks the lines of one column and
@@ -115,8 +105,7 @@ impl Grid {
             return self.brief().cards(display);
         }
         let mut grid = self;
-        let minor = grid.minor;
-        for name in DETAILS.into_iter().chain(minor).chain(FURTHER) {
+        for name in DETAILS.into_iter().chain(FURTHER) {
             grid = match grid.fitted(width, display) {
                 Ok(fitted) => return fitted.table(display).trim_fmt(),
                 Err(wide) => wide.without(name),

@@ -1,6 +1,9 @@
 //! Own ship's alteration in a few words: its greatest departure from the desired course, or where
 //! there is none from the desired speed.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::PlanDocument;
 use super::legs::STILL_MPS;
 use crate::document::parts::SampleDocument;
@@ -17,13 +20,21 @@ const SPEED: f64 = 0.02;
 /// cover the same ground.
 const TIME_WEIGHT: f64 = 0.1;
 
+/// Radians between two samples. A smaller change of course is no turn.
+const TURN_RAD: f64 = 1e-4;
+
+/// Fraction by which a turn between two samples may seem faster than the turning radius allows.
+const FASTER: f64 = 0.05;
+
 /// Greatest departure of a motion from the desired course, or else from the desired speed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Departure {
-    /// The greatest one of 5° or more that does not begin toward the path, and its start.
+    /// The greatest one of 5° or more that does not begin toward the path, and the start of the
+    /// turn to it.
     Course {
         side: Side,
-        degrees: f64,
+        turn_deg: f64,
         from_s: f64,
     },
     /// The longest wait, and the distance sailed before it.
@@ -40,7 +51,7 @@ impl Departure {
     /// Side and degrees, with a wait its duration, or the speed.
     pub fn brief(&self) -> String {
         match *self {
-            Self::Course { side, degrees, .. } => format!("{side} {degrees:.0}°"),
+            Self::Course { side, turn_deg, .. } => format!("{side} {turn_deg:.0}°"),
             Self::Waits { for_s, .. } => format!("waits {for_s:.0} s"),
             Self::Speed {
                 slower, speed_mps, ..
@@ -111,7 +122,10 @@ fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) ->
     let mut greatest: Option<(Side, f64, f64)> = None;
     // the side of the present departure, its start, and whether it is a return
     let mut current: Option<(Side, f64, bool)> = None;
-    for sample in samples.iter().filter(|s| s.speed_mps > STILL_MPS) {
+    let moving: Vec<&SampleDocument> = (samples.iter())
+        .filter(|sample| sample.speed_mps > STILL_MPS)
+        .collect();
+    for (at, sample) in moving.iter().enumerate() {
         let index = leg_at(desired, sample);
         let (along, off) = place_on(&legs[index], sample);
         let heading = heading_from_course_deg(sample.course_deg);
@@ -139,7 +153,7 @@ fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) ->
         let side = Side::of_turn(turned).filter(|_| degrees >= DEPARTURE_DEG);
         if side != current.map(|(side, ..)| side) {
             let returns = off.abs() > 0.1 * radius && off * turned < 0.0;
-            current = side.map(|side| (side, sample.t_s, returns));
+            current = side.map(|side| (side, begin(&moving[..=at], side, radius), returns));
         }
         if let Some((side, from_s, false)) = current
             && greatest.is_none_or(|(_, most, _)| degrees > most)
@@ -147,12 +161,26 @@ fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) ->
             greatest = Some((side, degrees, from_s));
         }
     }
-    let (side, degrees, from_s) = greatest?;
+    let (side, turn_deg, from_s) = greatest?;
     Some(Departure::Course {
         side,
-        degrees,
+        turn_deg,
         from_s,
     })
+}
+
+/// Start of the turn to a side that leads to the last sample: back over the samples between which
+/// own ship turned to this side, within its turning radius in metres.
+fn begin(samples: &[&SampleDocument], side: Side, radius: f64) -> f64 {
+    let heading = |sample: &SampleDocument| heading_from_course_deg(sample.course_deg);
+    let turns = |pair: &[&SampleDocument]| {
+        let turned = side.turn_sign() * wrap(heading(pair[1]) - heading(pair[0]));
+        let most = pair[0].speed_mps * (pair[1].t_s - pair[0].t_s) / radius;
+        turned > TURN_RAD && turned <= most * (1.0 + FASTER)
+    };
+    let last = samples.len() - 1;
+    let back = samples.windows(2).rev().take_while(|pair| turns(pair));
+    samples[last - back.count()].t_s
 }
 
 fn wait(samples: &[SampleDocument]) -> Option<Departure> {
@@ -277,6 +305,35 @@ mod tests {
             ),
         ] {
             assert_eq!(found(&east, &parts), expected);
+        }
+    }
+
+    /// 5° are reached two seconds after the turn has begun.
+    #[test]
+    fn a_departure_begins_with_its_turn() {
+        let arc = (1..=10).map(|k| (1, 90.0 + 3.0 * f64::from(k), 5.0));
+        let parts: Vec<_> = std::iter::once((13, 90.0, 5.0)).chain(arc).collect();
+        let east = [(0.0, 0.0), (2000.0, 0.0)];
+        assert_eq!(found(&east, &parts), "starboard 30° from 12 s");
+    }
+
+    /// In the headline and in the legs.
+    #[test]
+    fn a_manoeuvre_begins_when_its_departure_does() {
+        for name in ["give-way", "head-on", "overtaking", "stand-on"] {
+            let file = format!("scenarios/colregs/{name}.toml");
+            let scenario = crate::scenario::Scenario::read(file.as_ref()).expect("valid");
+            let plan = PlanDocument::of(&crate::pipeline::run(scenario));
+            let (Departure::Course { from_s, .. } | Departure::Speed { from_s, .. }) =
+                plan.departure().expect("a manoeuvre")
+            else {
+                panic!("{name}: a wait");
+            };
+            let begins_s = plan.manoeuvres[0].begins_s;
+            assert!(
+                (from_s - begins_s).abs() < 1e-3,
+                "{name}: {from_s} {begins_s}"
+            );
         }
     }
 

@@ -36,6 +36,9 @@ const LEAST_TURN_DEG: f64 = 0.05;
 /// Event of a leg: the manoeuvre is over.
 const RETURNS: &str = "returns";
 
+/// Event of a leg: a turn at a corner of the mission.
+const FOLLOWS: &str = "follows the mission";
+
 /// m/s. A slower ship lies still.
 pub(super) const STILL_MPS: f64 = 1e-3;
 
@@ -159,9 +162,11 @@ impl PlanDocument {
                 let time = legs[index].motion.start_time + tolerance::TIME_S;
                 m.returns_s <= time && time < m.joins_s
             });
-            let reason = self.reason(&before, &legs[index..]).filter(|_| !returns);
-            let reason = reason.map(str::to_owned);
-            let after = self.waited_for(&legs, index).map(str::to_owned);
+            let follows = self.follows_mission(&before, &legs[index].motion);
+            let reason = self.reason(&before, &legs[index..]);
+            let reason = reason.filter(|_| !returns && !follows).map(str::to_owned);
+            let after = self.waited_for(&legs, index).filter(|_| !follows);
+            let after = after.map(str::to_owned);
             let known = index
                 .checked_sub(1)
                 .and_then(|last| legs[last].because_of.as_ref());
@@ -193,6 +198,9 @@ impl PlanDocument {
                 told = after;
             }
             let leg = &mut legs[index];
+            if follows {
+                leg.events.insert(0, FOLLOWS.to_owned());
+            }
             leg.because_of = reason;
             before = Before {
                 heading: leg.motion.end().heading,

@@ -3,12 +3,12 @@
 use super::PlanDocument;
 use super::legs::PlannedLeg;
 use crate::document::parts::{ObstacleDocument, PositionDocument};
-use crate::frame::{Pose, Vector, heading_of, wrap};
+use crate::frame::{Pose, Vector, deg_from_radians, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::target::Uncertainty;
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{DEPARTURE_DEG, Segment};
 use crate::vessel::Hull;
 
 /// Metres. Plans run along the edges of sets: what is no deeper in a set does not enter it.
@@ -62,6 +62,23 @@ impl PlanDocument {
             self.going_on(leg, before)
         };
         self.entered(&held)
+    }
+
+    /// True for a turn of the mission itself: own ship is on the mission before it, and on a later leg
+    /// after it.
+    pub(super) fn follows_mission(&self, before: &Before, leg: &Segment) -> bool {
+        let on = |place: Vector, heading: f64| {
+            let near = self.nearest_leg(place)?;
+            let turned = deg_from_radians(wrap(heading - heading_of(near.along)).abs());
+            let is_on = turned < DEPARTURE_DEG && near.off <= self.own_ship.length_m;
+            is_on.then_some(near.index)
+        };
+        let end = leg.end();
+        let [from, to] = [
+            on(leg.start.position, before.heading),
+            on(end.position, end.heading),
+        ];
+        leg.is_arc() && from.is_some() && to > from
     }
 
     /// Own ship's motion if it did not alter at the start of a leg: along the mission to its end
@@ -259,6 +276,8 @@ mod tests {
     use crate::pipeline;
     use crate::scenario::Scenario;
 
+    const CORNER: &str = "{ east_m = 600.0, north_m = 0.0 }, { east_m = 600.0, north_m = 3000.0 }]";
+
     fn planned(name: &str) -> PlanDocument {
         let file = format!("scenarios/{name}.toml");
         let scenario = Scenario::read(file.as_ref()).expect("valid");
@@ -368,6 +387,25 @@ mod tests {
         let legs = planned("closed-loop/harbour-ferries").legs();
         assert_eq!(legs[1].events[0], "turns for 'fast ferry'", "{legs:?}");
         assert_eq!(legs[3].events, ["returns after 'fast ferry'"], "{legs:?}");
+    }
+
+    /// Own ship would meet the tug on the second leg, long after the corner.
+    #[test]
+    fn a_turn_at_a_corner_follows_the_mission() {
+        let text = include_str!("../../../scenarios/colregs/give-way.toml");
+        let text = (text.replace("{ east_m = 1500.0, north_m = 0.0 }]", CORNER))
+            .replace(
+                "{ east_m = 750.0, north_m = -750.0 }",
+                "{ east_m = 3000, north_m = 1800 }",
+            )
+            .replace("course_deg = 0.0 ", "course_deg = 270.0 ")
+            .replace("horizon_s = 400.0", "horizon_s = 900.0");
+        let legs = PlanDocument::of(&pipeline::run(Scenario::parse(&text).expect("valid"))).legs();
+        let events: Vec<&str> = (legs.iter().take(4))
+            .map(|leg| leg.events.first().map_or("", |event| event))
+            .collect();
+        let expected = ["", "follows the mission", "", "turns for 'target'"];
+        assert_eq!(events, expected, "{legs:?}");
     }
 
     #[test]

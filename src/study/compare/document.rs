@@ -69,7 +69,7 @@ impl EntryDocument {
             departure(&samples(motion), &scenario.desired, radius, is_along_path)
         });
         let turn = match departure {
-            Some(Departure::Course { side, degrees, .. }) => Some((side, degrees)),
+            Some(Departure::Course { side, turn_deg, .. }) => Some((side, turn_deg)),
             _ => None,
         };
         let conduct = entry.conduct(scenario);
