@@ -62,7 +62,8 @@ fn the_same_figure_is_the_same_bytes() {
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
 
-/// Tests that a title is above the panels, and that a long one is truncated visibly.
+/// Tests that a title is above the panels, that a long one has several lines, and that one of more
+/// than three is truncated visibly.
 #[test]
 fn a_title_is_drawn_and_fits() {
     let all = targets();
@@ -70,7 +71,9 @@ fn a_title_is_drawn_and_fits() {
     let svg = titled("Three & more");
     assert!(svg.contains("Three &amp; more"));
     let long = titled(&"ahoy ".repeat(40));
-    assert!(long.contains("…<") && !long.contains(&"ahoy ".repeat(40)));
+    assert_eq!(long.matches("ahoy").count(), 40);
+    assert!(!long.contains('…') && !long.contains(&"ahoy ".repeat(30)));
+    assert!(titled(&"ahoy ".repeat(200)).contains("…<"));
     assert!(!figure(&all, 5.0, &[0.0]).svg().contains("Three"));
 }
 

@@ -3,7 +3,8 @@
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::mark;
 use super::panel::window_around;
-use super::plan::{LAND, land_areas};
+use super::plan::{LAND, NAME_LETTERS, land_areas};
+use super::render::shortened;
 use super::sections::{seconds, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::frame::Vector;
@@ -14,9 +15,6 @@ use crate::study::assess::OwnSituation;
 /// Limit of the velocity panel as a multiple of the maximum speed.
 const FASTEST: f64 = 1.3;
 const OWN: Stroke = Stroke::solid("#000000", 1.6);
-
-/// Gap in pixels between a set and the base line of its name.
-const GAP: f64 = 5.0;
 const COLUMNS: usize = 2;
 
 /// Draws the sections at `times` in seconds, dCPA over the velocities, and the risk at each time.
@@ -30,7 +28,8 @@ pub fn assessment_figure(
 ) -> Result<Figure, FigureError> {
     options.draw(situation.horizon, |style| {
         let figure = Figure::new(COLUMNS, assessment_panels(situation, land, times, style));
-        figure.titled(title)
+        // titles tell the risks apart
+        figure.titled(title).with_titles()
     })
 }
 
@@ -70,6 +69,9 @@ fn assessment_panels(
             &velocities,
         ),
     ];
+    if style.is_small() {
+        panels[1].rename_axes(["East [m/s]", "North [m/s]"]);
+    }
     panels[0].plots.splice(0..0, areas());
     if land.is_some() {
         panels[0].area_key("land", LAND, 1.0);
@@ -93,16 +95,21 @@ const OWN_ON_FIELD: Stroke = Stroke {
     ..OWN
 };
 
-/// Writes the targets' names above their first sections.
+/// Writes the targets' names beside their first sections.
 fn name(panel: &mut Panel, situation: &OwnSituation) {
-    let gap = GAP * panel.pixel();
     for target in situation.obstacles {
-        let reach = |x: f64, y: f64| target.section(0.0).support(Vector::new(x, y));
-        let east = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));
-        panel.note(
-            target.name(),
-            Vector::new(east, reach(0.0, 1.0) + gap),
-            OWN.colour,
-        );
+        let section = target.section(0.0);
+        let reach = |x: f64, y: f64| section.support(Vector::new(x, y));
+        let [east, north] = [reach(1.0, 0.0), reach(0.0, 1.0)];
+        let [west, south] = [-reach(-1.0, 0.0), -reach(0.0, -1.0)];
+        let middle = 0.5 * Vector::new(east + west, north + south);
+        let sides = [
+            Vector::new(middle.x, north),
+            Vector::new(middle.x, south),
+            Vector::new(west, middle.y),
+            Vector::new(east, middle.y),
+        ];
+        let name = shortened(target.name(), NAME_LETTERS);
+        panel.label(&sides.map(|side| (name.clone(), side)), OWN.colour, true);
     }
 }

@@ -40,7 +40,7 @@ pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
 
 /// The points of a polyline without those on the straight way between their neighbours. The points
 /// left out were within this fraction of the way.
-fn bends(points: &[Vector]) -> Vec<Vector> {
+pub(super) fn bends(points: &[Vector]) -> Vec<Vector> {
     const STRAIGHT: f64 = 1e-4;
     let mut kept: Vec<Vector> = Vec::with_capacity(points.len());
     for (index, point) in points.iter().enumerate() {

@@ -5,8 +5,8 @@ use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
 use super::Stroke;
-use super::outline::{area, curve};
-use super::render::shortened;
+use super::outline::{area, bends, curve};
+use super::render::in_lines;
 use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::vessel::Hull;
@@ -33,8 +33,13 @@ const TOP: [f64; 2] = [31.0, 8.0];
 /// Height in pixels of the numbers and the label of the lower axis.
 const AXIS: f64 = 38.0;
 
-/// Letters of a title that fit above a panel.
+/// Letters of a line of a title that fit above a panel, and the height of a further line as a multiple
+/// of its size.
 pub(super) const LETTERS: usize = 58;
+const LINE: f64 = 1.17;
+
+/// Pixels by which a title is larger than other texts.
+const TITLE: u32 = 2;
 
 /// Least pixels between two numbers of the lower axis, and of the left one.
 const TICKS: [f64; 2] = [44.0, 28.0];
@@ -111,8 +116,8 @@ pub struct Panel {
     notes: Vec<TextAnnotation>,
     /// Texts and ships; labels keep clear of them, of the filled areas and of the curves.
     taken: Vec<Window>,
-    filled: Vec<ConvexPolygon>,
-    curves: Vec<Vec<Vector>>,
+    filled: Vec<(Window, ConvexPolygon)>,
+    curves: Vec<(Window, Vec<Vector>)>,
 }
 
 impl Panel {
@@ -166,6 +171,11 @@ impl Panel {
         self.window
     }
 
+    /// Replaces the names of the axes.
+    pub(super) fn rename_axes(&mut self, axes: [&str; 2]) {
+        self.axes = axes.map(str::to_owned);
+    }
+
     pub(super) fn remove_title(&mut self) {
         self.title.clear();
     }
@@ -209,7 +219,9 @@ impl Panel {
 
     pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
         self.plots.push(curve(points, closed, stroke));
-        self.curves.push(points.to_vec());
+        let around = Window::around(points);
+        self.curves
+            .extend(around.map(|around| (around, bends(points))));
     }
 
     /// Fills a set, from which labels keep clear, with its boundary.
@@ -217,7 +229,8 @@ impl Panel {
         if let Ok(hull) = ConvexPolygon::hull(points) {
             self.fill(&hull, colour, opacity);
             self.curve(points, true, Stroke::solid(colour, 1.0));
-            self.filled.push(hull);
+            let around = Window::around(hull.vertices());
+            self.filled.extend(around.map(|around| (around, hull)));
         }
     }
 
@@ -278,32 +291,33 @@ impl Panel {
             let at = texts[index].1;
             (far > LEADER_PX).then(|| [at, at.sup(&place.low).inf(&place.high)])
         };
-        let meets = |place: &Window| self.taken.iter().filter(|other| other.meets(place)).count();
-        let crossed = |place: &Window| self.curves.iter().filter(|l| crosses(l, place)).count();
-        let covers = |(far, index, place): &(f64, usize, Window)| {
-            let [low, high] = [place.low, place.high].map(|corner| self.window.contains(corner));
-            let filled = |set: &&ConvexPolygon| !place.part_of(set).is_empty();
-            // a leader along a line or through a text is not seen
-            let middle = leader(*far, *index, place).map(|[at, end]| 0.5 * (at + end));
-            let middle = middle.map(|middle| Window::at(middle).grown(2.0 * pixel));
-            [
-                usize::from(!low) + usize::from(!high),
-                meets(place),
-                self.filled.iter().filter(filled).count() + middle.as_ref().map_or(0, meets),
-                crossed(place) + middle.as_ref().map_or(0, crossed),
-            ]
-        };
-        let cost = |place: &(f64, usize, Window)| {
-            let covered = covers(place).into_iter().zip(COSTS);
-            let covered: f64 = covered.map(|(count, cost)| count as f64 * cost).sum();
-            place.0 + NEXT * place.1 as f64 + covered
-        };
         let free = if is_small(self.area) { 3 } else { 2 };
-        let allowed = places.filter(|place| {
-            let near = place.0 <= LEADER_PX;
-            needed || (near && covers(place)[..free].iter().all(|count| *count == 0))
-        });
-        let (far, index, best) = allowed.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let mut best: Option<(f64, usize, Window)> = None;
+        let mut least = f64::INFINITY;
+        for (far, index, place) in places {
+            if !needed && far > LEADER_PX {
+                continue;
+            }
+            // a leader along a line or through a text is not seen
+            let middle = leader(far, index, &place).map(|[at, end]| 0.5 * (at + end));
+            let middle = middle.map(|middle| Window::at(middle).grown(2.0 * pixel));
+            let mut cost = far + NEXT * index as f64;
+            for (kind, weight) in COSTS.into_iter().enumerate() {
+                // most places are dearer than the best one long before all is counted
+                if !(cost < least) {
+                    break;
+                }
+                let count = self.covered(kind, &place, middle.as_ref());
+                if !needed && kind < free && count > 0 {
+                    cost = f64::INFINITY;
+                }
+                cost += count as f64 * weight;
+            }
+            if cost < least {
+                (least, best) = (cost, Some((far, index, place)));
+            }
+        }
+        let (far, index, best) = best?;
         if let Some(leader) = leader(far, index, &best) {
             self.plots.push(curve(&leader, false, LEADER));
         }
@@ -316,6 +330,28 @@ impl Panel {
         self.note(text, best.center() - Vector::new(0.0, size * pixel), colour);
         self.taken.push(best);
         Some(*at)
+    }
+
+    /// How much of a kind of [`COSTS`] a text and the middle of its leader cover: the frame, texts
+    /// and ships, filled areas, lines.
+    fn covered(&self, kind: usize, place: &Window, middle: Option<&Window>) -> usize {
+        let meets = |place: &Window| self.taken.iter().filter(|other| other.meets(place)).count();
+        let crossed = |place: &Window| {
+            let lines = self.curves.iter().filter(|(around, _)| around.meets(place));
+            lines.filter(|(_, line)| crosses(line, place)).count()
+        };
+        let filled = |(around, set): &&(Window, ConvexPolygon)| {
+            around.meets(place) && !place.part_of(set).is_empty()
+        };
+        match kind {
+            0 => {
+                let ends = [place.low, place.high].into_iter();
+                ends.filter(|corner| !self.window.contains(*corner)).count()
+            }
+            1 => meets(place),
+            2 => self.filled.iter().filter(filled).count() + middle.map_or(0, meets),
+            _ => crossed(place) + middle.map_or(0, crossed),
+        }
     }
 
     /// Width in pixels to the left of an area.
@@ -333,7 +369,14 @@ impl Panel {
 
     /// Height in pixels above the area.
     pub(super) fn top(&self) -> f64 {
-        TOP[usize::from(self.title.is_empty())]
+        let further = self.title_lines().len().saturating_sub(1) as f64;
+        let line = LINE * f64::from(text_size(self.area) + TITLE);
+        TOP[usize::from(self.title.is_empty())] + line * further
+    }
+
+    fn title_lines(&self) -> Vec<String> {
+        let share = (self.area[0] + LEFT[0]) / (AREA[0] + LEFT[0]);
+        in_lines(&self.title, (LETTERS as f64 * share) as usize)
     }
 
     /// Width in pixels to the right of the area.
@@ -351,8 +394,10 @@ impl Panel {
         let Window { low, high } = self.window;
         let [left, right, top, below] = sides;
         let size = text_size(self.area);
-        let letters = LETTERS as f64 * (self.area[0] + LEFT[0]) / (AREA[0] + LEFT[0]);
-        let steps = [0, 1].map(|i| round_step((high - low)[i] / self.area[i] * TICKS[i]));
+        let steps = [0, 1].map(|i| {
+            let least = (high - low)[i] / self.area[i] * TICKS[i];
+            tick_step(low[i], high[i], least)
+        });
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
             .with_x_axis_min(low.x)
             .with_x_axis_max(high.x)
@@ -362,7 +407,7 @@ impl Panel {
             .with_y_tick_step(steps[1])
             .with_box_axes()
             .with_show_grid(false)
-            .with_title_size(size + 2)
+            .with_title_size(size + TITLE)
             .with_label_size(size + 1)
             .with_tick_size(size)
             .with_body_size(size)
@@ -370,7 +415,11 @@ impl Panel {
             .with_force_margins_y(top, below);
         layout.show_colorbar = self.has_scale();
         if !self.title.is_empty() {
-            layout = layout.with_title(shortened(&self.title, letters as usize));
+            let lines = self.title_lines();
+            // lines are broken already
+            layout = layout
+                .with_title(lines.join("\n"))
+                .with_title_wrap(usize::MAX);
         }
         layout.suppress_y_ticks = !numbered[0];
         layout.suppress_x_ticks = !numbered[1];
@@ -401,6 +450,17 @@ pub(super) fn round_step(least: f64) -> f64 {
     let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
     let fits = |s: &&f64| **s >= least * (1.0 - 1e-9);
     steps.iter().find(fits).copied().unwrap_or(10.0 * power)
+}
+
+/// Round step of at least `least` between the numbers of an axis; a smaller one where fewer than two
+/// numbers would be on it.
+fn tick_step(low: f64, high: f64, least: f64) -> f64 {
+    let numbers = |step: f64| (high / step).floor() - (low / step).ceil() + 1.0;
+    let mut step = round_step(least);
+    while numbers(step) < 2.0 && step > 0.1 * least {
+        step = round_step(0.4 * step);
+    }
+    step
 }
 
 /// A darker shade of a colour `#rrggbb`.
@@ -472,6 +532,24 @@ mod tests {
     }
 
     #[test]
+    fn every_axis_has_two_numbers() {
+        for (low, high) in [(-1.1, 1.6), (1.0, 9.0), (-0.4, 0.4), (1e5 + 1.0, 1e5 + 1.7)] {
+            for pixels in [100.0, 70.0, 400.0] {
+                let step = tick_step(low, high, (high - low) / pixels * TICKS[0]);
+                let numbers = ((low / step).ceil() as i64..=(high / step).floor() as i64).count();
+                assert!(
+                    (2..=10).contains(&numbers),
+                    "{low} {high} {pixels}: {numbers}"
+                );
+            }
+        }
+        assert_eq!(
+            [tick_step(0.0, f64::NAN, f64::NAN), round_step(0.4 * 0.5)],
+            [1.0, 0.2]
+        );
+    }
+
+    #[test]
     fn a_label_keeps_off_a_filled_set() {
         let mut panel = panel();
         let corners = [
@@ -487,7 +565,7 @@ mod tests {
             "#000000",
             true,
         );
-        assert!(panel.taken[0].part_of(&panel.filled[0]).is_empty());
+        assert!(panel.taken[0].part_of(&panel.filled[0].1).is_empty());
     }
 
     #[test]

@@ -381,26 +381,12 @@ pub(super) fn traffic_chart(
         .closest
         .as_ref()
         .filter(|_| filled == traffic.filled);
-    if let Some((ends, _)) = closest {
-        panel.curve(ends, false, CLOSEST);
-    }
-    panel.curve(&traffic.track, false, PLANNED);
     // that of the closest approach stands there
     let time = |k: usize| match only.is_some() || (k == filled && closest.is_some()) {
         true => String::new(),
         false => minutes(traffic.times[k]),
     };
     let mut ships: Vec<Labelled> = Vec::new();
-    let mut places = Vec::new();
-    for (k, pose) in traffic.own.iter().enumerate() {
-        if instants.contains(&k) && window.contains(pose.position) {
-            panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
-            places.push((time(k), pose.position));
-        }
-    }
-    let again = only.is_some() && style.is_small() && instants.start > 0;
-    let name = if again { "" } else { "own ship" };
-    ships.push((PLANNED.colour, name.to_owned(), places));
     let mut outside: Vec<(Stroke, String)> = Vec::new();
     for (index, target) in traffic.targets.iter().enumerate() {
         let name = shortened(&target.name, NAME_LETTERS);
@@ -423,6 +409,22 @@ pub(super) fn traffic_chart(
         let name = if again { String::new() } else { name };
         ships.push((target_colour(index), name, places));
     }
+    // no hull hides own ship
+    if let Some((ends, _)) = closest {
+        panel.curve(ends, false, CLOSEST);
+    }
+    panel.curve(&traffic.track, false, PLANNED);
+    let mut places = Vec::new();
+    for (k, pose) in traffic.own.iter().enumerate() {
+        if instants.contains(&k) && window.contains(pose.position) {
+            panel.ship(&scenario.own_ship.hull, pose, PLANNED.colour);
+            places.push((time(k), pose.position));
+        }
+    }
+    let again = only.is_some() && style.is_small() && instants.start > 0;
+    let name = if again { "" } else { "own ship" };
+    // its labels go first
+    ships.insert(0, (PLANNED.colour, name.to_owned(), places));
     if let Some((ends, apart)) = closest {
         let text = match only.is_some() {
             true => apart.clone(),

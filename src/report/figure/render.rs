@@ -14,6 +14,7 @@ use kuva::render::render::{Primitive, Scene, TextAnchor};
 use super::Panel;
 use super::panel::{AREA, COLOURED, Key, text_size, text_width};
 use crate::report::{WriteError, write_atomically};
+use crate::text::broken;
 
 /// Dots per inch: of a PNG unless asked otherwise, of SVG pixels, of PDF points.
 const PNG_DPI: f64 = 192.0;
@@ -23,9 +24,11 @@ const PDF_DPI: f64 = 72.0;
 /// Most millions of pixels of a PNG; each pixel takes four bytes of memory.
 const MOST_MILLIONS: f64 = 200.0;
 
-/// Font size of a title in pixels, and the number of letters that fit above one panel.
+/// Font size of a title in pixels, the number of letters that fit above one panel, and the most lines
+/// of a title.
 const TITLE_SIZE: u32 = 18;
 const LETTERS: usize = 44;
+const MOST_LINES: usize = 3;
 
 /// Most dashes of a line in a PNG.
 const MOST_DASHES: f64 = 1e4;
@@ -33,9 +36,13 @@ const MOST_DASHES: f64 = 1e4;
 /// Prefix of clip path names in the drawing library. A process-wide counter follows it.
 const CLIP: &str = "kuva-clip-";
 
-/// Pixels around the whole and between the panels, and the height of a title.
+/// Pixels around the whole and between the panels, the height of a line of a title, and its base.
 const PADDING: f64 = 6.0;
 const TITLE: f64 = 28.2;
+const TITLE_BASE: f64 = 20.3;
+
+/// A title that only takes room.
+const BLANK: &str = " ";
 
 /// Height in pixels of the letter of a panel.
 const LETTER: f64 = 20.0;
@@ -151,7 +158,7 @@ impl Figure {
         }
     }
 
-    /// Sets a title above all panels, shortened to their width.
+    /// Sets a title above all panels, in lines of their width.
     pub fn titled(self, title: &str) -> Self {
         Self {
             title: (!title.is_empty()).then(|| title.to_owned()),
@@ -250,11 +257,19 @@ impl Figure {
     pub(super) fn frame(&self) -> [f64; 2] {
         let [columns, rows] = self.grid().map(|count| count as f64);
         let (left, right, top, below) = self.margins();
-        let title = self.title.as_ref().map_or(0.0, |_| TITLE);
+        let beside = PADDING * (columns + 1.0) + left.iter().sum::<f64>() + columns * right;
+        let title = TITLE * self.title_lines(beside + columns * self.area[0]).len() as f64;
         [
-            PADDING * (columns + 1.0) + left.iter().sum::<f64>() + columns * right,
+            beside,
             PADDING * (rows + 1.0) + title + rows * top + below.iter().sum::<f64>(),
         ]
+    }
+
+    /// The lines of the title in a width in pixels.
+    fn title_lines(&self, width: f64) -> Vec<String> {
+        let letters = (width / AREA[0] * LETTERS as f64) as usize;
+        let title = self.title.as_deref();
+        title.map_or_else(Vec::new, |title| in_lines(title, letters))
     }
 
     /// The legend of all panels in rows of a width: offset in pixels, row, and key.
@@ -286,6 +301,7 @@ impl Figure {
         let (left, right, top, below) = self.margins();
         let grid = [columns as f64, rows as f64];
         let [width, foot] = [0, 1].map(|i| frame[i] + grid[i] * area[i]);
+        let title = self.title_lines(width);
         let [width, height] = self
             .size
             .unwrap_or([width, foot + self.legend_height(width)]);
@@ -312,10 +328,10 @@ impl Figure {
             canvas = canvas.with_labels_lowercase();
         }
         canvas = canvas.with_plots(self.panels.into_iter().map(|p| p.plots).collect());
-        if let Some(title) = self.title {
-            let letters = (width / AREA[0] * LETTERS as f64) as usize;
-            let title = shortened(&title, letters);
-            canvas = canvas.with_title(title).with_title_size(TITLE_SIZE);
+        if !title.is_empty() {
+            // one line of that height: the library breaks none
+            let size = TITLE_SIZE * title.len() as u32;
+            canvas = canvas.with_title(BLANK).with_title_size(size);
         }
         for (i, left) in left.into_iter().enumerate() {
             canvas = canvas.with_col_width(i, left + area[0] + right);
@@ -325,7 +341,22 @@ impl Figure {
         }
         let mut scene = canvas.render();
         scene.elements.iter_mut().for_each(colour_note);
+        let is_blank =
+            |part: &Primitive| matches!(part, Primitive::Text { content, .. } if content == BLANK);
+        scene.elements.retain(|part| !is_blank(part));
         legend.into_iter().for_each(|part| scene.add(part));
+        for (index, line) in title.into_iter().enumerate() {
+            scene.add(Primitive::Text {
+                x: 0.5 * width,
+                y: TITLE_BASE + TITLE * index as f64,
+                content: line,
+                size: TITLE_SIZE,
+                anchor: TextAnchor::Middle,
+                rotate: None,
+                bold: false,
+                color: None,
+            });
+        }
         [scene.width, scene.height] = [width, height];
         scene
     }
@@ -509,6 +540,18 @@ pub(super) fn shortened(text: &str, letters: usize) -> String {
     format!("{}…", kept.trim_end())
 }
 
+/// A text in lines of at most this many letters. What does not fit into three is cut.
+pub(super) fn in_lines(text: &str, letters: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for line in broken(text, letters, "").lines() {
+        match lines.len() {
+            MOST_LINES => lines[MOST_LINES - 1] += &format!(" {line}"),
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    lines.iter().map(|line| shortened(line, letters)).collect()
+}
+
 /// Renumbers the clip paths from 0, so that equal figures give equal bytes.
 fn numbered_anew(svg: &str) -> String {
     let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
@@ -541,6 +584,15 @@ mod tests {
         assert_eq!(dashes(&[(0.0, 0.0), (1e9, 0.0)], &[8.0, 4.0]).len(), 1);
         assert_eq!(dashes(&[(0.0, 0.0), (f64::NAN, 0.0)], &[8.0, 4.0]).len(), 1);
         assert_eq!(dashes(&[], &[8.0, 4.0]).len(), 1);
+    }
+
+    #[test]
+    fn a_title_has_three_lines_at_most() {
+        assert_eq!(in_lines("Give-way", 20), ["Give-way"]);
+        assert_eq!(in_lines("one two three", 7), ["one two", "three"]);
+        let cut = in_lines("one two three four five six", 5);
+        assert_eq!(cut, ["one", "two", "thre…"]);
+        assert!(in_lines("", 5).is_empty());
     }
 
     #[test]
