@@ -46,20 +46,27 @@ fn read(path: &Path) -> anyhow::Result<Recorded> {
     }
 }
 
-pub fn plan_document(path: &Path) -> anyhow::Result<String> {
-    document_of(&read(path)?, path)
+/// The plan document of a recording, or the kind of one without.
+pub fn plan_document(path: &Path) -> anyhow::Result<Result<String, &'static str>> {
+    let recorded = read(path)?;
+    match other_kind(&recorded) {
+        Some(other) => Ok(Err(other)),
+        None => document_of(&recorded, path).map(Ok),
+    }
+}
+
+fn other_kind(recorded: &Recorded) -> Option<&'static str> {
+    match (recorded.comparison(), recorded.simulation()) {
+        (Some(_), _) => Some("the recording of a comparison, which holds no plan document"),
+        (_, Some(_)) => Some("the recording of a simulation, which holds no plan document"),
+        (None, None) => None,
+    }
 }
 
 fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
-    let other = match (recorded.comparison(), recorded.simulation()) {
-        (Some(_), _) => Some("comparison"),
-        (_, Some(_)) => Some("simulation"),
-        (None, None) => None,
-    };
-    if let Some(other) = other {
+    if let Some(other) = other_kind(recorded) {
         bail!(
-            "{}: the recording of a {other}, which holds no plan document; \
-             `searoom inspect --json` prints its own",
+            "{}: {other}; `searoom inspect --json` prints its own",
             path.display()
         );
     }

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use searoom::document::{PLAN_MEBIBYTES, VerificationDocument, VerifiedPlanDocument};
 use searoom::report::{Display, printable, simulation_verification_text, verification_text};
+use searoom::scenario::import::{A_PLAN, Assumed, Contents};
 use searoom::verification::{
     SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
 };
@@ -15,15 +16,16 @@ use super::output::Output;
 use super::output::status::ExitStatus;
 use super::runner::guarded_within;
 
-/// Checks every file; an unreadable one does not stop the others.
+/// Checks every file; an unreadable one does not stop the others. Results of other commands are left
+/// out where they lie in a folder.
 pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     let files = files::find(&args.plans, &files::PLANS, output);
     let alone = files.len() == 1;
     for found in files {
-        let path = match found {
-            Ok(found) => found.file,
+        let (path, in_folder) = match found {
+            Ok(found) => (found.file, found.in_folder),
             Err(refused) => {
                 status = status.max(output.refused(&refused));
                 let name = refused.file.display().to_string();
@@ -33,7 +35,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
         };
         let name = files::name(&path).display().to_string();
         let display = output.display;
-        let reached = match guarded_within(args.budget_s, move || one(&path, display)) {
+        let reached = match guarded_within(args.budget_s, move || one(&path, in_folder, display)) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
                 let error = format!("{name}: not proven within the budget of {budget} s");
@@ -41,7 +43,11 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 output.error(&error);
                 ExitStatus::NoPlan
             }
-            Some(Ok(Ok(all))) => {
+            Some(Ok(Ok(Checked::Other(kind)))) => {
+                output.note(&format_args!("{name}: {kind}, left out"));
+                continue;
+            }
+            Some(Ok(Ok(Checked::Documents(all)))) => {
                 let mut reached = ExitStatus::Good;
                 for (document, text) in all {
                     if !document.verified {
@@ -84,10 +90,20 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
     status.max(shown)
 }
 
-/// Checks the documents of a file, each with its result as text.
-fn one(file: &Path, display: Display) -> anyhow::Result<Vec<(VerifiedPlanDocument, String)>> {
+enum Checked {
+    /// The documents of a file, each with its result as text.
+    Documents(Vec<(VerifiedPlanDocument, String)>),
+    /// The kind of a file in a folder that has none.
+    Other(&'static str),
+}
+
+fn one(file: &Path, in_folder: bool, display: Display) -> anyhow::Result<Checked> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
-        recorded(file)?
+        match recorded(file)? {
+            Ok(text) => text,
+            Err(other) if in_folder => return Ok(Checked::Other(other)),
+            Err(other) => bail!("{other}; `searoom inspect --json` prints its own"),
+        }
     } else {
         // the message already includes its source
         files::text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
@@ -103,20 +119,35 @@ fn one(file: &Path, display: Display) -> anyhow::Result<Vec<(VerifiedPlanDocumen
     };
     let checked = if is_simulation(&text) {
         verify_simulations(&text).map(|all| all.iter().map(simulation).collect())
+    } else if let Some(other) = other(&text).filter(|_| in_folder) {
+        return Ok(Checked::Other(other));
     } else {
         check(&text).map(|checked| vec![plan(&checked)])
     };
     // the message already includes its field
-    checked.map_err(|error| anyhow!("{error}"))
+    let checked = checked.map_err(|error| anyhow!("{error}"))?;
+    Ok(Checked::Documents(checked))
 }
 
+/// The kind of a known text that is no plan document.
+fn other(text: &str) -> Option<&'static str> {
+    match Contents::parse(text, &Assumed::default()) {
+        Ok(Contents::Other(kind)) if kind != A_PLAN => Some(kind),
+        Ok(Contents::Situations(_)) => Some("a scenario"),
+        _ => None,
+    }
+}
+
+/// The plan document of a recording, or the kind of one without.
+type Recorded = Result<String, &'static str>;
+
 #[cfg(feature = "recording")]
-fn recorded(file: &Path) -> anyhow::Result<String> {
+fn recorded(file: &Path) -> anyhow::Result<Recorded> {
     super::inspect::plan_document(file)
 }
 
 #[cfg(not(feature = "recording"))]
-fn recorded(_: &Path) -> anyhow::Result<String> {
+fn recorded(_: &Path) -> anyhow::Result<Recorded> {
     Err(anyhow!(
         "a recording; this program was built without recordings"
     ))

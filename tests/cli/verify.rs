@@ -80,6 +80,41 @@ fn other_documents_are_no_plans() {
     );
 }
 
+/// What `compare`, `suite` and `simulate` write beside plans does not stop a check of the folder; a
+/// plan that is cut or has no format does.
+#[test]
+fn results_of_other_commands_in_a_folder_are_left_out() {
+    let folder = Folder::new();
+    let head_on = "scenarios/colregs/head-on.toml";
+    for (name, words) in [
+        ("plan", "plan"),
+        ("compared", "compare --planner space-time"),
+        ("suite", "suite"),
+        ("checked", "assess"),
+        ("sailed", "simulate --duration-s 20"),
+    ] {
+        let (command, options) = words.split_once(' ').unwrap_or((words, ""));
+        let document = run(&format!("{command} {head_on} --json {options}"));
+        folder.write(&format!("{name}.json"), stdout(&document));
+    }
+    let verified = searoom(&["verify", text(folder.path())]).success();
+    says(&stdout(&verified), "2 documents: 2 verified, 2 safe");
+    let said = stderr(&verified);
+    assert_eq!(
+        said.matches("a result document, left out").count(),
+        3,
+        "{said}"
+    );
+    let plan = fs::read_to_string(folder.at("plan.json")).expect("a plan");
+    for broken in [
+        &plan[..plan.len() / 2],
+        &plan.replacen("\"format\"", "\"formats\"", 1),
+    ] {
+        folder.write("broken.json", broken);
+        searoom(&["verify", text(folder.path())]).code(2);
+    }
+}
+
 /// Texts of a document are shown, not obeyed: a terminal sees no control character and no line of
 /// their own.
 #[test]

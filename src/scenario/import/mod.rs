@@ -19,7 +19,7 @@ pub use situation::{Declared, Situation};
 use std::path::Path;
 
 use super::limits;
-use crate::input::{Fault, Faults, Field, InputError, from_json, read_text};
+use crate::input::{Fault, Faults, Field, InputError, from_json, from_toml, read_text};
 
 /// Contents of a file.
 #[derive(Debug)]
@@ -47,10 +47,32 @@ impl Contents {
         match text.chars().next() {
             Some('{') => in_json(text, assumed),
             Some('<') => in_xml(text),
+            _ if is_campaign(text) => Ok(Self::Other(
+                "the specification of a campaign, which `searoom campaign run` reads",
+            )),
             _ => Ok(Self::Scenario),
         }
     }
 }
+
+/// True for TOML with the strata of a campaign.
+fn is_campaign(text: &str) -> bool {
+    let root = from_toml(text, &Faults::default());
+    root.is_some_and(|root| root.get("strata").is_some())
+}
+
+/// Keys by which result documents without a format are known.
+const RESULTS: [&str; 6] = [
+    "summary",
+    "comparisons",
+    "simulations",
+    "plans",
+    "hold_course",
+    "entities",
+];
+
+/// The kind of a plan document.
+pub const A_PLAN: &str = "a plan document, which `searoom verify` checks";
 
 fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
     let document = xml::parse(text).map_err(|fault| vec![fault])?;
@@ -75,9 +97,7 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
     // before Imazu's cases, which have an own_ship, too
     let format = text_at("format");
     if format.starts_with("searoom-plan/") {
-        return Ok(Contents::Other(
-            "a plan document, which `searoom verify` checks",
-        ));
+        return Ok(Contents::Other(A_PLAN));
     }
     if has("ownShip") || has("targetShips") {
         let situation = dnv::situation(&root, &faults);
@@ -87,7 +107,7 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
         let situations = imazu::situations(&root, &faults, assumed.variants)?;
         return Ok(Contents::Situations(situations));
     }
-    if format.starts_with("searoom-") || (has("runs") && has("summary")) {
+    if format.starts_with("searoom-") || RESULTS.into_iter().any(has) {
         return Ok(Contents::Other("a result document"));
     }
     if ["FeatureCollection", "Feature"].contains(&text_at("type")) {
