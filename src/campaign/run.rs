@@ -10,7 +10,9 @@ use super::folder::{CampaignError, Folder, Found, missing};
 use super::part::{Header, Part};
 use super::row::{Cell, FAULT, Row, column};
 use super::specification::Specification;
+use super::summary::stored_twice;
 use crate::document::{SimulationDocument, json};
+use crate::input::InputError;
 use crate::output::{WriteError, write_atomically};
 use crate::parallel::{cores, on_threads};
 
@@ -85,10 +87,10 @@ pub fn run(
     let folder = Folder::of(specification, file, folder)?;
     let found = folder.each_part(None, |_| ())?;
     folder.refuse_foreign(&found, false)?;
-    let mut there = Vec::new();
+    let mut parts = Vec::new();
     for Found { file, header } in found {
         match header {
-            Ok(header) => there.push(header.rows),
+            Ok(header) => parts.push((file, header)),
             Err(error) => {
                 let aside = file.with_extension("damaged");
                 std::fs::rename(&file, &aside).map_err(|source| WriteError {
@@ -102,7 +104,13 @@ pub fn run(
             }
         }
     }
+    parts.sort_by_key(|(_, header)| header.rows.start);
+    let twice = stored_twice(&parts);
+    if !twice.is_empty() {
+        return Err(InputError::faults(&folder.parts(), twice).into());
+    }
     let all = shard.rows(specification.rows);
+    let there = parts.into_iter().map(|(_, header)| header.rows);
     let gaps = missing(all.clone(), there);
     let left = gaps.iter().map(|gap| gap.end - gap.start).sum::<u64>();
     let mut done = Done {

@@ -21,6 +21,9 @@ pub(super) const CONFIDENCE: f64 = 0.95;
 /// Rows that a summary names.
 const WORST: usize = 10;
 
+/// Rows that a summary names of each rule or monitor that is broken.
+const WORST_BREAKS: usize = 5;
+
 /// Ranges of rows that a message names.
 const NAMED: usize = 10;
 
@@ -81,9 +84,19 @@ fn sound(
         }
     }
     parts.sort_by_key(|(_, header)| header.rows.start);
+    faults.extend(stored_twice(&parts));
+    if faults.is_empty() {
+        return Ok(parts);
+    }
+    Err(InputError::faults(&folder.parts(), faults).into())
+}
+
+/// Rows that two parts have, of parts in the order of their rows.
+pub(super) fn stored_twice(parts: &[(PathBuf, Header)]) -> Vec<Fault> {
+    let mut faults = Vec::new();
     // the part of all before that reaches farthest
     let mut last: Option<&(PathBuf, Header)> = None;
-    for part in &parts {
+    for part in parts {
         let (file, Header { rows, .. }) = part;
         if let Some((other, before)) = last
             && rows.start < before.rows.end
@@ -91,20 +104,14 @@ fn sound(
             let both = rows.start..rows.end.min(before.rows.end);
             let (file, other) = (file.display(), other.display());
             let found = format!("{} in {other} and in {file}", named(&both));
-            faults.push(Fault::new(
-                "",
-                found,
-                "every row once; delete one of the two",
-            ));
+            let allowed = "every row once; delete one of the two";
+            faults.push(Fault::new("", found, allowed));
         }
         if last.is_none_or(|(_, before)| rows.end > before.rows.end) {
             last = Some(part);
         }
     }
-    if faults.is_empty() {
-        return Ok(parts);
-    }
-    Err(InputError::faults(&folder.parts(), faults).into())
+    faults
 }
 
 /// Events of a row: columns of which one is true or above zero.
@@ -117,6 +124,15 @@ const EVENTS: [&[&str]; 7] = [
     &["broken"],
     &["late"],
 ];
+
+/// The rules and monitors that a row breaks.
+fn broken(row: &[Cell]) -> impl Iterator<Item = &str> {
+    let names = match &row[column("breaks")] {
+        Cell::Word(names) => names.as_deref(),
+        _ => None,
+    };
+    names.into_iter().flat_map(|names| names.split(';'))
+}
 
 /// Counts over some rows.
 #[derive(Debug, Default, Clone)]
@@ -144,10 +160,8 @@ impl Tally {
         for (count, names) in self.events.iter_mut().zip(EVENTS) {
             *count += u64::from(names.iter().any(happened));
         }
-        if let Cell::Word(Some(breaks)) = cell("breaks") {
-            for name in breaks.split(';') {
-                *self.breaks.entry(name.to_owned()).or_default() += 1;
-            }
+        for name in broken(row) {
+            *self.breaks.entry(name.to_owned()).or_default() += 1;
         }
         if let Cell::Number(Some(clearance)) = cell("clearance_m") {
             self.clearances.push(*clearance);
@@ -218,6 +232,7 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
     let index = &folder.index;
     let mut tallies = vec![Tally::default(); index.strata.len()];
     let mut worst: Vec<WorstRowDocument> = Vec::new();
+    let mut breaking: BTreeMap<String, Vec<(f64, u64)>> = BTreeMap::new();
     let mut cpu_s = 0.0;
     sound(folder, other_builds, |part| {
         for row in &part.rows {
@@ -240,7 +255,15 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
                     clearance_m: *clearance_m,
                     contact: row[column("contact")] == Cell::Truth(Some(true)),
                 });
+                for name in broken(row) {
+                    let rows = breaking.entry(name.to_owned()).or_default();
+                    rows.push((*clearance_m, *number as u64));
+                }
             }
+        }
+        for rows in breaking.values_mut() {
+            rows.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            rows.truncate(WORST_BREAKS);
         }
         worst.sort_by(|a, b| (a.clearance_m.total_cmp(&b.clearance_m)).then(a.row.cmp(&b.row)));
         worst.truncate(WORST);
@@ -277,6 +300,9 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
             .collect(),
         all,
         worst,
+        worst_breaks: (breaking.into_iter())
+            .map(|(name, rows)| (name, rows.into_iter().map(|(_, row)| row).collect()))
+            .collect(),
         timing: CampaignTimingDocument { cpu_s },
     })
 }

@@ -30,11 +30,10 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
         ),
         bounds(&groups, &EVENTS).text(display),
     ];
-    let breaks = summary.all.breaks.iter();
-    let breaks: Vec<String> = breaks.map(|(name, n)| format!("{name} {n}")).collect();
     let mut lines = Vec::new();
-    if !breaks.is_empty() {
-        lines.push(format!("Rows that break: {}", breaks.join(", ")));
+    if !summary.all.breaks.is_empty() {
+        lines.push("Rows that break a rule, those with the least clearance first:".to_owned());
+        lines.extend(breaks(summary));
         let names = summary.all.breaks.keys().map(String::as_str);
         lines.extend(monitors_key(names));
     }
@@ -46,6 +45,7 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
         });
         let worst: Vec<String> = worst.collect();
         lines.push(format!("Least clearance in rows: {}", worst.join(", ")));
+        lines.push("`searoom campaign replay` sails a row again.".to_owned());
     }
     if summary.all.faults > 0 {
         lines.push(format!(
@@ -57,6 +57,22 @@ pub fn campaign_text(summary: &CampaignDocument, display: Display) -> String {
         blocks.push(lines.join("\n"));
     }
     blocks.join("\n\n")
+}
+
+/// A line for each rule or monitor that rows break: how many do, and a few of them.
+fn breaks(summary: &CampaignDocument) -> impl Iterator<Item = String> {
+    summary.all.breaks.iter().map(|(name, count)| {
+        let rows = summary
+            .worst_breaks
+            .get(name)
+            .map_or(&[][..], Vec::as_slice);
+        let mut named: Vec<String> = rows.iter().map(u64::to_string).collect();
+        if rows.len() as u64 != *count {
+            named.push("…".to_owned());
+        }
+        let count = counted(*count as usize, "row");
+        format!("  {name} in {count}: {}", named.join(", "))
+    })
 }
 
 /// Groups with their names, without classes of one stratum.
@@ -187,6 +203,17 @@ pub(super) fn worst_grid(worst: &[WorstRowDocument], folder: &str) -> Grid {
 pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> String {
     let confidence = 100.0 * found.confidence;
     let [low, high] = found.interval;
+    // the bound without a contact is that of the first level
+    let is_unknown = found.contact == 0.0 && high == 1.0;
+    let estimate = match is_unknown {
+        true => "no contact; nothing is known of its probability".to_owned(),
+        false => format!(
+            "P(contact) = {}, {confidence:.0} % confidence: {} to {}",
+            probability(found.contact),
+            probability(low),
+            probability(high)
+        ),
+    };
     let replicas = found.replicas.len();
     let spent = found.pilot_s + found.replicas_s;
     let thousands = |seconds: f64| format!("{:.1} thousand simulated seconds", seconds / 1e3);
@@ -204,6 +231,10 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
             thousands(seconds),
             seconds / spent
         ),
+        _ if is_unknown => "No replica had a contact, and all trajectories reach the first level: \
+             from 0 to 1 every probability is possible. Splitting does not help where the start \
+             decides; `campaign run` counts rows."
+            .to_owned(),
         _ if found.contact == 0.0 => {
             "No replica had a contact: the upper end is that of the first level.".to_owned()
         }
@@ -214,14 +245,7 @@ pub fn rare_contacts_text(found: &RareContactDocument, display: Display) -> Stri
                        more trajectories are needed.";
     }
     [
-        format!(
-            "{}, {}: P(contact) = {}, {confidence:.0} % confidence: {} to {}",
-            found.campaign,
-            found.stratum,
-            probability(found.contact),
-            probability(low),
-            probability(high)
-        ),
+        format!("{}, {}: {estimate}", found.campaign, found.stratum),
         Grid::new("distance [m], reached [%]", 0..2, levels).text(display),
         format!(
             "{} of {} trajectories from each level; {}, of which {:.1} for the levels.\n{remarks}",

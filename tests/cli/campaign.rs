@@ -145,6 +145,23 @@ fn rows_and_figures_are_the_same_for_any_number_of_shards_and_threads() {
     assert!(left > 5, "a factor of 1.5 leaves the sets: {left}");
 }
 
+/// A specification beside scenarios is no scenario with faults.
+#[test]
+fn a_specification_in_a_folder_is_left_out_by_check() {
+    let folder = folder();
+    let checked = run(&format!("check {folder}")).success();
+    says(&stdout(&checked), "head-on.toml: ok");
+    says(
+        &stderr(&checked),
+        "spec.toml: the specification of a campaign, which `searoom campaign run` reads, left out",
+    );
+    let alone = run(&format!("check {folder}/spec.toml")).code(2);
+    says(
+        &stderr(&alone),
+        "`searoom campaign run` reads; no scenario in it",
+    );
+}
+
 #[test]
 fn what_is_damaged_or_missing_is_sailed_again_and_nothing_else() {
     let folder = folder();
@@ -235,6 +252,11 @@ fn foreign_missing_and_double_rows_are_named() {
         &said(2),
         "rows 0 to 2 in | and in | every row once; delete one",
     );
+    let sail = format!("campaign run {folder}/spec.toml --out {folder}/out");
+    says(
+        &stderr(&run(&sail).code(2)),
+        "rows 0 to 2 in | and in | every row once; delete one",
+    );
     fs::remove_file(&file).expect("removed");
     // of another build of the same version
     let mut other = Part::read(&part(&names[2])).expect("whole");
@@ -244,7 +266,6 @@ fn foreign_missing_and_double_rows_are_named() {
     let of_other = format!("rows of searoom {version}0123");
     other.write(&part(&names[2]), "1/1").expect("written");
     says(&said(2), &format!("{of_other} | --allow-other-builds"));
-    let sail = format!("campaign run {folder}/spec.toml --out {folder}/out");
     says(&stderr(&run(&sail).code(2)), &of_other);
     run(&format!("{merge} --allow-other-builds")).success();
     // of another specification

@@ -27,6 +27,8 @@ pub struct CampaignDocument {
     pub strata: Vec<GroupDocument>,
     /// The rows with the least clearance, the least first.
     pub worst: Vec<WorstRowDocument>,
+    /// Of the rows that break each rule or monitor, the few with the least clearance, the least first.
+    pub worst_breaks: BTreeMap<String, Vec<u64>>,
     pub timing: CampaignTimingDocument,
 }
 
