@@ -79,6 +79,9 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
         };
         status = status.max(reached);
     }
+    if documents.is_empty() {
+        status = status.max(output.refuse(&"nothing to verify: everything was left out"));
+    }
     let checked = VerificationDocument::of(documents);
     let shown = if args.json {
         output.document(&checked)

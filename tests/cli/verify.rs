@@ -105,6 +105,13 @@ fn results_of_other_commands_in_a_folder_are_left_out() {
         3,
         "{said}"
     );
+    let alone = Folder::new();
+    alone.write(
+        "suite.json",
+        fs::read_to_string(folder.at("suite.json")).expect("a suite"),
+    );
+    let refused = searoom(&["verify", text(alone.path())]).code(2);
+    says(&stderr(&refused), "nothing to verify");
     let plan = fs::read_to_string(folder.at("plan.json")).expect("a plan");
     for broken in [
         &plan[..plan.len() / 2],
