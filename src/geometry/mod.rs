@@ -7,6 +7,7 @@ mod disc;
 mod ellipse;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod labels;
 mod nearness;
 mod parry;
 mod polygon;
@@ -19,6 +20,7 @@ pub use convex_set::ConvexSet;
 pub use disc::{DISC_SIDES, outer_disc};
 pub(crate) use ellipse::distance_in_frame;
 pub use ellipse::{Ellipse, ShapeError, SignedDistance, outer_enclosing_ellipse};
+pub(crate) use labels::{Drawn, Label, Needed};
 pub(crate) use nearness::stretch_near;
 pub(crate) use parry::{Between, BoxIndex, EdgeTree, shortest_between};
 pub use polygon::{Crossing, DecompositionError, EdgeIndex, Polygon, PolygonError, convex_pieces};

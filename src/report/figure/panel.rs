@@ -7,10 +7,9 @@ use kuva::render::plots::Plot;
 use super::Stroke;
 use super::outline::{area, bends, curve};
 use super::render::in_lines;
-use crate::frame::{Pose, Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, Window};
+use crate::frame::{Pose, Vector};
+use crate::geometry::{ConvexPolygon, Drawn, Label, Needed, Window};
 use crate::vessel::Hull;
-use std::f64::consts::FRAC_PI_4;
 
 /// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
@@ -57,26 +56,14 @@ const SHAPE: [[f64; 2]; 5] = [
     [0.1, -0.5],
 ];
 
-/// Pixels between a position and its text, the nearest first; farther than the second constant,
-/// a line leads to the text.
-const LABEL_PX: [f64; 6] = [7.0, 14.0, 24.0, 40.0, 60.0, 85.0];
-const LEADER_PX: f64 = 14.0;
+/// Line to a text that is not close to its position.
 const LEADER: Stroke = Stroke::solid("#555555", 0.6);
-
-/// Pixels that a label goes farther to keep off the frame, a text or ship, a filled area, a line.
-const COSTS: [f64; 4] = [1000.0, 300.0, 60.0, 28.0];
-
-/// Cost in pixels of the next best position of a text.
-const NEXT: f64 = 20.0;
 
 /// Separates the colour of a note from its text, as the drawing library has black notes alone.
 pub(super) const COLOURED: char = '\0';
 
 /// Brightness of a text in the colour of a ship, as a fraction of it.
 const TEXT_SHADE: f64 = 0.75;
-
-/// Sides of a position in eighths of a circle from east, in order of preference.
-const SIDES: [usize; 8] = [2, 6, 0, 4, 1, 3, 7, 5];
 
 /// True for an area without room for details.
 pub(super) fn is_small(area: [f64; 2]) -> bool {
@@ -114,10 +101,8 @@ pub struct Panel {
     pub(super) plots: Vec<Plot>,
     legend: Vec<Key>,
     notes: Vec<TextAnnotation>,
-    /// Texts and ships; labels keep clear of them, of the filled areas and of the curves.
-    taken: Vec<Window>,
-    filled: Vec<(Window, ConvexPolygon)>,
-    curves: Vec<(Window, Vec<Vector>)>,
+    /// What texts keep clear of.
+    drawn: Drawn,
 }
 
 impl Panel {
@@ -155,9 +140,7 @@ impl Panel {
             plots: Vec::new(),
             legend: Vec::new(),
             notes: Vec::new(),
-            taken: Vec::new(),
-            filled: Vec::new(),
-            curves: Vec::new(),
+            drawn: Drawn::default(),
         }
     }
 
@@ -219,9 +202,7 @@ impl Panel {
 
     pub(super) fn curve(&mut self, points: &[Vector], closed: bool, stroke: Stroke) {
         self.plots.push(curve(points, closed, stroke));
-        let around = Window::around(points);
-        self.curves
-            .extend(around.map(|around| (around, bends(points))));
+        self.drawn.line(bends(points));
     }
 
     /// Fills a set, from which labels keep clear, with its boundary.
@@ -229,8 +210,7 @@ impl Panel {
         if let Ok(hull) = ConvexPolygon::hull(points) {
             self.fill(&hull, colour, opacity);
             self.curve(points, true, Stroke::solid(colour, 1.0));
-            let around = Window::around(hull.vertices());
-            self.filled.extend(around.map(|around| (around, hull)));
+            self.drawn.fill(hull);
         }
     }
 
@@ -257,7 +237,7 @@ impl Panel {
         let corners = SHAPE.map(|[x, y]| Vector::new(x * length, y * beam));
         let corners = corners.map(|corner| pose.world_coordinates(corner));
         self.fill_hull(&corners, colour, 1.0);
-        self.taken.extend(Window::around(&corners));
+        self.drawn.boxes.extend(Window::around(&corners));
     }
 
     /// Adds one of some texts beside its position, where it covers least of what is there: the
@@ -271,87 +251,31 @@ impl Panel {
         needed: bool,
     ) -> Option<Vector> {
         let (size, pixel) = (f64::from(text_size(self.area)), self.pixel());
-        let places = texts.iter().enumerate().flat_map(|(index, (text, at))| {
-            let half = Vector::new(0.5 * text_width(text, self.area), 0.5 * size);
-            let beside = move |far: f64, side: usize| {
-                let side = direction(FRAC_PI_4 * side as f64);
-                let off = Vector::new(side.x * (half.x + far), side.y * (half.y + far));
-                let center = at + off * pixel;
-                (
-                    far,
-                    index,
-                    Window::new(center - half * pixel, center + half * pixel),
-                )
-            };
-            LABEL_PX
-                .iter()
-                .flat_map(move |far| SIDES.map(|side| beside(*far, side)))
-        });
-        let leader = |far: f64, index: usize, place: &Window| {
-            let at = texts[index].1;
-            (far > LEADER_PX).then(|| [at, at.sup(&place.low).inf(&place.high)])
+        let label = |(text, at): &(String, Vector)| Label {
+            at: *at,
+            half: Vector::new(0.5 * text_width(text, self.area), 0.5 * size),
         };
-        let free = if is_small(self.area) { 3 } else { 2 };
-        let mut best: Option<(f64, usize, Window)> = None;
-        let mut least = f64::INFINITY;
-        for (far, index, place) in places {
-            if !needed && far > LEADER_PX {
-                continue;
-            }
-            // a leader along a line or through a text is not seen
-            let middle = leader(far, index, &place).map(|[at, end]| 0.5 * (at + end));
-            let middle = middle.map(|middle| Window::at(middle).grown(2.0 * pixel));
-            let mut cost = far + NEXT * index as f64;
-            for (kind, weight) in COSTS.into_iter().enumerate() {
-                // most places are dearer than the best one long before all is counted
-                if !(cost < least) {
-                    break;
-                }
-                let count = self.covered(kind, &place, middle.as_ref());
-                if !needed && kind < free && count > 0 {
-                    cost = f64::INFINITY;
-                }
-                cost += count as f64 * weight;
-            }
-            if cost < least {
-                (least, best) = (cost, Some((far, index, place)));
-            }
-        }
-        let (far, index, best) = best?;
-        if let Some(leader) = leader(far, index, &best) {
+        let labels: Vec<Label> = texts.iter().map(label).collect();
+        let needed = match (needed, is_small(self.area)) {
+            (true, _) => Needed::Always,
+            (false, true) => Needed::OffFirst(3),
+            (false, false) => Needed::OffFirst(2),
+        };
+        let view = (self.window, pixel);
+        let place = self.drawn.place(view, &labels, needed, None)?;
+        if let Some(leader) = place.leader {
             self.plots.push(curve(&leader, false, LEADER));
         }
+        let best = place.window;
         let corner = |x: f64, y: f64| Vector::new(x, y);
         let Window { low, high } = best;
         let around = [low, corner(high.x, low.y), high, corner(low.x, high.y)];
         self.fill_hull(&around, "#ffffff", 0.6);
         // a note is above its position
-        let (text, at) = &texts[index];
+        let (text, at) = &texts[place.index];
         self.note(text, best.center() - Vector::new(0.0, size * pixel), colour);
-        self.taken.push(best);
+        self.drawn.boxes.push(best);
         Some(*at)
-    }
-
-    /// How much of a kind of [`COSTS`] a text and the middle of its leader cover: the frame, texts
-    /// and ships, filled areas, lines.
-    fn covered(&self, kind: usize, place: &Window, middle: Option<&Window>) -> usize {
-        let meets = |place: &Window| self.taken.iter().filter(|other| other.meets(place)).count();
-        let crossed = |place: &Window| {
-            let lines = self.curves.iter().filter(|(around, _)| around.meets(place));
-            lines.filter(|(_, line)| crosses(line, place)).count()
-        };
-        let filled = |(around, set): &&(Window, ConvexPolygon)| {
-            around.meets(place) && !place.part_of(set).is_empty()
-        };
-        match kind {
-            0 => {
-                let ends = [place.low, place.high].into_iter();
-                ends.filter(|corner| !self.window.contains(*corner)).count()
-            }
-            1 => meets(place),
-            2 => self.filled.iter().filter(filled).count() + middle.map_or(0, meets),
-            _ => crossed(place) + middle.map_or(0, crossed),
-        }
     }
 
     /// Width in pixels to the left of an area.
@@ -471,23 +395,6 @@ fn shaded(colour: &str) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// True where a line runs through a box.
-fn crosses(line: &[Vector], place: &Window) -> bool {
-    let Window { low, high } = *place;
-    let corners = [
-        low,
-        high,
-        Vector::new(low.x, high.y),
-        Vector::new(high.x, low.y),
-    ];
-    line.windows(2).any(|side| {
-        let normal = to_port(side[1] - side[0]);
-        let off = corners.map(|corner| normal.dot(&(corner - side[0])));
-        let divided = off.iter().any(|d| *d > 0.0) && off.iter().any(|d| *d < 0.0);
-        divided && Window::around(side).is_some_and(|side| side.meets(place))
-    })
-}
-
 /// Bounding box of points, with a margin of `share` of its longer side. Without finite points, a
 /// window of size 1 around the origin.
 pub(super) fn window_around(points: impl IntoIterator<Item = Vector>, share: f64) -> Window {
@@ -510,27 +417,6 @@ pub(super) fn with_ratio(window: Window, ratio: f64) -> Window {
 mod tests {
     use super::*;
 
-    fn panel() -> Panel {
-        let window = Window::new(Vector::zeros(), Vector::new(1000.0, 825.0));
-        Panel::plan("Chart".to_owned(), ["East [m]", "North [m]"], window)
-    }
-
-    #[test]
-    fn labels_keep_off_each_other_and_off_the_frame() {
-        let mut panel = panel();
-        for (at, count) in [(Vector::new(500.0, 400.0), 6), (Vector::new(2.0, 2.0), 2)] {
-            for k in 0..count {
-                panel.label(&[(format!("{k}00 s"), at)], "#000000", true);
-            }
-        }
-        let taken = &panel.taken;
-        assert_eq!(taken.len(), 8);
-        for (k, here) in taken.iter().enumerate() {
-            assert!(panel.window.contains(here.low) && panel.window.contains(here.high));
-            assert!(taken[..k].iter().all(|other| !other.meets(here)));
-        }
-    }
-
     #[test]
     fn every_axis_has_two_numbers() {
         for (low, high) in [(-1.1, 1.6), (1.0, 9.0), (-0.4, 0.4), (1e5 + 1.0, 1e5 + 1.7)] {
@@ -547,40 +433,5 @@ mod tests {
             [tick_step(0.0, f64::NAN, f64::NAN), round_step(0.4 * 0.5)],
             [1.0, 0.2]
         );
-    }
-
-    #[test]
-    fn a_label_keeps_off_a_filled_set() {
-        let mut panel = panel();
-        let corners = [
-            (400.0, 300.0),
-            (550.0, 300.0),
-            (550.0, 450.0),
-            (400.0, 450.0),
-        ];
-        let corners = corners.map(|(x, y)| Vector::new(x, y));
-        panel.fill_set(&corners, "#000000", 0.5);
-        panel.label(
-            &[("600 s".to_owned(), Vector::new(470.0, 380.0))],
-            "#000000",
-            true,
-        );
-        assert!(panel.taken[0].part_of(&panel.filled[0].1).is_empty());
-    }
-
-    #[test]
-    fn a_label_stands_beside_the_line_through_its_place() {
-        let ends = [Vector::new(0.0, 400.0), Vector::new(1000.0, 420.0)];
-        for line in [ends, ends.map(|p| Vector::new(p.y, p.x))] {
-            let mut panel = panel();
-            panel.curve(&line, false, Stroke::solid("#000000", 1.0));
-            panel.label(
-                &[("600 s".to_owned(), 0.5 * (line[0] + line[1]))],
-                "#000000",
-                true,
-            );
-            assert!(!crosses(&line, &panel.taken[0]));
-            assert!(crosses(&line, &Window::at(line[1]).grown(1.0)));
-        }
     }
 }
