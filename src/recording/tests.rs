@@ -6,11 +6,14 @@ use std::path::Path;
 use rerun::external::re_log_types::StoreId;
 use rerun::{ChunkStore, ChunkStoreConfig};
 
-use super::canvas::ViewModel;
-use super::views::curves;
+use super::canvas::{Canvas, ViewModel, covered};
+use super::views::closest::ENCOUNTER;
+use super::views::{curves, ships};
 use super::*;
 use crate::document::{EntityContents, PlanDocument};
 use crate::evaluation::Violation;
+use crate::frame::Vector;
+use crate::geometry::Window;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};
 use crate::scenario::Scenario;
@@ -138,7 +141,7 @@ fn assert_entities(run: &Run, there: &str, absent: &str) -> BTreeMap<String, u64
 #[test]
 fn every_kind_of_run_has_its_entities() {
     let there = "summary legs chart/map chart/map/desired chart/map/planned chart/map/own_ship
-        chart/map/closest_points chart/map/targets/{} chart/map/hard_sets/{}
+        chart/map/closest_points chart/map/labels chart/map/names chart/map/targets/{} chart/map/hard_sets/{}
         chart/map/domain_sets/{} chart/map/explored/free chart/map/explored/blocked
         space_time/domain_sets/{} space_time/planned space_time/explored/free
         curves/clearance_m curves/margin_m curves/risk curves/speed_kn curves/course_deg
@@ -356,6 +359,69 @@ fn labels(recorded: &Recorded, entity: &str) -> Vec<String> {
         .collect()
 }
 
+/// Labels with what they cover, static ones without a time.
+fn label_boxes(recorded: &Recorded, canvas: &Canvas, entity: &str) -> Vec<(Option<f64>, Window)> {
+    let table = recorded.table(entity).expect(entity);
+    let place = |name: &str| table.components.iter().position(|c| c.ends_with(name));
+    let [labels, points] = ["Points2D:labels", "Points2D:positions"].map(|c| place(c).expect(c));
+    let mut all = Vec::new();
+    for row in &table.rows {
+        let values = |place: usize| row.values[place].as_array().into_iter().flatten();
+        for (text, point) in values(labels).zip(values(points)) {
+            let [east, north] = [0, 1].map(|axis| point[axis].as_f64().expect("a number"));
+            let text = text.as_str().expect("a text");
+            let covered = covered(canvas, Vector::new(east, north), text);
+            all.push((row.time, covered));
+        }
+    }
+    all
+}
+
+/// A label is read in five seconds where it covers neither a ship nor another label.
+#[test]
+fn labels_cover_no_ship_at_the_encounter() {
+    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
+        let file = format!("scenarios/colregs/{name}.toml");
+        let run = pipeline::run(Scenario::read(file.as_ref()).expect("valid"));
+        let model = ViewModel::new(&run);
+        let recorded = recorded_run(&run);
+        let texts = labels(&recorded, "chart/map/labels");
+        let nearest = format!("CPA {} m at ", crate::text::tenths(model_dcpa(&run)));
+        assert!(
+            texts.iter().any(|text| text.starts_with(&nearest)),
+            "{texts:?}"
+        );
+        assert!(texts.contains(&"breaks no rule".to_owned()), "{texts:?}");
+        let fixed = label_boxes(&recorded, &model, "chart/map/labels");
+        let names = label_boxes(&recorded, &model, "chart/map/names");
+        let own = [ships::own_ship(&model)];
+        let closest = run.evaluation.as_ref().expect("judged").passages[0].tcpa;
+        for &time in &model.cursor_times {
+            let ships = ships::sighted(&model, &own, time).expect("ships");
+            let now = names
+                .iter()
+                .filter(|(at, _)| at.is_some_and(|at| (at - time).abs() < 1e-6));
+            let now: Vec<Window> = now.map(|(_, covered)| *covered).collect();
+            assert_eq!(now.len(), 2, "{name} at {time}");
+            let met = (time - closest).abs() < ENCOUNTER * model.end;
+            let there = fixed.iter().filter(|_| met).map(|(_, covered)| *covered);
+            let shown: Vec<Window> = now.into_iter().chain(there).collect();
+            for (index, label) in shown.iter().enumerate() {
+                // the viewer rounds to single precision
+                let label = label.grown(-0.01 * model.pixel());
+                let free = ships.iter().all(|ship| !ship.covers().meets(&label));
+                assert!(free, "{name} at {time}: label {index} covers a ship");
+                let others = shown[..index].iter().all(|other| !other.meets(&label));
+                assert!(others, "{name} at {time}: label {index} covers another");
+            }
+        }
+    }
+}
+
+fn model_dcpa(run: &Run) -> f64 {
+    run.evaluation.as_ref().expect("judged").passages[0].dcpa
+}
+
 #[test]
 fn a_comparison_is_one_recording_with_every_motion() {
     let folder = tempfile::tempdir().expect("folder");
@@ -568,6 +634,39 @@ fn a_simulation_is_read_back_as_it_was_sailed() {
         assert!((drawn - reported).abs() < 0.01, "{drawn} {reported}");
     }
     assert!(so > 0.1, "{so}");
+
+    // the line of the closest approach is as long as the reported distance
+    let table = recorded.table("chart/map/closest_points").expect("there");
+    let is_line = |c: &String| c.ends_with(":strips");
+    let place = table.components.iter().position(is_line).expect("lines");
+    let line = &table.rows[0].values[place][0];
+    let end = |k: usize| {
+        let [east, north] = [0, 1].map(|axis| line[k][axis].as_f64().expect("a number"));
+        Vector::new(east, north)
+    };
+    let length = (end(0) - end(1)).norm();
+    assert!((length - reported).abs() < 0.01, "{length} {reported}");
+
+    // names and lanes have the roles of the plans
+    let role = &simulation.plans()[0].encounters[0]
+        .conduct
+        .as_ref()
+        .expect("judged")
+        .roles[0]
+        .role;
+    assert_eq!(role, "head-on");
+    let names = labels(&recorded, "chart/map/names");
+    assert!(
+        names.contains(&format!("{NAME}\nown ship: {role}")),
+        "{names:?}"
+    );
+    let least = format!(
+        "Own ship\nclosest so far {} m",
+        crate::text::tenths(reported)
+    );
+    assert_eq!(names[names.len() - 2], least);
+    let lanes = moving(&recorded, "roles", ":state");
+    assert_eq!(lanes[0].1[0], format!("own ship to {NAME}: {role}"));
 
     // without domains the plan is clear of the hard set, which is in its document
     let (time, strips) = &moving(&recorded, "chart/map/hard_sets", ":strips")[0];

@@ -44,7 +44,14 @@ pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> Str
 
 /// Formats the same as markdown, for a pane that is narrower than the table in a terminal.
 pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
-    let mut blocks = vec![format!("# {}", in_cell(&headline(simulation)))];
+    let is_judged = simulation.targets.iter().any(|t| t.set_m.is_none());
+    let breaks = match &simulation.conduct.breaks[..] {
+        [] if !is_judged => String::new(),
+        [] => "; breaks no rule".to_owned(),
+        broken => format!("; breaks {}", broken.join(", ")),
+    };
+    let headline = headline(simulation) + &breaks;
+    let mut blocks = vec![format!("### {}", in_cell(&headline))];
     if !simulation.targets.is_empty() {
         blocks.push(targets_grid(&simulation.targets).markdown());
     }
@@ -340,7 +347,8 @@ mod tests {
         let text = simulation_text(&document, Display::default());
         let (title, _) = text.split_once('\n').expect("several lines");
         let markdown = simulation_markdown(&document);
-        assert!(markdown.starts_with(&format!("# {title}\n\n| target | ")));
+        let headline = format!("### {title}; breaks no rule\n\n| target | ");
+        assert!(markdown.starts_with(&headline), "{markdown}");
         let named = text.lines().filter_map(|line| line.split_once(": "));
         let named: Vec<_> = named
             .skip(1)

@@ -3,7 +3,8 @@
 use super::{Canvas, Palette, cursor_times, with_sea};
 use crate::colregs::{self, SteadyShip};
 use crate::document::{
-    self, PlanDocument, SampleDocument, SimulatedTargetDocument, SimulationDocument,
+    self, EncounterDocument, PlanDocument, RoleDocument, SampleDocument, SimulatedTargetDocument,
+    SimulationDocument,
 };
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::{ConvexPolygon, Window};
@@ -16,21 +17,26 @@ use crate::vessel::OwnShip;
 /// Most rows of what moves: one in ten seconds of an hour.
 const CURSOR_TIMES: f64 = 360.0;
 
+/// See [`Canvas::pane`]; with a lane of rules below it.
+const PANE: [f64; 2] = [702.0, 444.0];
+
 /// A simulation on its canvas. Times count from the scenario's present.
 #[derive(Debug)]
 pub struct ClosedLoop<'a> {
     pub simulation: &'a SimulationDocument,
     pub canvas: Canvas<'a>,
     /// The plans in the order in which own ship follows them.
-    pub plans: Vec<FollowedPlan>,
+    pub plans: Vec<FollowedPlan<'a>>,
 }
 
 /// A plan that own ship follows from a time on.
 #[derive(Debug)]
-pub struct FollowedPlan {
+pub struct FollowedPlan<'a> {
     pub from: f64,
     pub segments: Vec<Segment>,
     pub targets: Vec<AssumedTarget>,
+    /// Times count from the plan's start.
+    encounters: &'a [EncounterDocument],
 }
 
 /// A target as a plan assumes it. Times count from the plan's start.
@@ -45,7 +51,7 @@ impl<'a> ClosedLoop<'a> {
     pub fn new(
         scenario: &'a Scenario,
         simulation: &'a SimulationDocument,
-        plans: &[PlanDocument],
+        plans: &'a [PlanDocument],
     ) -> Self {
         let end = simulation.duration_s.max(1.0);
         let times = cursor_times(end, CURSOR_TIMES);
@@ -56,7 +62,7 @@ impl<'a> ClosedLoop<'a> {
             .map(|(replan, plan)| FollowedPlan::new(scenario, replan.start_t_s, plan));
         let mut closed_loop = Self {
             simulation,
-            canvas: Canvas::new(scenario, [], &[], end, Palette::Targets),
+            canvas: Canvas::new(scenario, [], &[], end, (Palette::Targets, PANE)),
             plans: plans.filter(|plan| !plan.segments.is_empty()).collect(),
         };
         // the curves reach the reported values
@@ -95,10 +101,40 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// The plan that own ship follows at a time; `None` before the first.
-    pub fn plan_at(&self, time: f64) -> Option<&FollowedPlan> {
+    pub fn plan_at(&self, time: f64) -> Option<&FollowedPlan<'a>> {
         let time = time + tolerance::TIME_S;
         let begun = self.plans.partition_point(|plan| plan.from <= time);
         self.plans[..begun].last()
+    }
+
+    /// Own ship's roles toward a target, as each plan has them until the next one.
+    pub fn roles(&self, target: &str) -> Vec<RoleDocument> {
+        let nexts = self.plans.iter().skip(1).map(|next| next.from);
+        let until = nexts.chain([self.canvas.end]);
+        let mut all: Vec<RoleDocument> = Vec::new();
+        for (plan, until) in self.plans.iter().zip(until) {
+            let met = plan.encounters.iter().find(|met| met.target == target);
+            let conduct = met.and_then(|met| met.conduct.as_ref());
+            for state in conduct.iter().flat_map(|conduct| &conduct.roles) {
+                let from_s = plan.from + state.from_s.max(0.0);
+                let until_s = until.min(plan.from + state.until_s);
+                let goes_on = |last: &&mut RoleDocument| {
+                    last.role == state.role && from_s - last.until_s < tolerance::TIME_S
+                };
+                if until_s <= from_s {
+                    continue;
+                }
+                match all.last_mut().filter(goes_on) {
+                    Some(last) => last.until_s = until_s,
+                    None => all.push(RoleDocument {
+                        role: state.role.clone(),
+                        from_s,
+                        until_s,
+                    }),
+                }
+            }
+        }
+        all
     }
 
     /// Metres between own ship and where its plan has it; at the start of a plan, where the one
@@ -119,6 +155,21 @@ impl<'a> ClosedLoop<'a> {
         Some([least.min(0.0), near.max(4.0 * least)])
     }
 
+    /// Times at which the hulls come nearer than before, with the distance in metres.
+    pub fn least_until(&self) -> Vec<(f64, f64)> {
+        let mut least = f64::INFINITY;
+        let nearer = self.canvas.samples.iter().filter_map(|&time| {
+            let targets = self.simulation.targets.iter();
+            let now = targets.filter_map(|target| self.clearance(target, time));
+            let now = now.fold(f64::INFINITY, f64::min);
+            (now < least).then(|| {
+                least = now;
+                (time, now)
+            })
+        });
+        nearer.collect()
+    }
+
     /// Metres between the hulls, negative in overlap.
     pub fn clearance(&self, target: &SimulatedTargetDocument, time: f64) -> Option<f64> {
         let own = self.canvas.scenario.own_ship.hull;
@@ -128,8 +179,8 @@ impl<'a> ClosedLoop<'a> {
     }
 }
 
-impl FollowedPlan {
-    fn new(scenario: &Scenario, from: f64, plan: &PlanDocument) -> Self {
+impl<'a> FollowedPlan<'a> {
+    fn new(scenario: &Scenario, from: f64, plan: &'a PlanDocument) -> Self {
         let trajectory = plan.trajectory.as_ref();
         let segments = trajectory.map_or_else(Vec::new, |trajectory| match &trajectory.segments {
             Some(segments) => segments.iter().map(document::segment).collect(),
@@ -148,6 +199,7 @@ impl FollowedPlan {
             targets: ships
                 .map(|ship| AssumedTarget::new(&scenario.own_ship, ship, plan.horizon_s))
                 .collect(),
+            encounters: &plan.encounters,
         }
     }
 }

@@ -2,12 +2,16 @@
 //! the sea that are shown, colours.
 
 mod closed_loop;
+mod labels;
 mod lines;
 mod motion;
 pub mod style;
 mod view_model;
 
 pub use closed_loop::{AssumedTarget, ClosedLoop};
+#[cfg(test)]
+pub use labels::covered;
+pub use labels::{Labels, leader_style};
 pub use lines::{Lines, labelled};
 pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;
@@ -48,6 +52,8 @@ pub struct Canvas<'a> {
     /// Seconds: the times at which curves are sampled.
     pub samples: Vec<f64>,
     pub bounds: Window,
+    /// Width and height in pixels of the chart in a window of 1280 × 800.
+    pub pane: [f64; 2],
     /// Metres of height per second in the space-time volume.
     pub metres_per_second: f64,
     pub palette: Palette,
@@ -60,7 +66,7 @@ impl<'a> Canvas<'a> {
         sets: impl IntoIterator<Item = &'a TargetSets>,
         motions: &[ShownMotion],
         end: f64,
-        palette: Palette,
+        (palette, pane): (Palette, [f64; 2]),
     ) -> Self {
         let cursor_times = cursor_times(end, CURSOR_TIMES);
         let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
@@ -72,6 +78,7 @@ impl<'a> Canvas<'a> {
             cursor_times,
             samples,
             bounds,
+            pane,
             metres_per_second: one_digit(0.65 * bounds.size().max() / end),
             palette,
         }
@@ -112,6 +119,19 @@ impl<'a> Canvas<'a> {
             .chain(between)
             .chain([self.end])
             .collect()
+    }
+
+    /// The part of the sea that the chart shows in a window of 1280 × 800.
+    pub fn view(&self) -> Window {
+        let half = Vector::from(self.pane) * (0.5 * self.pixel());
+        let middle = self.bounds.center();
+        Window::new(middle - half, middle + half)
+    }
+
+    /// Metres of a pixel in that window.
+    pub fn pixel(&self) -> f64 {
+        let size = self.bounds.size();
+        (size.x / self.pane[0]).max(size.y / self.pane[1])
     }
 
     /// The point of the space-time volume, metres.

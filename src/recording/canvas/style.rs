@@ -14,6 +14,7 @@ pub const GRID: Color = rgb(0x26344a);
 pub const LAND: Color = rgb(0x685c3e);
 pub const CHART_TEXT: Color = rgb(0xa0aec0);
 pub const ALARM: Color = rgb(0xff2d2d);
+pub const CLOSEST: Color = rgb(0x5cff9d);
 pub const GRAPH_FREE: Color = rgb(0x1e4c54);
 pub const GRAPH_BLOCKED: Color = rgb(0x60222c);
 const SLOW: Color = rgb(0x408cff);

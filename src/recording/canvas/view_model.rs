@@ -1,8 +1,10 @@
 //! One run, prepared for the views.
 
 use super::{Canvas, Palette, ShownMotion};
-use crate::colregs::compliance::ComplianceReport;
 use crate::pipeline::Run;
+
+/// See [`Canvas::pane`]; with a lane of rules below it.
+const PANE: [f64; 2] = [690.0, 357.0];
 
 /// A run on its canvas.
 #[derive(Debug)]
@@ -12,9 +14,6 @@ pub struct ViewModel<'a> {
     /// It ends at arrival, or at the end of the desired trajectory if that is later. Nothing is
     /// claimed after arrival, and the sets only grow.
     pub canvas: Canvas<'a>,
-    /// How own ship behaves toward each target, in the order of the scenario; `None` for a target
-    /// that is no ship, and without a plan.
-    pub conduct: Vec<Option<ComplianceReport>>,
 }
 
 impl<'a> ViewModel<'a> {
@@ -26,13 +25,12 @@ impl<'a> ViewModel<'a> {
         };
         let end = motion.end().max(desired.duration());
         let end = end.min(run.scenario.horizon);
-        let palette = Palette::Targets;
+        let look = (Palette::Targets, PANE);
         let sets = run.targets.iter().map(|target| &target.sets);
         Self {
             run,
             motion,
-            canvas: Canvas::new(&run.scenario, sets, &[motion], end, palette),
-            conduct: run.judged_compliance(),
+            canvas: Canvas::new(&run.scenario, sets, &[motion], end, look),
         }
     }
 }

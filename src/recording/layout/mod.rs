@@ -26,7 +26,7 @@ use crate::recording::views::curves::{
     self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
 };
 use crate::recording::views::explored::BLOCKED;
-use crate::recording::views::{rules, velocities};
+use crate::recording::views::velocities;
 use crate::recording::write::Recorder;
 use crate::recording::{
     CHART, EARTH, EVENTS, EXPLORED, LEGS, Logged, ROLES, SUMMARY, TIMELINE, TRAILS, VELOCITIES,
@@ -36,7 +36,8 @@ use crate::recording::{
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
-pub fn of_run(model: &ViewModel, has_legs: bool) -> Logged<Recorder> {
+/// Lays out a run with so many lanes of rules, and with or without legs.
+pub fn of_run(model: &ViewModel, lanes: usize, has_legs: bool) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let mut chart = chart_view(to, model)?;
@@ -47,7 +48,7 @@ pub fn of_run(model: &ViewModel, has_legs: bool) -> Logged<Recorder> {
     }
     let mut left = vec![chart];
     let mut left_shares = vec![0.66];
-    if let Some((rules, share)) = rules_view(to, model)? {
+    if let Some((rules, share)) = rules_view(to, model, lanes)? {
         left.push(rules);
         left_shares = vec![0.66 - share, share];
     }
@@ -105,8 +106,9 @@ pub fn of_comparison(canvas: &Canvas) -> Logged<Recorder> {
     layout.finished(&root, &time_panel(canvas))
 }
 
-/// Lays out a simulation: the chart over the events, beside them the summary over the curves.
-pub fn of_simulation(model: &ClosedLoop) -> Logged<Recorder> {
+/// Lays out a simulation with so many lanes of rules: the chart over them and the events, beside
+/// them the summary over the curves.
+pub fn of_simulation(model: &ClosedLoop, lanes: usize) -> Logged<Recorder> {
     let canvas = &model.canvas;
     let mut layout = Panes::default();
     let to = &mut layout;
@@ -119,7 +121,15 @@ pub fn of_simulation(model: &ClosedLoop) -> Logged<Recorder> {
     });
     let columns = TextLogColumns::new().with_text_log_columns(shown);
     to.set(&events, "TextLogColumns", &columns)?;
-    let left = to.below(&[chart, events], [0.78, 0.22])?;
+    let mut left = vec![chart];
+    let mut shares = vec![0.78];
+    if let Some((rules, share)) = rules_view(to, canvas, lanes)? {
+        left.push(rules);
+        shares = vec![0.78 - share, share];
+    }
+    left.push(events);
+    shares.push(0.22);
+    let left = to.below(&left, shares)?;
     let mut right = vec![to.view::<TextDocumentView>("Summary", SUMMARY)?];
     let plots = [
         ("Distance of the hulls (m)", CLEARANCE),
@@ -257,15 +267,14 @@ fn velocity_view(to: &mut Panes, model: &ViewModel) -> Logged<Pane> {
     plane_view(to, (name, VELOCITIES), [[-limit, limit]; 2])
 }
 
-/// The roles over time and the fraction of the height that they need; `None` where no rule applies.
-fn rules_view(to: &mut Panes, model: &ViewModel) -> Logged<Option<(Pane, f32)>> {
-    let lanes = rules::height(model);
+/// The roles over time and the fraction of the height that they need; `None` without a lane.
+fn rules_view(to: &mut Panes, canvas: &Canvas, lanes: usize) -> Logged<Option<(Pane, f32)>> {
     if lanes == 0 {
         return Ok(None);
     }
     let name = "Rules: roles over time, and what is broken";
     let view = to.view::<StateTimelineView>(name, ROLES)?;
-    to.set(&view, "TimeAxis", &time_axis(model, 0.0))?;
+    to.set(&view, "TimeAxis", &time_axis(canvas, 0.0))?;
     let share = LANES_HEAD + LANE * lanes.min(MOST_LANES) as f32;
     Ok(Some((view, share)))
 }

@@ -1,13 +1,14 @@
 //! Static parts of the chart: grid, desired and planned trajectory, time marks, closest points.
 
-use rerun::{AsComponents, LineStrips2D, Points2D};
+use rerun::{AsComponents, Color, LineStrips2D, Points2D};
 
+use super::{closest, rules, ships};
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Canvas, Lines, ShownMotion, ViewModel, clock, desired_leg, flat, labelled, round_down,
+    Canvas, Labels, Lines, ShownMotion, ViewModel, clock, desired_leg, flat, labelled, round_down,
     round_down_time,
 };
 use crate::recording::write::Recorder;
@@ -23,13 +24,38 @@ pub type Strip = Vec<[f32; 2]>;
 /// A polyline through `(position, time)`.
 pub type TimedLine = Vec<(Vector, f64)>;
 
-pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> Logged {
+/// Logs the chart of a run without its ships, and gives the labels back: names keep off them.
+/// `broken` are the rules that own ship breaks, if it is judged.
+pub fn log_chart(rec: &mut Recorder, model: &ViewModel, broken: Option<&[&str]>) -> Logged<Labels> {
+    let times = model.cursor_times.iter();
+    let targets = model.scenario.targets.iter();
+    let mut labels = labels(model);
+    let own = times.clone().map(|&t| model.motion.pose_at(t).position);
+    labels.keep_off_track(model.scenario.own_ship.hull.beam, own);
+    for target in targets {
+        let beam = target.ship().map_or(0.0, |ship| ship.hull.beam);
+        labels.keep_off_track(beam, times.clone().map(|&t| target.position_at(t)));
+    }
     log_waters(rec, model)?;
     log_planned(rec, model)?;
-    log_time_marks(rec, model)?;
-    log_closest_points(rec, model)?;
-    log_conflict(rec, model)?;
-    log_violations(rec, model)
+    log_conflict(rec, model, &mut labels)?;
+    log_violations(rec, model, &mut labels)?;
+    let own = [ships::own_ship(model)];
+    let ships = |time| ships::sighted(model, &own, time);
+    closest::log_closest(rec, model, &mut labels, &closest::approaches(model), ships)?;
+    rules::add_broken(&mut labels, broken);
+    log_time_marks(rec, model, &mut labels)?;
+    labels.log(rec)?;
+    Ok(labels)
+}
+
+/// No labels yet, which keep off the arrow to the north.
+pub fn labels(canvas: &Canvas) -> Labels {
+    let mut labels = Labels::new(canvas);
+    let arrow = north(canvas);
+    let margin = NORTH_MARGIN * (arrow[1] - arrow[0]).norm();
+    labels.reserve(Window::new(arrow[0], arrow[1]).grown(margin));
+    labels
 }
 
 pub fn log_sea(rec: &mut Recorder, canvas: &Canvas) -> Logged {
@@ -55,10 +81,8 @@ fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     for ends in grid_lines(canvas, &window) {
         lines.add(ends.map(flat), style::GRID, 0.5);
     }
-    let unit = canvas.bounds.size().max() / 100.0;
-    let corner = Vector::new(canvas.bounds.low.x, canvas.bounds.high.y);
-    let foot = corner + Vector::new(2.5, -9.0) * unit;
-    let head = foot + Vector::new(0.0, 5.0 * unit);
+    let [foot, head] = north(canvas);
+    let unit = 0.2 * (head - foot).norm();
     let [left, right] = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
     lines.add([foot, head].map(flat), style::CHART_TEXT, 1.0);
     lines.add([left, head, right].map(flat), style::CHART_TEXT, 1.0);
@@ -68,6 +92,20 @@ fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
     rec.log_static(path(&[MAP, "grid"]), &parts)
 }
+
+/// Foot and head of the arrow to the north, in the north-western corner.
+fn north(canvas: &Canvas) -> [Vector; 2] {
+    let view = canvas.view();
+    let corner = Vector::new(view.low.x, view.high.y);
+    let [foot, head] = NORTH.map(|at| corner + Vector::from(at) * canvas.pixel());
+    [foot, head]
+}
+
+/// Foot and head of the arrow in pixels from the corner.
+const NORTH: [[f64; 2]; 2] = [[20.0, -66.0], [20.0, -32.0]];
+
+/// Lengths of the arrow to the north around it that it and its letter need.
+const NORTH_MARGIN: f64 = 0.8;
 
 /// The part of the sea that the chart shows when it is opened, in a view of any usual shape.
 pub fn shown_window(canvas: &Canvas) -> Window {
@@ -207,15 +245,35 @@ pub fn mark_step(canvas: &Canvas) -> f64 {
 }
 
 /// Logs own ship's position every round number of seconds, with the time.
-fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
+fn log_time_marks(rec: &mut Recorder, model: &ViewModel, labels: &mut Labels) -> Logged {
     let times = multiples(0.0, model.end, mark_step(model)).skip(1);
     let times: Vec<f64> = times.collect();
     // a plan has no positions after arrival
     let times = model.motion.until_arrival(&times);
-    let points = times.iter().map(|&t| model.motion.pose_at(t).position);
-    let labels = times.iter().map(|t| clock(*t));
-    let marks = labelled(points.map(flat), style::OWN_SHIP, 3.0, labels);
-    rec.log_static(path(&[MAP, "time_marks"]), &marks)
+    let marks = times.iter().map(|t| {
+        let place = model.motion.pose_at(*t).position;
+        (place, clock(*t))
+    });
+    log_marks(rec, labels, "time_marks", marks, (style::OWN_SHIP, 3.0))
+}
+
+/// Logs marks of one colour and radius, each with its label.
+fn log_marks(
+    rec: &mut Recorder,
+    labels: &mut Labels,
+    entity: &str,
+    marks: impl Iterator<Item = (Vector, String)>,
+    (color, radius): (Color, f32),
+) -> Logged {
+    let mut places = Vec::new();
+    for (place, text) in marks {
+        labels.add(&text, place, color);
+        places.push(flat(place));
+    }
+    let marks = Points2D::new(places)
+        .with_colors([color])
+        .with_radii([style::points(radius)]);
+    rec.log_static(path(&[MAP, entity]), &marks)
 }
 
 /// Logs where a target is expected, with the same time marks.
@@ -235,47 +293,8 @@ fn log_track(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target)
     rec.log_static(path(&[MAP, "tracks", &target.name]), &parts)
 }
 
-/// Logs a line between own ship and each target at their closest approach. Distance and time are
-/// shown where a line is pointed at, those of the nearest target in a corner of the chart: near
-/// the ships they would lie on other names.
-fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> Logged {
-    let Some(evaluation) = &model.run.evaluation else {
-        return Ok(());
-    };
-    let mut lines = Lines::default();
-    let mut labels = Vec::new();
-    let mut nearest: Option<(f64, String)> = None;
-    for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
-        let own = model.motion.pose_at(passage.tcpa).position;
-        let other = target.position_at(passage.tcpa);
-        lines.add([own, other].map(flat), style::CHART_TEXT, 0.8);
-        // adding +0.0 converts a negative zero to zero
-        let distance = (passage.dcpa * 10.0).round() / 10.0 + 0.0;
-        let label = format!("CPA {distance} m at {}", clock(passage.tcpa));
-        if nearest
-            .as_ref()
-            .is_none_or(|(least, _)| passage.dcpa < *least)
-        {
-            nearest = Some((passage.dcpa, format!("{label} to {}", target.name)));
-        }
-        labels.push(label);
-    }
-    let lines = lines.archetype().with_labels(labels);
-    let lines = lines.with_show_labels(false);
-    rec.log_static(path(&[MAP, "closest_points"]), &lines)?;
-    let Some((_, label)) = nearest else {
-        return Ok(());
-    };
-    let Window { low, high } = model.bounds;
-    // the label is below its point
-    let north = low.y + (high - low).max() / 11.0;
-    let place = Vector::new(0.25 * low.x + 0.75 * high.x, north);
-    let name = labelled([flat(place)], style::CHART_TEXT, 0.0, [label]);
-    rec.log_static(path(&[MAP, "closest_points", "nearest"]), &name)
-}
-
 /// Logs, without a plan, where own ship on the desired trajectory first enters a set.
-fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> Logged {
+fn log_conflict(rec: &mut Recorder, model: &ViewModel, labels: &mut Labels) -> Logged {
     if model.motion.is_planned() {
         return Ok(());
     }
@@ -286,21 +305,26 @@ fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> Logged {
         let name = set.name();
         Some((own, format!("in the set of {name} from {}", clock(time))))
     });
-    let Some((place, label)) = inside else {
-        return Ok(());
-    };
-    let mark = labelled([flat(place)], style::ALARM, 6.0, [label]);
-    rec.log_static(path(&[MAP, "conflict"]), &mark)
+    match inside {
+        Some(mark) => log_marks(
+            rec,
+            labels,
+            "conflict",
+            [mark].into_iter(),
+            (style::ALARM, 6.0),
+        ),
+        None => Ok(()),
+    }
 }
 
-fn log_violations(rec: &mut Recorder, model: &ViewModel) -> Logged {
+fn log_violations(rec: &mut Recorder, model: &ViewModel, labels: &mut Labels) -> Logged {
     let violations = match &model.run.evaluation {
         Some(evaluation) if !evaluation.violations.is_empty() => &evaluation.violations,
         _ => return Ok(()),
     };
-    let places = violations.iter().map(|v| model.motion.pose_at(v.time));
-    let places = places.map(|pose| flat(pose.position));
-    let labels = violations.iter().map(|v| v.what.as_str());
-    let marks = labelled(places, style::ALARM, 7.0, labels);
-    rec.log_static(path(&[MAP, "violations"]), &marks)
+    let marks = violations.iter().map(|violation| {
+        let place = model.motion.pose_at(violation.time).position;
+        (place, violation.what.clone())
+    });
+    log_marks(rec, labels, "violations", marks, (style::ALARM, 7.0))
 }

@@ -1,26 +1,123 @@
 //! The closed loop on the chart, and its curves.
 
 use rerun::components::InterpolationMode::Linear;
-use rerun::{LineStrips2D, Points2D, TimeColumn};
+use rerun::{Color, LineStrips2D, Points2D, TimeColumn};
 
 use super::chart::{self, Strip};
+use super::closest::{self, Approach};
 use super::curves::{self, CLEARANCE, Series};
-use super::ships::{self, outline};
-use crate::colregs::SteadyShip;
+use super::rules::{self, Judged};
+use super::ships::{self, Sighted, outline};
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{AssumedTarget, ClosedLoop, clock, flat, labelled, style};
+use crate::recording::canvas::{AssumedTarget, ClosedLoop, Labels, clock, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
+use crate::text::tenths;
 
 pub const OFF_PLAN: &str = "curves/off_plan_m";
 pub const PLANNING: &str = "curves/planning_ms";
 
-pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
+pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop, judged: &[Judged]) -> Logged {
     chart::log_sea(rec, &model.canvas)?;
     log_plans(rec, model)?;
     log_assumed(rec, model)?;
     log_ships(rec, model)?;
-    log_contacts(rec, model)
+    log_contacts(rec, model)?;
+    let mut labels = chart::labels(&model.canvas);
+    let times = model.canvas.cursor_times.iter();
+    let own = times.clone().map(|&t| model.own_at(t).pose.position);
+    labels.keep_off_track(model.canvas.scenario.own_ship.hull.beam, own);
+    for target in &model.simulation.targets {
+        let beam = target.set_m.as_ref().map_or(target.beam_m, |_| 0.0);
+        let ships = times.clone().filter_map(|&time| target.at(time));
+        labels.keep_off_track(beam, ships.map(|ship| ship.pose.position));
+    }
+    let ships = |time| sighted(model, time);
+    closest::log_closest(rec, &model.canvas, &mut labels, &approaches(model), ships)?;
+    let broken = model.simulation.conduct.breaks.iter();
+    let broken: Vec<&str> = broken.map(String::as_str).collect();
+    rules::add_broken(&mut labels, (!judged.is_empty()).then_some(&broken[..]));
+    log_names(rec, model, &labels, judged)?;
+    labels.log(rec)
+}
+
+/// The targets with own ship's roles toward them, and what the judges say of what was sailed.
+pub fn judged<'a>(model: &ClosedLoop<'a>) -> Vec<Judged<'a>> {
+    let targets = model.simulation.targets.iter().enumerate();
+    let ships = targets.filter(|(_, target)| target.set_m.is_none());
+    let judged = ships.map(|(index, target)| Judged {
+        target: &target.name,
+        color: style::target(index),
+        roles: model.roles(&target.name),
+        conduct: &target.conduct,
+    });
+    judged.collect()
+}
+
+/// Own ship and the targets at a time, as they were; `None` where one of them has no track.
+fn sighted(model: &ClosedLoop, time: f64) -> Option<Vec<Sighted>> {
+    let canvas = &model.canvas;
+    let own = Sighted::ship(canvas, &canvas.scenario.own_ship.hull, &model.own_at(time));
+    let targets = model.simulation.targets.iter();
+    let targets = targets.map(|target| {
+        let ship = target.at(time)?;
+        match target.set_m {
+            None => Some(Sighted::ship(canvas, &target.hull(), &ship)),
+            Some(_) => Some(Sighted::set(
+                ship.pose.position,
+                target.outline(&ship.pose)?,
+            )),
+        }
+    });
+    std::iter::once(Some(own)).chain(targets).collect()
+}
+
+/// The closest approaches of what was sailed.
+fn approaches(model: &ClosedLoop) -> Vec<Approach> {
+    let targets = model.simulation.targets.iter().enumerate();
+    let approach = targets.filter_map(|(index, target)| {
+        let time = target.contact_t_s.unwrap_or(target.least_clearance_t_s);
+        let ships = sighted(model, time)?;
+        let apart = target
+            .least_clearance_m
+            .filter(|_| target.contact_t_s.is_none());
+        let apart = apart.unwrap_or(f64::NAN);
+        let pair = [&ships[0], &ships[index + 1]];
+        Some(Approach::new(
+            &target.name,
+            (time, apart),
+            pair,
+            style::target(index),
+        ))
+    });
+    approach.collect()
+}
+
+/// Logs the names of the targets with own ship's roles, and at own ship how close it has come.
+fn log_names(rec: &mut Recorder, model: &ClosedLoop, labels: &Labels, judged: &[Judged]) -> Logged {
+    let targets = &model.simulation.targets;
+    let least_until = model.least_until();
+    let own = |time: f64| {
+        let begun = least_until.partition_point(|(at, _)| *at <= time);
+        match least_until[..begun].last() {
+            Some((_, least)) => format!("Own ship\nclosest so far {} m", tenths(*least)),
+            None => "Own ship".to_owned(),
+        }
+    };
+    let text = |index: usize, time: f64| match index.checked_sub(1) {
+        None => own(time),
+        Some(index) => rules::name_with_role(judged, &targets[index].name, time),
+    };
+    let colors = colors(targets.len());
+    let ships = |time| sighted(model, time);
+    ships::log_names(rec, &model.canvas, labels, (0, &colors), ships, text)
+}
+
+/// The colours of own ship and of the targets.
+fn colors(targets: usize) -> Vec<Color> {
+    std::iter::once(style::OWN_SHIP)
+        .chain((0..targets).map(style::target))
+        .collect()
 }
 
 fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
@@ -71,58 +168,36 @@ fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     log_strips(rec, model, "estimates", &hulls, estimates)
 }
 
-/// Logs the true ships: hulls with speed vectors, names, and a dot per ship and cursor time.
+/// Logs the true ships: speed vectors, hulls and symbols, and a dot per ship and cursor time.
 fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
-    let (canvas, targets) = (&model.canvas, &model.simulation.targets);
-    let colors: Vec<_> = std::iter::once(style::OWN_SHIP)
-        .chain((0..targets.len()).map(style::target))
-        .collect();
-    let ships = |time: f64| -> Option<Vec<(SteadyShip, ConvexPolygon)>> {
-        let own = model.own_at(time);
-        let hull = canvas.scenario.own_ship.hull.polygon(&own.pose);
-        let others = targets.iter().map(|target| {
-            let ship = target.at(time)?;
-            Some((ship, target.outline(&ship.pose)?))
-        });
-        std::iter::once(Some((own, hull))).chain(others).collect()
+    let canvas = &model.canvas;
+    let drawn = |ship: &Sighted| -> Vec<Strip> {
+        std::iter::once(ship.vector())
+            .chain(ship.strips())
+            .collect()
     };
-    let style = LineStrips2D::update_fields()
-        .with_colors(colors.iter().flat_map(|color| [*color; 2]))
-        .with_radii([style::points(1.2), style::points(0.8)].repeat(colors.len()));
-    let seconds = ships::vector_seconds(canvas);
+    let colors = colors(model.simulation.targets.len());
+    let lines = sighted(model, 0.0).unwrap_or_default();
+    let lines = lines.iter().map(|ship| drawn(ship).len());
+    let each = colors
+        .iter()
+        .zip(lines)
+        .flat_map(|(color, lines)| vec![*color; lines]);
+    let style = ships::set_style(style::OWN_SHIP, 1.0).with_colors(each);
     log_strips(rec, model, "ships", &style, |time| {
-        let drawn = ships(time)?.into_iter().flat_map(|(ship, outlined)| {
-            let tip = ship.pose.position + ship.velocity() * seconds;
-            let vector = [ship.pose.position, tip].map(flat);
-            [outline(&outlined), vector.to_vec()]
-        });
-        Some(drawn.collect())
+        Some(sighted(model, time)?.iter().flat_map(drawn).collect())
     })?;
-    let places = |offset| {
-        let ships = canvas
-            .cursor_times
-            .iter()
-            .filter_map(|&time| ships(time))
-            .flatten();
-        let places = ships.map(move |(ship, _)| flat(ship.pose.position + offset));
-        let rows = canvas.cursor_times.len();
-        Points2D::update_fields()
-            .with_positions(places)
-            .columns(vec![colors.len(); rows])
-    };
-    let names = targets.iter().map(|target| target.name.as_str());
-    let names = Points2D::update_fields()
-        .with_colors(colors.iter().copied())
-        .with_radii([style::points(0.0)])
-        .with_labels(std::iter::once("Own ship").chain(names))
-        .with_show_labels(true);
-    let columns = places(ships::label_offset(canvas))?;
-    let times = canvas.cursor_column();
-    rec.log_moving(path(&[MAP, "names"]), times, &names, columns)?;
     let dots = Points2D::update_fields()
-        .with_colors(colors.iter().copied())
+        .with_colors(colors)
         .with_radii([style::points(2.0)]);
-    let columns = places(crate::frame::Vector::zeros())?;
+    let times = canvas.cursor_times.iter();
+    let ships: Vec<Vec<Sighted>> = times
+        .map(|&t| sighted(model, t).unwrap_or_default())
+        .collect();
+    let lengths: Vec<usize> = ships.iter().map(Vec::len).collect();
+    let columns = Points2D::update_fields()
+        .with_positions(ships.iter().flatten().map(|ship| flat(ship.place)))
+        .columns(lengths)?;
     rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &dots, columns)
 }
 
@@ -133,7 +208,8 @@ fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
         };
         let place = flat(model.own_at(time).pose.position);
         let label = format!("contact with {} at {}", target.name, clock(time));
-        let mark = labelled([place], style::ALARM, 6.0, [label]);
+        // the closest approach names it
+        let mark = labelled([place], style::ALARM, 6.0, [label]).with_show_labels(false);
         let times = TimeColumn::new_duration_secs(TIMELINE, [time]);
         let entity = path(&[MAP, "contacts", &target.name]);
         rec.send_columns(entity, Some(times), mark.columns_of_unit_batches()?)?;

@@ -2,6 +2,7 @@
 
 pub mod chart;
 pub mod closed_loop;
+pub mod closest;
 pub mod curves;
 pub mod explored;
 pub mod geographic;

@@ -2,11 +2,13 @@
 
 use rerun::{Color, Points2D, Points3D, StateChange, StateConfiguration, TimeColumn};
 
-use crate::colregs::compliance::{ComplianceReport, MonitorResult, MonitorVerdict};
-use crate::frame::{Side, clockwise_deg, knots_from_mps};
-use crate::planner::Escape;
+use crate::colregs::compliance::MonitorVerdict;
+use crate::document::{
+    ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument,
+};
+use crate::frame::{Vector, knots_from_mps};
 use crate::recording::canvas::style::{self, SpeedClass};
-use crate::recording::canvas::{ViewModel, clock, flat};
+use crate::recording::canvas::{Canvas, Labels, clock, flat};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, ROLES, TIMELINE, VOLUME, path};
 
@@ -14,8 +16,8 @@ use crate::recording::{Logged, MAP, ROLES, TIMELINE, VOLUME, path};
 const LANE_STRENGTH: f32 = 0.55;
 
 /// One lane of the view: states from a time on, in order of time; an empty text ends one.
-#[derive(Default)]
-struct Lane {
+#[derive(Debug, Default)]
+pub struct Lane {
     states: Vec<(f64, String)>,
     /// One per state.
     colors: Vec<Color>,
@@ -39,79 +41,119 @@ impl Lane {
     }
 }
 
-/// When own ship violates rules and monitors, and their short names, in order of time.
-fn violated(conduct: &ComplianceReport) -> Vec<(f64, String)> {
-    let rules = conduct.violations.iter();
-    let rules = rules.map(|violation| (violation.time, violation.rule.to_owned()));
-    let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
-    let monitors = conduct.monitors.iter().filter(is_violated);
-    let monitors = monitors.map(|m| (m.time.unwrap_or(0.0), format!("monitor {}", m.monitor)));
-    let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all
+/// Own ship's roles toward a target, and how it behaved.
+#[derive(Debug)]
+pub struct Judged<'a> {
+    pub target: &'a str,
+    pub color: Color,
+    pub roles: Vec<RoleDocument>,
+    pub conduct: &'a ConductDocument,
 }
 
-/// The targets toward which own ship has a role or breaks a rule, with their index and name.
-fn judged<'a>(
-    model: &'a ViewModel,
-) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
-    let both = model.scenario.targets.iter().zip(&model.conduct);
-    both.enumerate().filter_map(|(index, (target, conduct))| {
-        let conduct = conduct.as_ref()?;
-        let silent = conduct.roles.is_empty() && violated(conduct).is_empty();
-        (!silent).then_some((index, target.name.as_str(), conduct))
-    })
-}
-
-fn lanes(model: &ViewModel) -> Vec<Lane> {
-    let end = model.motion.end().min(model.end);
-    let mut lanes = Vec::new();
-    if let Some(escape) = model.run.planned.escape {
-        let mut lane = Lane::default();
-        let held = "own ship holds course and speed".to_owned();
-        lane.add(0.0, held, SpeedClass::Slow.color());
-        let away = format!("own ship escapes: {}", manoeuvre(&escape));
-        lane.add(escape.held_until, away, SpeedClass::Fast.color());
-        lane.end(end);
-        lanes.push(lane);
+impl<'a> Judged<'a> {
+    /// The targets that a plan judges.
+    pub fn of_plan(canvas: &Canvas, plan: &'a PlanDocument) -> Vec<Self> {
+        let judged = |(index, encounter): (usize, &'a EncounterDocument)| {
+            let conduct = encounter.conduct.as_ref()?;
+            Some(Self {
+                target: &encounter.target,
+                color: canvas.target_color(index),
+                roles: conduct.roles.clone(),
+                conduct,
+            })
+        };
+        plan.encounters
+            .iter()
+            .enumerate()
+            .filter_map(judged)
+            .collect()
     }
-    for (index, name, conduct) in judged(model) {
+
+    /// When own ship violates rules and monitors, and their short names, in order of time.
+    fn violated(&self) -> Vec<(f64, String)> {
+        let rules = self.conduct.violations.iter();
+        let rules = rules.map(|violation| (violation.t_s, violation.rule.clone()));
+        let monitors = self.conduct.monitors.iter();
+        let monitors = monitors.filter(|m| m.verdict == MonitorVerdict::Violated.word());
+        let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), format!("monitor {}", m.monitor)));
+        let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
+    fn lanes(&self, end: f64) -> impl Iterator<Item = Lane> {
+        let name = self.target;
+        let mut lanes = Vec::new();
         let mut roles = Lane::default();
         // the recording begins with the plan
-        for state in conduct.roles.iter().filter(|state| state.until >= 0.0) {
-            let text = format!("own ship to {name}: {}", state.role.word());
-            roles.add(state.from.max(0.0), text, style::target(index));
-            roles.end(state.until);
+        for state in self.roles.iter().filter(|state| state.until_s >= 0.0) {
+            let text = format!("own ship to {name}: {}", state.role);
+            roles.add(state.from_s.max(0.0), text, self.color);
+            roles.end(state.until_s);
         }
-        lanes.extend((!conduct.roles.is_empty()).then_some(roles));
+        lanes.extend((!self.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
         let mut breaks = Lane::default();
         let mut until = end;
-        for (time, rule) in violated(conduct) {
+        for (time, rule) in self.violated() {
             if !rules.contains(&rule) {
                 rules.push(rule);
             }
             let text = format!("own ship breaks {} toward {name}", rules.join(", "));
             breaks.add(time, text, style::ALARM);
-            let mut ends = conduct.roles.iter().map(|state| state.until);
+            let mut ends = self.roles.iter().map(|state| state.until_s);
             until = ends.find(|end| *end > time).unwrap_or(end);
         }
         if !rules.is_empty() {
             breaks.end(until);
             lanes.push(breaks);
         }
+        lanes.into_iter()
     }
+}
+
+/// The name of a target with own ship's role toward it at a time.
+pub fn name_with_role(judged: &[Judged], target: &str, time: f64) -> String {
+    let judged = judged.iter().find(|judged| judged.target == target);
+    let mut roles = judged.iter().flat_map(|judged| &judged.roles);
+    let role = roles.find(|role| role.from_s <= time && time < role.until_s);
+    match role {
+        Some(role) => format!("{target}\nown ship: {}", role.role),
+        None => target.to_owned(),
+    }
+}
+
+/// Writes in a corner of the chart which rules own ship breaks.
+pub fn add_broken(labels: &mut Labels, broken: Option<&[&str]>) {
+    match broken {
+        None => {}
+        Some([]) => labels.add_in_corner("breaks no rule", style::CHART_TEXT),
+        Some(broken) => {
+            let text = format!("breaks {}", broken.join(", "));
+            labels.add_in_corner(&text, style::ALARM);
+        }
+    }
+}
+
+/// The lanes of own ship until `end`.
+pub fn lanes(judged: &[Judged], escape: Option<&EscapeDocument>, end: f64) -> Vec<Lane> {
+    let mut lanes = Vec::new();
+    if let Some(escape) = escape {
+        let mut lane = Lane::default();
+        let held = "own ship holds course and speed".to_owned();
+        lane.add(0.0, held, SpeedClass::Slow.color());
+        let away = format!("own ship escapes: {}", manoeuvre(escape));
+        lane.add(escape.held_until_s, away, SpeedClass::Fast.color());
+        lane.end(end);
+        lanes.push(lane);
+    }
+    lanes.extend(judged.iter().flat_map(|judged| judged.lanes(end)));
     lanes
 }
 
-pub fn height(model: &ViewModel) -> usize {
-    lanes(model).len()
-}
-
-/// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies. A
-/// row where a lane changes has a text per lane, empty where nothing holds.
-pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> Logged {
-    let lanes = lanes(model);
+/// Logs the lanes; nothing where no rule applies. A row where a lane changes has a text per lane,
+/// empty where nothing holds.
+pub fn log_lanes(rec: &mut Recorder, lanes: &[Lane]) -> Logged {
     if lanes.is_empty() {
         return Ok(());
     }
@@ -136,98 +178,135 @@ pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> Logged {
         .with_state(states)
         .columns(vec![lanes.len(); times.len()])?;
     let times = TimeColumn::new_duration_secs(TIMELINE, times);
-    rec.log_moving(path(&[ROLES]), times, &style, columns)?;
-    log_marks(rec, model)
+    rec.log_moving(path(&[ROLES]), times, &style, columns)
 }
 
-/// Logs where own ship breaks a rule, and where it stops standing on. A mark is named where it is
-/// pointed at.
-fn log_marks(rec: &mut Recorder, model: &ViewModel) -> Logged {
-    let mut marks: Vec<(f64, String, Color)> = Vec::new();
-    for (_, name, conduct) in judged(model) {
-        for violation in &conduct.violations {
-            let (rule, time) = (violation.rule, violation.time);
-            let text = format!("{rule} at {}, toward {name}", clock(time));
-            marks.push((time, text, style::ALARM));
+/// A moment on own ship's way. It is named where it is pointed at.
+pub struct Mark {
+    place: Vector,
+    time: f64,
+    text: String,
+    color: Color,
+}
+
+/// Where own ship breaks a rule, and where it stops standing on. `own` is its place at a time.
+pub fn marks(
+    judged: &[Judged],
+    escape: Option<&EscapeDocument>,
+    own: impl Fn(f64) -> Vector,
+) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    let mut add = |time: f64, text: String, color: Color| {
+        let place = own(time);
+        marks.push(Mark {
+            place,
+            time,
+            text,
+            color,
+        });
+    };
+    for judged in judged {
+        for violation in &judged.conduct.violations {
+            let (rule, time) = (&violation.rule, violation.t_s);
+            let text = format!("{rule} at {}, toward {}", clock(time), judged.target);
+            add(time, text, style::ALARM);
         }
     }
-    if let Some(escape) = model.run.planned.escape {
-        let text = format!("holds until {}", clock(escape.held_until));
-        marks.push((escape.held_until, text, SpeedClass::Fast.color()));
+    if let Some(escape) = escape {
+        let text = format!("holds until {}", clock(escape.held_until_s));
+        add(escape.held_until_s, text, SpeedClass::Fast.color());
     }
+    marks
+}
+
+pub fn log_marks(rec: &mut Recorder, marks: &[Mark]) -> Logged {
     if marks.is_empty() {
         return Ok(());
     }
-    let place = |time: f64| model.motion.pose_at(time).position;
-    let colors: Vec<Color> = marks.iter().map(|m| m.2).collect();
-    let labels: Vec<&str> = marks.iter().map(|m| m.1.as_str()).collect();
-    let on_chart = Points2D::new(marks.iter().map(|m| flat(place(m.0))))
-        .with_colors(colors.iter().copied())
+    let on_chart = Points2D::new(marks.iter().map(|mark| flat(mark.place)))
+        .with_colors(marks.iter().map(|mark| mark.color))
         .with_radii([style::points(4.5)])
-        .with_labels(labels.iter().copied())
+        .with_labels(marks.iter().map(|mark| mark.text.as_str()))
         .with_show_labels(false)
         .with_draw_order(40.0);
-    rec.log_static(path(&[MAP, "rules"]), &on_chart)?;
-    let in_volume = Points3D::new(marks.iter().map(|m| model.lifted(place(m.0), m.0)))
-        .with_colors(colors)
+    rec.log_static(path(&[MAP, "rules"]), &on_chart)
+}
+
+pub fn log_marks_in_volume(rec: &mut Recorder, canvas: &Canvas, marks: &[Mark]) -> Logged {
+    if marks.is_empty() {
+        return Ok(());
+    }
+    let places = marks
+        .iter()
+        .map(|mark| canvas.lifted(mark.place, mark.time));
+    let in_volume = Points3D::new(places)
+        .with_colors(marks.iter().map(|mark| mark.color))
         .with_radii([style::points(4.5)])
-        .with_labels(labels)
+        .with_labels(marks.iter().map(|mark| mark.text.as_str()))
         .with_show_labels(false);
     rec.log_static(path(&[VOLUME, "rules"]), &in_volume)
 }
 
-fn manoeuvre(escape: &Escape) -> String {
-    let speed = knots_from_mps(escape.speed);
-    match Side::of_turn(escape.turn) {
-        Some(side) => {
-            let degrees = clockwise_deg(escape.turn).abs();
-            format!("{degrees:.0}° to {side} at {speed:.1} kn")
-        }
-        None => format!("{speed:.1} kn"),
+fn manoeuvre(escape: &EscapeDocument) -> String {
+    let speed = knots_from_mps(escape.speed_mps);
+    let turn = escape.turn_deg;
+    if turn == 0.0 {
+        return format!("{speed:.1} kn");
     }
+    let side = if turn > 0.0 { "starboard" } else { "port" };
+    format!("{:.0}° to {side} at {speed:.1} kn", turn.abs())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::pipeline;
+    use crate::recording::canvas::ViewModel;
     use crate::scenario::{Compliance, Scenario};
 
-    fn stand_on(compliance: Compliance) -> pipeline::Run {
+    /// Tests the lanes of a plan.
+    fn stand_on(compliance: Compliance, test: impl Fn(&PlanDocument, &[Judged], &[Lane], f64)) {
         let file = "scenarios/colregs/stand-on.toml";
         let mut scenario = Scenario::read(file.as_ref()).expect("valid");
         scenario.compliance = compliance;
-        pipeline::run(scenario)
+        let run = pipeline::run(scenario);
+        let plan = PlanDocument::of(&run);
+        let model = ViewModel::new(&run);
+        let judged = Judged::of_plan(&model, &plan);
+        let end = model.motion.end();
+        let lanes = lanes(&judged, plan.escape.as_ref(), end);
+        test(&plan, &judged, &lanes, end);
     }
 
     #[test]
     fn a_rule_is_broken_from_its_moment_on() {
-        let run = stand_on(Compliance::Shape);
-        let model = ViewModel::new(&run);
-        let conduct = model.conduct[0].as_ref().expect("a ship");
-        let violation = conduct.violations.iter().find(|b| b.rule == "17(c)");
-        let violation = violation.expect("a turn to port");
-        let [roles, broken] = &lanes(&model)[..] else {
-            panic!("two lanes");
-        };
-        assert_eq!(
-            roles.at(conduct.roles[0].from),
-            "own ship to target: stand-on"
-        );
-        assert_eq!(roles.at(model.motion.end()), "");
-        assert!(!broken.at(violation.time - 1e-6).contains("17(c)"));
-        assert!(broken.at(violation.time).contains("17(c)"));
-        assert_eq!(broken.at(conduct.roles[0].until), "");
+        stand_on(Compliance::Shape, |_, judged, lanes, end| {
+            let conduct = judged[0].conduct;
+            let violation = conduct.violations.iter().find(|b| b.rule == "17(c)");
+            let violation = violation.expect("a turn to port");
+            let [roles, broken] = lanes else {
+                panic!("two lanes");
+            };
+            let role = &conduct.roles[0];
+            assert_eq!(roles.at(role.from_s), "own ship to target: stand-on");
+            assert_eq!(roles.at(end), "");
+            assert!(!broken.at(violation.t_s - 1e-6).contains("17(c)"));
+            assert!(broken.at(violation.t_s).contains("17(c)"));
+            assert_eq!(broken.at(role.until_s), "");
+            let named = |time| name_with_role(judged, "target", time);
+            assert_eq!(named(role.from_s), "target\nown ship: stand-on");
+            assert_eq!(named(role.until_s), "target");
+        });
     }
 
     #[test]
     fn a_hold_ends_at_its_latest_time() {
-        let run = stand_on(Compliance::Rules);
-        let model = ViewModel::new(&run);
-        let latest = run.planned.escape.expect("stands on").held_until;
-        let own = &lanes(&model)[0];
-        assert_eq!(own.at(0.0), "own ship holds course and speed");
-        assert_eq!(own.at(latest - 1e-6), own.at(0.0));
-        assert!(own.at(latest).starts_with("own ship escapes: "));
+        stand_on(Compliance::Rules, |plan, _, lanes, _| {
+            let latest = plan.escape.as_ref().expect("stands on").held_until_s;
+            let own = &lanes[0];
+            assert_eq!(own.at(0.0), "own ship holds course and speed");
+            assert_eq!(own.at(latest - 1e-6), own.at(0.0));
+            assert!(own.at(latest).starts_with("own ship escapes: "));
+        });
     }
 }

@@ -5,11 +5,14 @@ use rerun::{
 };
 
 use super::chart::Strip;
+use super::rules::{Judged, name_with_role};
+use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{
-    Canvas, Lines, ShownMotion, ViewModel, flat, labelled, round_down_time, style,
+    Canvas, Labels, Lines, ShownMotion, ViewModel, flat, labelled, leader_style, round_down_time,
+    style,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
@@ -33,20 +36,181 @@ pub struct DrawnShip<'a> {
     pub color: Color,
 }
 
+/// A ship, or an explicit set, as the chart shows it at a time.
+#[derive(Debug)]
+pub struct Sighted {
+    pub place: Vector,
+    /// The hull, or the set.
+    pub outline: ConvexPolygon,
+    symbol: Option<Strip>,
+    /// The end of the speed vector.
+    tip: Vector,
+    /// True for an explicit set, which own ship may not enter with its centre.
+    pub is_set: bool,
+}
+
+impl Sighted {
+    pub fn ship(canvas: &Canvas, hull: &Hull, ship: &SteadyShip) -> Self {
+        let place = ship.pose.position;
+        Self {
+            place,
+            outline: hull.polygon(&ship.pose),
+            symbol: symbol(canvas, hull, &ship.pose),
+            tip: place + ship.velocity() * vector_seconds(canvas),
+            is_set: false,
+        }
+    }
+
+    pub fn set(place: Vector, outline: ConvexPolygon) -> Self {
+        Self {
+            place,
+            outline,
+            symbol: None,
+            tip: place,
+            is_set: true,
+        }
+    }
+
+    /// Own ship on a motion.
+    pub fn own(canvas: &Canvas, motion: &ShownMotion, time: f64) -> Self {
+        let own = SteadyShip::new(motion.pose_at(time), motion.speed_at(time));
+        Self::ship(canvas, &canvas.scenario.own_ship.hull, &own)
+    }
+
+    /// A target where it is expected.
+    pub fn target(canvas: &Canvas, target: &Target, time: f64) -> Option<Self> {
+        if let Some(ship) = target.ship() {
+            let there = SteadyShip::on_track(ship, time);
+            return Some(Self::ship(canvas, &ship.hull, &there));
+        }
+        let outline = target.sets()?.outer_section(time);
+        Some(Self::set(target.position_at(time), outline))
+    }
+
+    /// The outline, and the symbol of a small ship.
+    pub fn strips(&self) -> impl Iterator<Item = Strip> {
+        std::iter::once(outline(&self.outline)).chain(self.symbol.clone())
+    }
+
+    pub fn vector(&self) -> Strip {
+        [self.place, self.tip].map(flat).to_vec()
+    }
+
+    /// What a label has to leave free.
+    pub fn covers(&self) -> Window {
+        let corners = self.symbol.iter().flatten();
+        let corners = corners.map(|&[east, north]| Vector::new(east.into(), north.into()));
+        let corners: Vec<Vector> = corners
+            .chain(self.outline.vertices().iter().copied())
+            .collect();
+        let around = Window::around(&corners).filter(|_| !self.is_set);
+        around.unwrap_or(Window::at(self.place))
+    }
+}
+
 pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_others(rec, model)?;
+    let own = own_ship(model);
+    log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own)?;
+    log_trails(rec, model, &[own])
+}
+
+/// Own ship of a run.
+pub fn own_ship<'a>(model: &ViewModel<'a>) -> DrawnShip<'a> {
     let name = if model.motion.is_planned() {
         "Own ship"
     } else {
         "Own ship (no plan)"
     };
-    let own = DrawnShip {
+    DrawnShip {
         motion: model.motion,
         name: name.to_owned(),
         color: style::OWN_SHIP,
-    };
-    log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own, true)?;
-    log_trails(rec, model, &[own])
+    }
+}
+
+/// Logs the names of own ship, and of the targets with own ship's role toward them.
+pub fn log_names_of_run(
+    rec: &mut Recorder,
+    model: &ViewModel,
+    labels: &Labels,
+    judged: &[Judged],
+) -> Logged {
+    let own = [own_ship(model)];
+    let colors: Vec<Color> = ship_colors(model, &own).collect();
+    let ships = |time| sighted(model, &own, time);
+    log_names(
+        rec,
+        model,
+        labels,
+        (0, &colors),
+        ships,
+        |index, time| match index.checked_sub(1) {
+            None => own[0].name.clone(),
+            Some(index) => name_with_role(judged, &model.scenario.targets[index].name, time),
+        },
+    )
+}
+
+/// Own ships and targets at a time.
+pub fn sighted(canvas: &Canvas, own: &[DrawnShip], time: f64) -> Option<Vec<Sighted>> {
+    let targets = canvas.scenario.targets.iter();
+    let own = own
+        .iter()
+        .map(|own| Some(Sighted::own(canvas, &own.motion, time)));
+    own.chain(targets.map(|target| Sighted::target(canvas, target, time)))
+        .collect()
+}
+
+/// Logs names beside ships at every cursor time: of those from the `first` on, which have `colors`.
+/// `text` is that of the ship of an index at a time.
+pub fn log_names(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    labels: &Labels,
+    (first, colors): (usize, &[Color]),
+    ships: impl Fn(f64) -> Option<Vec<Sighted>>,
+    text: impl Fn(usize, f64) -> String,
+) -> Logged {
+    let (mut anchors, mut texts, mut leaders) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut names, mut led) = (Vec::new(), Vec::new());
+    let mut last = vec![None; first + colors.len()];
+    for &time in &canvas.cursor_times {
+        let ships = ships(time).unwrap_or_default();
+        let mut labels = labels.without_ships();
+        for ship in &ships {
+            labels.keep_off(ship.covers());
+            labels.keep_off_line(vec![ship.place, ship.tip]);
+        }
+        let before = (anchors.len(), leaders.len());
+        for (index, ship) in ships.iter().enumerate().skip(first) {
+            let text = text(index, time);
+            let Some(placed) = labels.place(&text, ship.place, last[index]) else {
+                continue;
+            };
+            last[index] = Some(placed.number);
+            anchors.push(placed.anchor);
+            texts.push(text);
+            leaders.extend(placed.leader);
+        }
+        names.push(anchors.len() - before.0);
+        led.push(leaders.len() - before.1);
+    }
+    let points = Points2D::update_fields()
+        .with_colors(colors.iter().copied())
+        .with_radii([style::points(0.0)])
+        .with_show_labels(true);
+    let leader_style = leader_style();
+    let style: [&dyn AsComponents; 2] = [&points, &leader_style];
+    let anchors = Points2D::update_fields()
+        .with_positions(anchors)
+        .with_labels(texts)
+        .columns(names)?;
+    let leaders = LineStrips2D::update_fields()
+        .with_strips(leaders)
+        .columns(led)?;
+    let times = canvas.cursor_column();
+    rec.log_moving(path(&[MAP, "names"]), times, &style, anchors.chain(leaders))
 }
 
 pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> Logged {
@@ -111,7 +275,6 @@ fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target
     let entity = path(&[MAP, "targets", &target.name]);
     let color = canvas.target_color(index);
     let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
-    let name = label(canvas, color, &target.name);
     let turning = target.ship().filter(|ship| !ship.route.is_empty());
     if let Some(ship) = turning {
         let times = canvas.cursor_times.iter();
@@ -123,8 +286,8 @@ fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target
         let style = LineStrips2D::update_fields()
             .with_colors([color])
             .with_radii(DRAWN_RADII.map(style::points));
-        rec.log_moving(entity.clone(), canvas.cursor_column(), &style, columns)?;
-        return log_places(rec, canvas, entity, &name, places);
+        rec.send_columns(entity.clone(), Some(canvas.cursor_column()), columns)?;
+        return log_places(rec, canvas, entity, &style, places);
     }
     let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
@@ -132,9 +295,7 @@ fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target
             lines.add(strip, color, radius);
         }
     }
-    let lines = lines.archetype();
-    let parts: [&dyn AsComponents; 2] = [&lines, &name];
-    log_places(rec, canvas, entity, &parts, places)
+    log_places(rec, canvas, entity, &lines.archetype(), places)
 }
 
 /// Radii of the lines of [`drawn_at`], points.
@@ -153,20 +314,18 @@ fn drawn_at(canvas: &Canvas, ship: &ShipTrack, time: f64) -> Vec<Strip> {
     lines.into_iter().chain(symbol).collect()
 }
 
-/// Logs own ship's place and name, and below them its hull and speed vector. The name is always
-/// shown where `named`.
+/// Logs own ship's place, and below it its hull and speed vector. The name is shown where it is
+/// pointed at.
 pub fn log_own_ship(
     rec: &mut Recorder,
     canvas: &Canvas,
     entity: EntityPath,
     own: &DrawnShip,
-    named: bool,
 ) -> Logged {
-    let name = label(canvas, own.color, &own.name).with_show_labels(named);
-    let places = canvas
-        .cursor_times
-        .iter()
-        .map(|&t| own.motion.pose_at(t).position);
+    let name = labelled([[0.0, 0.0]], own.color, TRAIL_RADIUS, [own.name.as_str()])
+        .with_show_labels(false);
+    let times = canvas.cursor_times.iter();
+    let places = times.map(|&t| own.motion.pose_at(t).position);
     log_places(rec, canvas, entity.clone(), &name, places)?;
     log_own_hull(rec, canvas, entity.join(&EntityPath::from("hull")), own)
 }
@@ -203,12 +362,15 @@ pub fn ship_places(canvas: &Canvas, own: &[DrawnShip]) -> (Vec<Vector>, Vec<usiz
     (places, lengths)
 }
 
+/// Radius of the dots of trails, points.
+const TRAIL_RADIUS: f32 = 2.4;
+
 /// Logs a dot per ship and cursor time; the layout shows those up to the cursor. The last one marks
 /// the ship at any zoom.
 pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
     let style = Points2D::update_fields()
         .with_colors(ship_colors(canvas, own))
-        .with_radii([style::points(2.4)]);
+        .with_radii([style::points(TRAIL_RADIUS)]);
     let (places, lengths) = ship_places(canvas, own);
     let columns = Points2D::update_fields()
         .with_positions(places.into_iter().map(flat))
@@ -254,10 +416,13 @@ fn log_own_hull(
 
 /// The symbol of a ship whose hull is too small to see when the chart is opened.
 fn symbol(canvas: &Canvas, hull: &Hull, pose: &Pose) -> Option<Strip> {
-    let length = canvas.bounds.size().max() / 25.0;
+    let length = SYMBOL_PIXELS * canvas.pixel();
     let corner = |&[x, y]: &[f64; 2]| flat(pose.world_coordinates(Vector::new(x, y) * length));
     (hull.length < length).then(|| SYMBOL.iter().map(corner).collect())
 }
+
+/// Length of a symbol.
+const SYMBOL_PIXELS: f64 = 26.0;
 
 /// A closed line, in lengths of the symbol.
 const SYMBOL: [[f64; 2]; 6] = [
@@ -272,16 +437,6 @@ const SYMBOL: [[f64; 2]; 6] = [
 /// How far ahead a speed vector reaches, seconds.
 pub fn vector_seconds(canvas: &Canvas) -> f64 {
     round_down_time(canvas.end / 6.0)
-}
-
-/// A name north of a ship, as time marks have theirs south of it.
-fn label(canvas: &Canvas, color: Color, name: &str) -> Points2D {
-    labelled([flat(label_offset(canvas))], color, 0.0, [name])
-}
-
-/// Where the name of a ship is, from its place: above its symbol, as names are below their points.
-pub fn label_offset(canvas: &Canvas) -> Vector {
-    Vector::new(0.0, canvas.bounds.size().max() / 11.0)
 }
 
 /// About the vertical, counter-clockwise seen from above.

@@ -225,8 +225,8 @@ pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged
         .with_colors(ship_colors(canvas, own))
         .with_radii([style::points(5.0)])
         .with_labels(names)
-        // names of several own ships would overlap: they are shown when one is pointed at
-        .with_show_labels(own.len() <= 1);
+        // more names would overlap: they are shown when one is pointed at
+        .with_show_labels(own.len() + canvas.scenario.targets.len() <= 2);
     let entity = path(&[VOLUME, "now"]);
     let style: [&dyn AsComponents; 2] = [&frame, &ships];
 

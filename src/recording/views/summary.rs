@@ -2,13 +2,9 @@
 
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
-use crate::document::{PlanDocument, TIME_LINE, breaks, headline, longest, plan_lines};
+use crate::document::{PlanDocument, TIME_LINE, headline, longest, plan_lines};
 use crate::evaluation::Evaluation;
-use crate::frame::Vector;
-use crate::geometry::Window;
-use crate::recording::canvas::{ShownMotion, ViewModel, clock, flat, labelled, style};
-use crate::recording::write::Recorder;
-use crate::recording::{Logged, MAP, path};
+use crate::recording::canvas::{ShownMotion, ViewModel, clock};
 use crate::text::{broken, knots_figure, rounded, significant};
 
 /// Characters of a line that a window 1280 wide shows.
@@ -97,19 +93,6 @@ fn targets_first(lines: Vec<(&'static str, String)>) -> Vec<(&'static str, Strin
     targets
 }
 
-/// Logs the rules that own ship breaks, in red above the chart.
-pub fn log_broken(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged {
-    let broken = breaks(&plan.encounters).unwrap_or_default();
-    if broken.is_empty() {
-        return Ok(());
-    }
-    let Window { low, high } = model.bounds;
-    let place = Vector::new(0.25 * low.x + 0.75 * high.x, high.y);
-    let text = format!("breaks {}", broken.join(", "));
-    let headline = labelled([flat(place)], style::ALARM, 0.0, [text]);
-    rec.log_static(path(&[MAP, "broken_rules"]), &headline)
-}
-
 fn graph(drawn: DrawnGraph) -> String {
     let shown = if drawn.edges < drawn.tested {
         format!("{} of {} tested edges are", drawn.edges, drawn.tested)
@@ -162,8 +145,9 @@ fn key(model: &ViewModel) -> String {
     format!(
         "Chart: own ship is white, its plan yellow and thick where it is faster than desired, blue \
          and thin where it is slower; the desired trajectory is dashed. A target has a colour: \
-         thick for its hard set, thin for the set with its ship domain. Thin lines ahead of ships \
-         are speed vectors of {:.0} s; dots on the tracks are every {} min; the grid has {} m. \
+         thick for its hard set, thin for the set with its ship domain. The green line is the \
+         closest approach. Thin lines ahead of ships are speed vectors of {:.0} s; dots on the \
+         tracks are every {} min; the grid has {} m. \
          Sets apply to own ship's centre: they include its hull and the margin.",
         vector_seconds(model),
         clock(super::chart::mark_step(model)),

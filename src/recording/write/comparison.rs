@@ -21,6 +21,9 @@ use crate::study::compare::{Entry, Method, Stroke};
 
 const METHODS: &str = "methods";
 
+/// See [`Canvas::pane`].
+const PANE: [f64; 2] = [640.0, 425.0];
+
 /// Radius on the screen for one pixel of a figure's line.
 const RADIUS: f64 = 0.6;
 
@@ -100,13 +103,14 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
     // baselines go on to the horizon, far away
     let end = plans.iter().map(ShownMotion::end).fold(0.0, f64::max);
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
-    let canvas = Canvas::new(scenario, &sets, &plans, end, Palette::OwnShips);
+    let canvas = Canvas::new(scenario, &sets, &plans, end, (Palette::OwnShips, PANE));
 
     let own: Vec<DrawnShip> = candidates.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
     ships::log_others(rec, &canvas)?;
     ships::log_trails(rec, &canvas, &own)?;
+    log_names(rec, &canvas, &own)?;
     space_time::log_waters(rec, &canvas)?;
     space_time::log_now(rec, &canvas, &own)?;
     let mut graphs = Vec::new();
@@ -116,7 +120,7 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
         log_way(rec, &canvas, candidate, order)?;
         let name = candidate.own.name.as_str();
         let ship = path(&[MAP, METHODS, name, "own_ship"]);
-        ships::log_own_ship(rec, &canvas, ship, &candidate.own, false)?;
+        ships::log_own_ship(rec, &canvas, ship, &candidate.own)?;
         let Some(run) = &candidate.entry.run else {
             continue;
         };
@@ -132,6 +136,15 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
     log_curves(rec, &canvas, &candidates)?;
     rec.log_markdown(SUMMARY, text(compared.table, &graphs))?;
     layout::of_comparison(&canvas)
+}
+
+/// Logs the names of the targets. Those of own ships are shown where they are pointed at.
+fn log_names(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
+    let colors: Vec<Color> = ships::ship_colors(canvas, own).skip(own.len()).collect();
+    let labels = chart::labels(canvas);
+    let ships = |time| ships::sighted(canvas, own, time);
+    let name = |index: usize, _| canvas.scenario.targets[index - own.len()].name.clone();
+    ships::log_names(rec, canvas, &labels, (own.len(), &colors), ships, name)
 }
 
 /// The entries with a motion. In a sweep a method keeps its colour, weaker with more risk.

@@ -15,11 +15,12 @@ use rerun::components::MediaType;
 use rerun::{EntityPath, RecordingInfo, TextDocument};
 
 use super::canvas::ViewModel;
+use super::views::rules::Judged;
 use super::views::{
     chart, curves, explored, geographic, land, rules, ships, space_time, summary, velocities,
 };
 use super::{DOCUMENT, EXPLORED, LEGS, SUMMARY, VOLUME, layout, path};
-use crate::document::{self, PlanDocument};
+use crate::document::{self, PlanDocument, breaks};
 use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
 use crate::recording::Logged;
@@ -117,22 +118,28 @@ fn bytes(
 const JSON: &str = "application/json";
 
 fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged<Recorder> {
+    let judged = Judged::of_plan(model, plan);
+    let escape = plan.escape.as_ref();
+    let lanes = rules::lanes(&judged, escape, model.motion.end().min(model.end));
     ships::log_ships(rec, model)?;
     velocities::log_velocities(rec, model)?;
     land::log_land(rec, model)?;
-    chart::log_chart(rec, model)?;
+    let labels = chart::log_chart(rec, model, breaks(&plan.encounters).as_deref())?;
+    ships::log_names_of_run(rec, model, &labels, &judged)?;
     geographic::log_geographic(rec, model)?;
     space_time::log_volume(rec, model)?;
     curves::log_curves(rec, model)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
-    summary::log_broken(rec, model, plan)?;
     rec.log_markdown(SUMMARY, summary::text(model, plan, drawn))?;
     let legs = summary::legs(plan);
     let has_legs = legs.is_some();
     if let Some(legs) = legs {
         rec.log_markdown(LEGS, legs)?;
     }
-    rules::log_rules(rec, model)?;
-    layout::of_run(model, has_legs)
+    rules::log_lanes(rec, &lanes)?;
+    let marks = rules::marks(&judged, escape, |t| model.motion.pose_at(t).position);
+    rules::log_marks(rec, &marks)?;
+    rules::log_marks_in_volume(rec, model, &marks)?;
+    layout::of_run(model, lanes.len(), has_legs)
 }

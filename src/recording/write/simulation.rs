@@ -7,7 +7,7 @@ use rerun::{TextLog, TextLogLevel, TimeColumn};
 use super::{Recorder, RecordingError, encoding_error, put};
 use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
-use crate::recording::views::{chart, closed_loop, land, ships};
+use crate::recording::views::{chart, closed_loop, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 use crate::text::rounded;
@@ -89,11 +89,16 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     let model = ClosedLoop::new(scenario, document, plans);
     let text = format!("{text}\n\n{}", key(&model));
     rec.log_markdown(SUMMARY, text)?;
+    let judged = closed_loop::judged(&model);
+    let lanes = rules::lanes(&judged, None, model.canvas.end);
     land::log_on_chart(rec, &model.canvas)?;
-    closed_loop::log_chart(rec, &model)?;
+    closed_loop::log_chart(rec, &model, &judged)?;
     closed_loop::log_curves(rec, &model)?;
+    rules::log_lanes(rec, &lanes)?;
+    let marks = rules::marks(&judged, None, |t| model.own_at(t).pose.position);
+    rules::log_marks(rec, &marks)?;
     log_events(rec, document)?;
-    layout::of_simulation(&model)
+    layout::of_simulation(&model, lanes.len())
 }
 
 fn key(model: &ClosedLoop) -> String {
@@ -101,8 +106,8 @@ fn key(model: &ClosedLoop) -> String {
         "Chart at the cursor: own ship is white, and so is its plan where it has the desired \
          speed; yellow and thick is faster, blue and thin slower. Each target has a colour for its \
          true hull, its track, and thick for the hard set that the plan assumes; grey is the hull \
-         that the plan assumes. Sets apply to own ship's centre. Speed vectors are of {:.0} s, \
-         dots every {:.0} s; the grid has {} m.",
+         that the plan assumes. Sets apply to own ship's centre. The green line is the closest \
+         approach. Speed vectors are of {:.0} s, dots every {:.0} s; the grid has {} m.",
         ships::vector_seconds(&model.canvas),
         model.canvas.cursor_times.get(1).copied().unwrap_or(0.0),
         rounded(chart::grid_spacing(&model.canvas)),
