@@ -170,7 +170,9 @@ impl<const COUNT: u64> Scenes<COUNT> {
 
 fn compliance_level(word: &str) -> Result<Compliance, &'static str> {
     let found = Compliance::WORDS.iter().find(|(name, _)| *name == word);
-    found.map(|(_, level)| *level).ok_or("allowed: none, shape, rules")
+    found
+        .map(|(_, level)| *level)
+        .ok_or("allowed: none, shape, rules")
 }
 
 fn run(campaign: Campaign) -> Report {

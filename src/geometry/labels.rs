@@ -75,6 +75,15 @@ impl Drawn {
         self.lines.extend(around.map(|around| (around, points)));
     }
 
+    /// The lines alone, with other boxes.
+    pub fn lines_and(&self, boxes: Vec<Window>) -> Self {
+        Self {
+            boxes,
+            filled: Vec::new(),
+            lines: self.lines.clone(),
+        }
+    }
+
     /// The place beside one of some positions where a label covers least: the frame, texts and ships
     /// first, then filled areas, then lines. A label that was at the place of number `last` stays
     /// there unless another is much better. `view` is the visible part of the plane and the size of

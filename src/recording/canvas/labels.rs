@@ -58,11 +58,7 @@ impl Labels {
     pub fn without_ships(&self) -> Self {
         Self {
             view: self.view,
-            drawn: Drawn {
-                boxes: self.lasting.clone(),
-                filled: Vec::new(),
-                lines: self.drawn.lines.clone(),
-            },
+            drawn: self.drawn.lines_and(self.lasting.clone()),
             lasting: Vec::new(),
             texts: Vec::new(),
             places: Vec::new(),
@@ -103,7 +99,7 @@ impl Labels {
 
     /// Labels keep off a line if there is room.
     pub fn keep_off_line(&mut self, line: Vec<Vector>) {
-        self.drawn.lines.push(line);
+        self.drawn.line(line);
     }
 
     /// Takes a place for a text beside a position; it stays at the number `last` while it can.
