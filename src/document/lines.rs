@@ -70,7 +70,13 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
         .iter()
         .find(|(word, _)| *word == plan.search);
     let search = search.map_or(&*plan.search, |(_, search)| search.label());
-    add("planner", format!("{}, {search}", plan.planner));
+    let weight = plan.search_stats.heuristic_weight;
+    let weighted = if weight > 1.0 {
+        format!(", bounds × {weight}")
+    } else {
+        String::new()
+    };
+    add("planner", format!("{}, {search}{weighted}", plan.planner));
     if let Some(reason) = &plan.reason {
         add("reason", reason.clone());
     }

@@ -59,6 +59,10 @@ pub(crate) struct Place {
     /// From the position to a label that is not close to it.
     pub leader: Option<[Vector; 2]>,
     /// The number of the place among those beside a position.
+    #[cfg_attr(
+        not(feature = "recording"),
+        allow(dead_code, reason = "labels move in recordings alone")
+    )]
     pub number: usize,
 }
 
@@ -76,6 +80,7 @@ impl Drawn {
     }
 
     /// The lines alone, with other boxes.
+    #[cfg(feature = "recording")]
     pub fn lines_and(&self, boxes: Vec<Window>) -> Self {
         Self {
             boxes,

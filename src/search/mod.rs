@@ -109,15 +109,7 @@ pub enum Stop {
 
 /// Counters of a search.
 #[derive(
-    Debug,
-    Clone,
-    Copy,
-    Default,
-    PartialEq,
-    Eq,
-    serde::Serialize,
-    serde::Deserialize,
-    schemars::JsonSchema,
+    Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
 pub struct Counts {
     /// Expanded nodes.
@@ -126,6 +118,24 @@ pub struct Counts {
     pub generated: usize,
     /// Tested edges.
     pub edges_checked: usize,
+    /// Last factor of the bounds: 1 for A* and Dijkstra, more for weighted A*.
+    #[serde(default = "unweighted")]
+    pub heuristic_weight: f64,
+}
+
+fn unweighted() -> f64 {
+    1.0
+}
+
+impl Default for Counts {
+    fn default() -> Self {
+        Self {
+            expanded: 0,
+            generated: 0,
+            edges_checked: 0,
+            heuristic_weight: unweighted(),
+        }
+    }
 }
 
 /// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest
@@ -137,8 +147,6 @@ pub struct Search<S> {
     nodes: Vec<Node<S>>,
     queue: BinaryHeap<Reverse<Entry>>,
     counts: Counts,
-    /// Factor of the bounds.
-    weight: f64,
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -185,7 +193,6 @@ impl<S> Search<S> {
                 generated: 1,
                 ..Counts::default()
             },
-            weight: 1.0,
         }
     }
 
@@ -195,7 +202,7 @@ impl<S> Search<S> {
     /// Fewer nodes are expanded. Reported goals cost at most this factor times the cheapest
     /// remaining one. Without bounds nothing changes.
     pub fn weigh(&mut self, weight: f64) {
-        let change = weight / self.weight;
+        let change = weight / self.counts.heuristic_weight;
         let queue = std::mem::take(&mut self.queue).into_vec();
         self.queue = queue
             .into_iter()
@@ -207,7 +214,7 @@ impl<S> Search<S> {
                 })
             })
             .collect();
-        self.weight = weight;
+        self.counts.heuristic_weight = weight;
     }
 
     /// All nodes generated so far.
@@ -273,7 +280,7 @@ impl<S> Search<S> {
             let cost_here = self.nodes[index].cost;
             for (state, step) in successors.drain(..) {
                 let cost = cost_here + step;
-                let estimate = cost + self.weight * space.bound(&state);
+                let estimate = cost + self.counts.heuristic_weight * space.bound(&state);
                 let comparable = step >= 0.0 && estimate.is_finite();
                 let node = self.nodes.len();
                 self.counts.generated += 1;

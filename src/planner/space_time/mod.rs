@@ -295,7 +295,9 @@ fn attempt(
                 let Some((most, weight)) = stages.next() else {
                     break;
                 };
-                search.weigh(*weight);
+                if context.problem.search != SearchKind::Dijkstra {
+                    search.weigh(*weight);
+                }
                 expansions = *most;
             }
             Stop::Exhausted => break,
