@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_label_keeps_off_a_filled_set() {
-        let set = ConvexPolygon::rectangle(Vector::new(475.0, 375.0), 75.0, 75.0);
+        let set = ConvexPolygon::rectangle(Vector::new(475.0, 375.0), 37.5, 37.5);
         let mut drawn = Drawn::default();
         drawn.fill(set.clone());
         let at = Vector::new(470.0, 380.0);

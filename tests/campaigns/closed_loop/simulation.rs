@@ -196,18 +196,21 @@ pub fn run(seeds: Seeds, meeting: &Meeting, how: &How) -> Report {
         "| kind | contacts | at most | both judges | at least | remainders lost | unsafe plans | without a plan | outside the set | least clearance, m | ≥ 0.5 L | turns 50/95 %/most | speeds 50/95 %/most | replaced | other side | J / J of the first plan 50/95 % | off plan, m | plans | plan 50/99 %/most, ms |"
     );
     println!("|{}", " --- |".repeat(19));
+    let mut costs = Vec::new();
     for kind in EncounterKind::ALL {
         let all = meetings(kind, seeds.clone(), meeting, |mut scenario, seed| {
             how.equip(&mut scenario, seed);
             sail(scenario)
         });
-        row(kind.name(), &all, how, &mut report);
+        costs.extend(row(kind.name(), &all, how, &mut report));
     }
-    println!();
+    let median = quantiles(&costs, [0.5], 2);
+    println!("\nJ / J of the first plan, all kinds, 50 %: {median}\n");
     report
 }
 
-fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Report) {
+/// Prints the row of a kind, and returns J of each run over that of its first plan.
+fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Report) -> Vec<f64> {
     let count = |of: &dyn Fn(&SimulationDocument) -> usize| -> usize {
         all.iter().map(|(_, sailed)| of(sailed)).sum()
     };
@@ -233,6 +236,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
     let cost = |s: &SimulationDocument| {
         s.conduct.cost_m2 / s.conduct.first_plan_cost_m2.unwrap_or(f64::NAN).max(1.0)
     };
+    let costs = values(&cost);
     let times: Vec<f64> = (all.iter())
         .flat_map(|(_, s)| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3))
         .collect();
@@ -250,7 +254,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         quantiles(&speed_changes, [0.5, 0.95, 1.0], 0),
         count(&|s| s.conduct.replaced_manoeuvres).to_string(),
         count(&|s| s.conduct.side_switches).to_string(),
-        quantiles(&values(&cost), [0.5, 0.95], 2),
+        quantiles(&costs, [0.5, 0.95], 2),
         quantiles(&values(&|s| s.conduct.largest_off_plan_m), [1.0], 1),
         count(&|s| s.replans.len()).to_string(),
         quantiles(&times, [0.5, 0.99, 1.0], 1),
@@ -283,4 +287,5 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         flags.chain(breaks).map(|word| (word, *seed))
     });
     Report::print_seeds(name, named);
+    costs
 }
