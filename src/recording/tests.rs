@@ -380,7 +380,7 @@ fn label_boxes(recorded: &Recorded, canvas: &Canvas, entity: &str) -> Vec<(Optio
 /// A label is read in five seconds where it covers neither a ship nor another label.
 #[test]
 fn labels_cover_no_ship_at_the_encounter() {
-    for name in ["give-way", "head-on", "overtaking"] {
+    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
         let file = format!("scenarios/colregs/{name}.toml");
         let run = pipeline::run(Scenario::read(file.as_ref()).expect("valid"));
         let model = ViewModel::new(&run);
