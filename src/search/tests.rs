@@ -94,7 +94,9 @@ fn after_a_budget_weighed_goals_cost_at_most_so_many_times_the_cheapest() {
         let mut search = Search::new((0, 0));
         assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
         assert_eq!(search.counts().expanded, 3);
+        assert_eq!(search.counts().heuristic_weight, 1.0);
         search.weigh(weight);
+        assert_eq!(search.counts().heuristic_weight, weight);
         let Stop::Goal(goal) = search.next_goal(&mut grid, usize::MAX) else {
             panic!("there is a way");
         };

@@ -62,7 +62,7 @@ fn inspect_tells_what_the_rules_say() {
     );
     says(
         &lanes,
-        "own ship to target: stand-on | own ship breaks 17(c) toward target",
+        "stand-on: own ship to target | 17(c) broken by own ship toward target",
     );
     let [said, lanes] = plan("rules");
     says(&said, "stands on    course and speed are held until ");

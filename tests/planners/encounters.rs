@@ -103,15 +103,18 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
         let cost = planned
             .each_ref()
             .map(|p| p.outcome.plan().and_then(|p| p.graph_cost));
+        let [weight, unweighted] = planned.each_ref().map(|p| p.stats.heuristic_weight);
+        assert_eq!(unweighted, 1.0, "{title}");
         match cost {
             [Some(a), Some(b)] => {
                 let rounding = 1e-9 * (1.0 + b);
                 assert!(a >= b - rounding, "{title}: {a} {b}");
+                assert!(a <= weight * b + rounding, "{title}: {a} {b} {weight}");
                 by_land += usize::from(land);
                 if several {
                     hasty.push(a / b.max(1e-9));
                 } else {
-                    assert!(a <= b + rounding, "{title}: {a} {b}");
+                    assert_eq!(weight, 1.0, "{title}");
                     equal += 1;
                 }
             }

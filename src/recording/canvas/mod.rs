@@ -28,6 +28,9 @@ use crate::target::Target;
 
 /// Least time between two rows of what moves, seconds.
 const CURSOR_STEP_S: f64 = 2.0;
+
+/// Seconds by which an arrival on schedule may differ from its time.
+const ROUNDING_S: f64 = 1e-6;
 const CURSOR_TIMES: f64 = 120.0;
 const CURVE_SAMPLES: f64 = 400.0;
 
@@ -188,9 +191,9 @@ fn cursor_times(end: f64, most: f64) -> Vec<f64> {
     steps(end, (end / most).ceil().max(CURSOR_STEP_S))
 }
 
-/// 0, every `step`, and `end`.
+/// 0, every `step`, and `end`; no step is at the end but for rounding.
 fn steps(end: f64, step: f64) -> Vec<f64> {
-    let count = (end / step).ceil() as usize;
+    let count = ((end - ROUNDING_S) / step).ceil() as usize;
     let mut times: Vec<f64> = (0..count).map(|i| step * i as f64).collect();
     times.push(end);
     times

@@ -87,7 +87,7 @@ impl<'a> Judged<'a> {
         let mut roles = Lane::default();
         // the recording begins with the plan
         for state in self.roles.iter().filter(|state| state.until_s >= 0.0) {
-            let text = format!("own ship to {name}: {}", state.role);
+            let text = format!("{}: own ship to {name}", state.role);
             roles.add(state.from_s.max(0.0), text, self.color);
             roles.end(state.until_s);
         }
@@ -99,7 +99,7 @@ impl<'a> Judged<'a> {
             if !rules.contains(&rule) {
                 rules.push(rule);
             }
-            let text = format!("own ship breaks {} toward {name}", rules.join(", "));
+            let text = format!("{} broken by own ship toward {name}", rules.join(", "));
             breaks.add(time, text, style::ALARM);
             let mut ends = self.roles.iter().map(|state| state.until_s);
             until = ends.find(|end| *end > time).unwrap_or(end);
@@ -288,7 +288,7 @@ mod tests {
                 panic!("two lanes");
             };
             let role = &conduct.roles[0];
-            assert_eq!(roles.at(role.from_s), "own ship to target: stand-on");
+            assert_eq!(roles.at(role.from_s), "stand-on: own ship to target");
             assert_eq!(roles.at(end), "");
             assert!(!broken.at(violation.t_s - 1e-6).contains("17(c)"));
             assert!(broken.at(violation.t_s).contains("17(c)"));
