@@ -96,12 +96,13 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
     let mut encounter = colregs::encounter(own, desired, target, horizon, &scenario.limits);
     if let Some(known) = scenario.memory.target(index) {
-        // a role lasts; another begins where own ship is, not where the desired trajectory has it
+        // a role lasts; another begins where own ship is, or where it will be back on its path
         let from_here = desired.from(own.pose.position);
         let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon, &scenario.limits);
+        let on_the_path = encounter.risk.filter(|_| !known.passed);
         let begins = || match known.track.is_empty() {
             true => encounter.risk,
-            false => begins(target.ship()?),
+            false => begins(target.ship()?).or(on_the_path),
         };
         encounter.risk = known.role.or_else(begins);
         encounter.role = encounter.risk.map_or(Role::None, |risk| risk.role);

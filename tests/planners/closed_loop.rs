@@ -411,3 +411,23 @@ fn a_target_at_rest_cannot_plan() {
         "targets[0].behaviour"
     );
 }
+
+/// Own ship is off its path for two ships where it would meet a third one head-on: it returns
+/// when that one is past as well, though there is no risk on the course between.
+#[test]
+fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
+    let text = campaigns::documents::fault("rules-foreseen-role.toml");
+    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    scenario.simulation.duration = Some(600.0);
+    let sailed = sail(scenario);
+    let course = |time: u32| {
+        sailed
+            .own_at(f64::from(time))
+            .expect("own ship")
+            .pose
+            .heading
+    };
+    // the ships are abreast after 525 s
+    assert!((course(200) - course(300)).abs() > 0.4);
+    assert!((300..515).all(|time| (course(time) - course(300)).abs() < 0.01));
+}
