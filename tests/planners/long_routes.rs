@@ -63,3 +63,27 @@ fn conflicts_that_are_far_apart_are_left_and_met_one_after_another() {
         assert!(evaluation.delay.abs() < 60.0);
     }
 }
+
+/// With speed in reserve own ship is on schedule again before the next conflict, and then J of all
+/// is the sum of J around each target alone.
+#[test]
+fn conflicts_that_are_far_apart_cost_what_each_costs_alone() {
+    let cost = |scenario: Scenario| {
+        let run = pipeline::run(scenario);
+        let plan = run.planned.outcome.plan().expect("a plan");
+        (plan.cost, run.scenario.targets.len())
+    };
+    let mut all = scenario(20);
+    (all.compliance, all.deadline) = (Compliance::Shape, 60.0);
+    let alone = (0..all.targets.len()).map(|index| {
+        let mut one = all.clone();
+        one.targets = vec![all.targets[index].clone()];
+        cost(one).0
+    });
+    let sum: f64 = alone.sum();
+    let (together, targets) = cost(all);
+    assert!(
+        targets == 5 && together < 1.02 * sum,
+        "{together} of {sum} m²"
+    );
+}

@@ -170,6 +170,15 @@ fn arrived_plan(problem: &Problem) -> Option<Plan> {
 }
 
 fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
+    plan_with(problem, proxies, clock, true)
+}
+
+/// Plans a problem whose conflicts are passed in one manoeuvre.
+fn plan_together(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
+    plan_with(problem, proxies, clock, false)
+}
+
+fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, divides: bool) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
     for proxy in proxies {
@@ -248,7 +257,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     }
     let targets = by_obstacle(proxies).count();
     let budget = SearchBudget::of(targets, problem.search);
-    let best = attempt(&context, budget, (&nominal_motion, &conflicts), clock);
+    let motion = (&nominal_motion[..], &conflicts[..]);
+    let best = attempt(&context, budget, motion, divides, clock);
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
@@ -275,6 +285,7 @@ fn attempt(
     context: &Context,
     budget: &SearchBudget,
     (nominal_motion, conflicts): (&[Segment], &[Conflict]),
+    divides: bool,
     clock: Clock,
 ) -> Attempt {
     let mut graph = Graph::new(context, nominal_motion, clock);
@@ -309,7 +320,7 @@ fn attempt(
     }
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    if !timed_out && sequential::are_several(conflicts) {
+    if !timed_out && divides && sequential::are_several(conflicts) {
         let motion = sequential::resolve_sequentially(context, nominal_motion, clock);
         // without a motion, too, the time may have been up
         timed_out = clock.is_up();

@@ -16,7 +16,6 @@ use crate::obstacle::{PolytopeObstacle, Track, along_track};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::chain::Chain;
-use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::motion_back;
@@ -64,13 +63,10 @@ pub(crate) struct Graph<'a> {
     tangent_edges: Vec<TangentEdges>,
     heuristic: Option<Heuristic<'a>>,
     clock: Clock,
-    /// Time until which a motion to the end must be clear, where the graph covers one conflict
-    /// only.
-    clear_until: Option<f64>,
 }
 
 impl<'a> Graph<'a> {
-    /// Graph of the whole problem. `nominal_motion` is the route followed from t = 0. Generates
+    /// `nominal_motion` is the route followed from t = 0. Generates
     /// nothing after the deadline.
     pub(crate) fn new(context: &Context<'a>, nominal_motion: &'a [Segment], clock: Clock) -> Self {
         let &Context {
@@ -126,35 +122,12 @@ impl<'a> Graph<'a> {
             tangent_edges,
             heuristic,
             clock,
-            clear_until: None,
         }
-    }
-
-    /// Graph of the conflict at `contact` only, from the start of the rest of a motion. `near` is
-    /// the part of the motion around the conflict. Motions to the end must be clear of early
-    /// contacts only.
-    pub(crate) fn for_conflict(
-        context: &Context<'a>,
-        [near, rest]: [&'a [Segment]; 2],
-        contact: f64,
-        clock: Clock,
-    ) -> Self {
-        let mut graph = Self::new(context, near, clock);
-        graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
-        graph.nominal_motion = rest;
-        graph.clear_until = Some(contact + TOGETHER_S);
-        graph
     }
 
     /// Own ship at t = 0.
     pub(crate) fn root(&self) -> State {
-        match (self.clear_until, self.nominal_motion.first()) {
-            (Some(_), Some(first)) => State {
-                time: first.start_time,
-                ..State::start(first.start)
-            },
-            _ => State::start(self.problem.own.pose),
-        }
+        State::start(self.problem.own.pose)
     }
 
     fn push(
@@ -216,9 +189,7 @@ impl<'a> Graph<'a> {
         times.push(from.time);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < 2.0);
-        if self.clear_until.is_none() {
-            self.speed_changes(from, out);
-        }
+        self.speed_changes(from, out);
         for &time in &times {
             self.interceptions(from, &until(self.nominal_motion, time), out);
         }
@@ -360,10 +331,6 @@ impl<'a> Graph<'a> {
                 }
             }
         }
-        // the rest of the path belongs to another conflict
-        if self.clear_until.is_some() && near + 2 < desired.legs().len() {
-            return;
-        }
         for side in Side::BOTH {
             let interceptor = Interceptor::new(&from.pose, from.time, speed, radius, side);
             if let Some((turn, line)) = interceptor.path_to(desired.end())
@@ -458,12 +425,6 @@ impl Space for Graph<'_> {
     }
 
     fn admits(&mut self, state: &State) -> bool {
-        if let (Some(until), NodeKind::End) = (self.clear_until, state.kind) {
-            let soon = checked_part(&state.motion, until);
-            let met = first_met(self.proxies, &soon);
-            state.met.set(met);
-            return met.is_none() && !land::meets(self.problem.land_obstacle, &soon);
-        }
         let met = first_met(self.proxies, &state.motion).or_else(|| {
             let on_land = land::meets(self.problem.land_obstacle, &state.motion);
             on_land.then_some(self.problem.obstacles.len())

@@ -57,12 +57,6 @@ impl State {
     }
 }
 
-/// Motion from the root to a node.
-pub(crate) fn motion_to(search: &Search<State>, node: usize) -> impl Iterator<Item = Segment> + '_ {
-    let path = search.way_to(node).into_iter().skip(1);
-    path.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
-}
-
 /// Path to a goal for the refinement: the departure, the vertices with the whole lines to and
 /// beyond them, and the end.
 pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
