@@ -22,7 +22,7 @@ pub use ellipsoid::EllipsoidObstacle;
 pub(crate) use land::window_of;
 pub use land::{LAND, LandObstacle};
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
-pub use projection::{OUTER_EXCESS_M, PathTime, Track, along_track, outer_along_track};
+pub use projection::{PathTime, Track, along_track};
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use risk::{PeakRisk, level_sets};
 pub use slabs::{ConvexObstacle, Obstacle, Slab, SlabError};

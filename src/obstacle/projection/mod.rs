@@ -6,7 +6,7 @@ use crate::geometry::SignedDistance;
 use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Metres. Largest distance of the polygon around an ellipsoid from the ellipse at any time.
-pub const OUTER_EXCESS_M: f64 = 0.05;
+const OUTER_EXCESS_M: f64 = 0.05;
 
 /// Bound on the tangent planes that one leg adds to an ellipsoid; some tens are usual.
 const MAX_CUTS: usize = 200;
@@ -358,26 +358,9 @@ pub fn along_track(
     start_time: f64,
     duration: f64,
 ) -> Vec<PathTime> {
-    corners(obstacle.faces(), track, start_time, duration)
-}
-
-/// [`along_track`] for an ellipsoid: an outer polygon of its projection, which is convex with a
-/// curved boundary. No point of it is farther than [`OUTER_EXCESS_M`] from the ellipse at its time.
-pub fn outer_along_track(
-    obstacle: &EllipsoidObstacle,
-    track: &Track,
-    start_time: f64,
-    duration: f64,
-) -> Vec<PathTime> {
-    let faces = outer_faces_along(obstacle, &[*track], start_time + duration);
-    corners(&faces, track, start_time, duration)
-}
-
-fn corners(faces: &[HalfSpace], track: &Track, start_time: f64, duration: f64) -> Vec<PathTime> {
     // the clock of the set starts before that of the track
-    let faces = faces
-        .iter()
-        .map(|f| PathTimeFace::new(f, -start_time, track));
+    let faces = obstacle.faces().iter();
+    let faces = faces.map(|f| PathTimeFace::new(f, -start_time, track));
     Clipped::new(faces, track.length, [0.0, duration]).map_or_else(Vec::new, |polygon| {
         polygon.sides.iter().map(|side| side.corner).collect()
     })
