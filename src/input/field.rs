@@ -154,9 +154,24 @@ impl<'a> Field<'a> {
 
     /// Notes a fault at a key of this table.
     pub(crate) fn fault_at(&self, key: &str, found: impl Display, allowed: impl Display) {
+        self.faults.note(self.fault_of(key, found, allowed));
+    }
+
+    fn fault_of(&self, key: &str, found: impl Display, allowed: impl Display) -> Fault {
         let node = self.node.get(key).unwrap_or(self.node);
-        let fault = Fault::new(self.path_of(key), found, allowed);
-        self.faults.note(fault.at_line(node.line));
+        Fault::new(self.path_of(key), found, allowed).at_line(node.line)
+    }
+
+    /// Notes a key of this table that is not among the `known` ones.
+    pub(super) fn unknown(&self, key: &str, found: impl Display, known: &[String]) {
+        let allowed = format_args!("one of {}", known.join(", "));
+        let fault = self.fault_of(key, found, allowed);
+        self.faults.note_unknown(key, fault);
+    }
+
+    /// Notes the keys that this table may have.
+    pub(super) fn finish(&self, known: Vec<String>) {
+        self.faults.add_table(&self.path, known);
     }
 
     /// Notes a fault here, without which there would be a value.

@@ -121,28 +121,55 @@ fn listed(faults: &[Fault]) -> String {
 
 /// Collects faults while a file is read.
 #[derive(Debug, Default)]
-pub(crate) struct Faults(RefCell<Vec<Fault>>);
+pub(crate) struct Faults {
+    noted: RefCell<Vec<Fault>>,
+    /// The tables that were read: where each is, and its known keys.
+    tables: RefCell<Vec<(String, Vec<String>)>>,
+    /// Faults of unknown keys, and the keys.
+    unknown: RefCell<Vec<(Fault, String)>>,
+}
 
 impl Faults {
     /// Adds a fault; without effect where there are too many already.
     pub(crate) fn note(&self, fault: Fault) {
         if !self.is_full() {
-            self.0.borrow_mut().push(fault);
+            self.noted.borrow_mut().push(fault);
         }
+    }
+
+    /// Adds the fault of an unknown key, which another table may have.
+    fn note_unknown(&self, key: &str, fault: Fault) {
+        if !self.is_full() {
+            self.unknown.borrow_mut().push((fault, key.to_owned()));
+        }
+    }
+
+    fn add_table(&self, path: &str, known: Vec<String>) {
+        self.tables.borrow_mut().push((path.to_owned(), known));
     }
 
     /// True where there are more faults than a message counts.
     fn is_full(&self) -> bool {
-        self.0.borrow().len() > COUNTED
+        self.noted.borrow().len() + self.unknown.borrow().len() > COUNTED
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.0.borrow().is_empty()
+        self.noted.borrow().is_empty() && self.unknown.borrow().is_empty()
     }
 
     /// The faults noted so far, in order of lines; afterwards there is none.
     pub(crate) fn take(&self) -> Vec<Fault> {
-        let mut faults = self.0.take();
+        let mut faults = self.noted.take();
+        let tables = self.tables.take();
+        faults.extend(self.unknown.take().into_iter().map(|(mut fault, key)| {
+            if let Some((path, _)) = tables.iter().find(|(_, known)| known.contains(&key)) {
+                fault.found = match path.as_str() {
+                    "" => "a key that belongs above all tables".to_owned(),
+                    path => format!("a key that belongs in '{path}'"),
+                };
+            }
+            fault
+        }));
         faults.sort_by_key(|fault| fault.line);
         faults
     }

@@ -225,8 +225,7 @@ impl<'a> Table<'a> {
                 None => "an unknown key".to_owned(),
             };
             missing.retain(|(keys, _)| !keys.iter().any(|key| Some(key) == meant));
-            let allowed = format_args!("one of {}", self.known.join(", "));
-            self.field.fault_at(name, found, allowed);
+            self.field.unknown(name, found, &self.known);
         }
         for (keys, allowed) in missing {
             let or = match &keys[1..] {
@@ -236,6 +235,7 @@ impl<'a> Table<'a> {
             let allowed = format_args!("{allowed}; it is required{or}");
             self.field.fault_at(&keys[0], "nothing", allowed);
         }
+        self.field.finish(self.known);
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) const BEFORE_CPA: Range = Range::between(0.0, 86_400.0);
 pub(super) const CLOCK: Range = Range::between(0.0, 1e10);
 /// Seconds on that clock, not in the future.
 pub(super) fn until(now: f64) -> Range {
-    Range::between(CLOCK.low, now)
+    Range::between(CLOCK.low, now).in_unit("(the present, 'time_s')")
 }
 /// Seconds after arrival.
 pub(super) const HOLD: Range = Range::between(0.0, 1e6);

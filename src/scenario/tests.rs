@@ -144,6 +144,19 @@ fn miles_and_cables_replace_metres() {
     );
 }
 
+/// A table ends the keys before it, so a key above all tables is easily written into one.
+#[test]
+fn a_key_in_the_wrong_table_is_told_where_it_belongs() {
+    let first = |text: String| Scenario::parse(&text).expect_err("faulty").swap_remove(0);
+    let moved = first(format!("{SCENARIO}time_s = 60\nsafety_margin_m = 5\n"));
+    assert_eq!(moved.found, "a key that belongs above all tables");
+    let moved = first(format!("{SCENARIO}{SHIP}safety_margin_m = 20\n"));
+    assert_eq!(moved.found, "a key that belongs in 'own_ship'");
+    let late = first(SCENARIO.replace("[mission]", "[mission]\nstart_s = 60"));
+    assert_eq!(late.path, "mission.start_s");
+    assert!(late.allowed.ends_with("(the present, 'time_s')"), "{late}");
+}
+
 #[test]
 fn measured_speed_and_course_widen_the_velocities_by_three_deviations() {
     let measured = "speed_std_mps = 0.1\ncourse_std_deg = 1\nspeed_spread_mps = 0.2\n\
