@@ -185,6 +185,12 @@ pub(crate) fn knots_figure(speed: f64) -> String {
     format!("{knots:.decimals$}")
 }
 
+/// Formats a turn, degrees positive to starboard, with its side, as in "30° to port".
+pub(crate) fn to_side(turn_deg: f64) -> String {
+    let side = if turn_deg > 0.0 { "starboard" } else { "port" };
+    format!("{:.0}° to {side}", turn_deg.abs())
+}
+
 /// Formats one decimal with a sign; values that round to zero give `+0.0`.
 pub(crate) fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)

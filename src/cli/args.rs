@@ -133,7 +133,7 @@ pub struct AssessArgs {
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     pub section: Vec<f64>,
     /// Use the ship domains instead of the hard sets
-    #[arg(long, alias = "shaped")]
+    #[arg(long)]
     pub domains: bool,
     #[command(flatten)]
     pub drawn: Drawn,

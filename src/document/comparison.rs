@@ -38,8 +38,6 @@ pub struct EntryDocument {
     pub cost: Option<CostDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<LowerBoundDocument>,
-    pub largest_turn_deg: Option<f64>,
-    pub largest_turn_side: Option<String>,
     /// The manoeuvre in brief; null without one.
     pub departure: Option<Departure>,
     pub breaks: Option<Vec<String>>,

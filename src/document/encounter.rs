@@ -102,6 +102,25 @@ pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
     broken.into_iter().collect()
 }
 
+/// Names of the compliance monitors.
+const MONITORS: [(&str, &str); 6] = [
+    ("S", "contact"),
+    ("R1", "collision course"),
+    ("R3", "crossing"),
+    ("R4", "head-on"),
+    ("R5", "overtaking"),
+    ("R6", "stand-on"),
+];
+
+/// Rules and monitors in words: a monitor has its name before its number, as in `overtaking (R5)`.
+pub(crate) fn rules_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> String {
+    let word = |number: &str| match MONITORS.iter().find(|(known, _)| *known == number) {
+        Some((_, name)) => format!("{name} ({number})"),
+        None => number.to_owned(),
+    };
+    broken.into_iter().map(word).collect::<Vec<_>>().join(", ")
+}
+
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());

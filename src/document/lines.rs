@@ -1,18 +1,21 @@
 //! The plan document in named lines: the one wording of a plan for a terminal, a page and a
 //! recording.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use super::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
-    conduct_breaks,
+    conduct_breaks, rules_in_words,
 };
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
 use crate::planner::SearchKind;
-use crate::text::{counted, knots, printable, rounded, signed, significant, square_metres, tenths};
+use crate::text::{
+    counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
+};
 
 const LISTED: usize = 3;
 
@@ -41,7 +44,7 @@ pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     }
     let broken = breaks(&plan.encounters).unwrap_or_default();
     if !broken.is_empty() {
-        all.push(format!("breaks {}", broken.join(", ")));
+        all.push(format!("breaks {}", rules_in_words(broken)));
     }
     let skipped = plan.cost.as_ref().map(|cost| skipped(plan, cost));
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
@@ -189,24 +192,19 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
 
 /// Time until which own ship holds course and speed, and the subsequent manoeuvre.
 fn stand_on(escape: &EscapeDocument) -> String {
-    let EscapeDocument {
-        held_until_s,
-        turn_deg,
-        speed_mps,
-        ..
-    } = escape;
-    let turn = match *turn_deg {
-        0.0 => String::new(),
-        turn => {
-            let side = if turn > 0.0 { "starboard" } else { "port" };
-            format!("a turn of {:.0}° to {side} ", turn.abs())
-        }
-    };
+    let (until, escape_words) = (escape.held_until_s, escape_words(escape));
     format!(
-        "course and speed are held until {held_until_s:.1} s, then there is a clear escape: \
-         {turn}at {}",
-        knots(*speed_mps)
+        "course and speed are held until {until:.1} s, then there is a clear escape: {escape_words}"
     )
+}
+
+/// The manoeuvre with which own ship escapes.
+pub(crate) fn escape_words(escape: &EscapeDocument) -> String {
+    let speed = knots(escape.speed_mps);
+    match escape.turn_deg {
+        0.0 => speed,
+        turn => format!("{} at {speed}", to_side(turn)),
+    }
 }
 
 /// A block per target: own ship's role, the closest approach, the manoeuvre, and what the judges
@@ -284,7 +282,7 @@ fn roles(encounter: &EncounterDocument) -> String {
 }
 
 /// The closest approach of the plan, and with `desired` that of the desired trajectory, for the
-/// expected motion of the target. An explicit set has no hull: own position to the set counts.
+/// expected motion of the target.
 fn apart(plan: &PlanDocument, encounter: &EncounterDocument, desired: bool) -> String {
     let is_set = is_set(plan, &encounter.target);
     let mut parts = Vec::new();
@@ -295,26 +293,36 @@ fn apart(plan: &PlanDocument, encounter: &EncounterDocument, desired: bool) -> S
             (Some(side), Some(true)) => format!(", to {side}, own ship crosses astern"),
             (Some(side), Some(false)) => format!(", to {side}, own ship crosses ahead"),
         };
-        let to = if is_set { " to its set" } else { "" };
-        let distance = tenths(distance);
-        parts.push(format!("closest {distance} m{to} at {time:.0} s{side}"));
+        let distance = distance_words(distance, is_set);
+        parts.push(format!("closest: {distance} at {time:.0} s{side}"));
     }
     let undisturbed = encounter
         .undisturbed_dcpa_m
         .zip(encounter.undisturbed_tcpa_s);
     if let Some((distance, time)) = undisturbed.filter(|_| desired || parts.is_empty()) {
-        let what = match distance > 0.0 {
-            true => format!("{} m", tenths(distance)),
-            false if is_set => "in its set, deepest".to_owned(),
-            false => "the hulls overlap, deepest".to_owned(),
-        };
-        parts.push(format!("on the desired trajectory {what} at {time:.0} s"));
+        let distance = distance_words(distance, is_set);
+        parts.push(format!(
+            "on the desired trajectory {distance} at {time:.0} s"
+        ));
     }
     parts.join("; ")
 }
 
+/// What a distance is from and to: own hull to a target's hull, or own position to a set, which has
+/// no hull.
+pub(super) fn distance_words(metres: f64, is_set: bool) -> String {
+    match (metres.total_cmp(&0.0), is_set) {
+        (Ordering::Less, true) => "in its set, deepest".to_owned(),
+        (Ordering::Less, false) => "the hulls overlap, deepest".to_owned(),
+        (Ordering::Equal, true) => "touches its set".to_owned(),
+        (Ordering::Equal, false) => "the hulls touch".to_owned(),
+        (Ordering::Greater, true) => format!("{} m to its set", tenths(metres)),
+        (Ordering::Greater, false) => format!("{} m hull to hull", tenths(metres)),
+    }
+}
+
 /// True for a target that is given by its sets, without a hull.
-fn is_set(plan: &PlanDocument, name: &str) -> bool {
+pub(super) fn is_set(plan: &PlanDocument, name: &str) -> bool {
     let mut targets = plan.targets.iter();
     targets.any(|target| target.name == name && target.ship.is_none())
 }
@@ -387,7 +395,7 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
         unit => format!(", missed by {:.0} {unit}", short.ceil()),
     };
     let time = monitor.t_s.unwrap_or(f64::NAN);
-    let name = &monitor.monitor;
+    let name = rules_in_words([monitor.monitor.as_str()]);
     format!("breaks {name} at {time:.0} s: {what}{short}")
 }
 
@@ -420,7 +428,9 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
 
 fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
     let none = || "none".to_owned();
-    let departure = plan.departure().map(|departure| departure.to_string());
+    let departure = plan
+        .departure_of_motion()
+        .map(|departure| departure.to_string());
     add("manoeuvre", departure.unwrap_or_else(none));
     let error = square_metres(cost.space_time_error_m2);
     let by_length = cost.space_time_error_arc_length_m2;
@@ -456,15 +466,20 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         } else {
             "the end"
         };
-        let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
-        let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
         let sets = plan.targets.iter().filter(|t| t.ship.is_none()).count();
         let to = match sets {
-            0 => "",
-            _ if sets == plan.targets.len() => " to the sets",
-            _ => " to hulls and sets",
+            0 => "any hull that a target may have",
+            _ if sets == plan.targets.len() => "the hard sets",
+            _ => "the hard sets and any hull that a target may have",
         };
-        let text = format!("worst case {clearance} m{to}; after {end} {after} m within {hold} s");
+        let clearance = match clearance.total_cmp(&0.0) {
+            Ordering::Less => format!("overlaps {to}, by {} m", tenths(-clearance)),
+            Ordering::Equal => format!("touches {to}"),
+            Ordering::Greater => format!("{} m to {to}", tenths(clearance)),
+        };
+        let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
+        let hold = cost.arrival_hold_s;
+        let text = format!("{clearance}; after {end} {after} m within {hold} s");
         add("clearance", text);
         if cost.hold_clearance_m.is_some_and(|after| after < 0.0) {
             add(
@@ -602,21 +617,21 @@ mod tests {
         );
         assert_eq!(
             said("R4", "deg", false, name),
-            "breaks R4 at 40 s: did not turn 20° to starboard within 200 s and before the target \
+            "breaks head-on (R4) at 40 s: did not turn 20° to starboard within 200 s and before the target \
              was past, missed by 12°"
         );
         assert!(said("R3", "deg", true, name).contains(&late));
         assert_eq!(
             said("R6", "deg", false, name),
-            "breaks R6 at 40 s: did not hold its course within 10°, missed by 12°"
+            "breaks stand-on (R6) at 40 s: did not hold its course within 10°, missed by 12°"
         );
         assert_eq!(
             said("S", "m", false, "mine"),
-            "breaks S at 40 s: did not keep the hulls apart, missed by 11.2 m"
+            "breaks contact (S) at 40 s: did not keep the hulls apart, missed by 11.2 m"
         );
         // a profile of a file has limits of its own
         assert!(said("R5", "deg", false, "mine").starts_with(
-            "breaks R5 at 40 s: did not turn far enough or halve its speed in time and before"
+            "breaks overtaking (R5) at 40 s: did not turn far enough or halve its speed in time and before"
         ));
     }
 

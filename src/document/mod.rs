@@ -28,7 +28,10 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 pub use assessment::*;
 pub use check::*;
 pub use comparison::*;
+pub(crate) use encounter::rules_in_words;
 pub use encounter::*;
+#[cfg(feature = "recording")]
+pub(crate) use lines::escape_words;
 pub(crate) use lines::{
     TIME_LINE, headline, in_brackets, met, passing, plan_lines, verdict_line, verdict_parts,
 };
@@ -36,10 +39,10 @@ pub use lint::*;
 pub use memory::*;
 pub use parts::*;
 pub use plan::control::*;
-pub use plan::departure::Departure;
-pub(crate) use plan::departure::departure;
+pub use plan::departure::{Departure, SailedManoeuvreDocument};
+pub(crate) use plan::departure::{departure, manoeuvres};
 pub use plan::legs::PlannedLeg;
-pub(crate) use plan::legs::longest;
+pub(crate) use plan::legs::{CLOSEST, longest};
 pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;

@@ -100,8 +100,6 @@ pub struct CostDocument {
     pub delay_s: Option<f64>,
     #[serde(default)]
     pub waypoint_distances_m: Vec<f64>,
-    #[serde(default)]
-    pub first_turn: Option<TurnDocument>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
     #[serde(default)]
@@ -109,14 +107,6 @@ pub struct CostDocument {
     #[serde(default)]
     pub arrival_hold_s: f64,
     pub min_land_distance_m: Option<f64>,
-}
-
-/// Alteration of course to one side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct TurnDocument {
-    pub side: String,
-    pub turn_deg: f64,
-    pub t_s: f64,
 }
 
 /// Planning time, the only value that differs between two runs.

@@ -20,7 +20,7 @@ use super::parts::{
     CostDocument, EscapeDocument, LowerBoundDocument, MissionDocument, NodeDocument,
     ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
     SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
-    TurnDocument, ViolationDocument,
+    ViolationDocument,
 };
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
@@ -33,7 +33,8 @@ use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
 use crate::scenario::Scenario;
 use crate::tolerance;
-use crate::trajectory::{Alteration, Segment, Steered, Trajectory, first_alteration};
+use crate::trajectory::{Segment, Steered, Trajectory};
+use departure::Departure;
 
 /// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -73,7 +74,6 @@ pub struct PlanDocument {
     #[serde(default)]
     pub verdict: String,
     pub reason: Option<String>,
-    pub relaxation: Option<RelaxationDocument>,
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     /// `None` in a document that does not say so, which `verify` rejects.
@@ -90,6 +90,8 @@ pub struct PlanDocument {
     pub trajectory: Option<TrajectoryDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
+    #[serde(default)]
+    pub departure: Option<Departure>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub manoeuvres: Vec<PlannedManoeuvreDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -115,7 +117,6 @@ impl PlanDocument {
     pub fn of(run: &Run) -> Self {
         let scenario = &run.scenario;
         let verdict = Verdict::of(run);
-        let relaxations: Vec<_> = run.relaxations.iter().map(relaxation).collect();
         let mut document = Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
@@ -138,8 +139,7 @@ impl PlanDocument {
             outcome: verdict.word().to_owned(),
             verdict: run.word(),
             reason: run.reason(),
-            relaxation: relaxations.first().cloned(),
-            relaxations,
+            relaxations: run.relaxations.iter().map(relaxation).collect(),
             verified: verified(run),
             safe: Some(run.safe()),
             time_of_no_return_s: None,
@@ -151,6 +151,7 @@ impl PlanDocument {
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),
+            departure: None,
             manoeuvres: run.planned.manoeuvres.iter().map(Into::into).collect(),
             phases: Vec::new(),
             memory: MemoryDocument::of(run),
@@ -166,6 +167,7 @@ impl PlanDocument {
                 .map(|diagram| path_time_document(run, diagram)),
             optimal_control: control(run),
         };
+        document.departure = document.departure_of_motion();
         document.phases = document.phases_of_motion();
         document
     }
@@ -281,10 +283,9 @@ fn mission(run: &Run) -> MissionDocument {
 
 fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
-    let trajectory = &plan.trajectory;
     let minimised = minimised(&run.scenario, plan, evaluation);
     let (arrived, risks) = (run.arrives(), run.risks());
-    Some(cost_of(trajectory, evaluation, minimised, arrived, &risks))
+    Some(cost_of(evaluation, minimised, arrived, &risks))
 }
 
 /// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the
@@ -299,7 +300,6 @@ pub(crate) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluatio
 }
 
 pub(crate) fn cost_of(
-    trajectory: &Trajectory,
     evaluation: &Evaluation,
     objective: f64,
     arrived: bool,
@@ -315,20 +315,11 @@ pub(crate) fn cost_of(
         length_m: evaluation.length,
         delay_s: finite(evaluation.delay),
         waypoint_distances_m: evaluation.waypoint_distances.clone(),
-        first_turn: first_alteration(trajectory).map(turn),
         max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
         hold_clearance_m: finite(evaluation.hold_clearance),
         arrival_hold_s: evaluation.arrival_hold,
         min_land_distance_m: finite(evaluation.min_land_distance),
-    }
-}
-
-fn turn(turn: Alteration) -> TurnDocument {
-    TurnDocument {
-        side: turn.side.to_string(),
-        turn_deg: turn.degrees,
-        t_s: turn.start,
     }
 }
 
@@ -367,17 +358,24 @@ pub(crate) fn samples(trajectory: &Trajectory) -> Vec<SampleDocument> {
             if let Some(motion) = trajectory.steered() {
                 pose.heading = course(motion, time);
             }
-            let at = start(pose, time);
             SampleDocument {
-                t_s: at.t_s,
-                east_m: at.east_m,
-                north_m: at.north_m,
-                course_deg: at.course_deg,
-                speed_mps: trajectory.speed_at(time),
                 node: trajectory.steered().and_then(|motion| node(motion, time)),
+                ..sample(pose, time, trajectory.speed_at(time))
             }
         })
         .collect()
+}
+
+pub(crate) fn sample(pose: Pose, time: f64, speed_mps: f64) -> SampleDocument {
+    let at = start(pose, time);
+    SampleDocument {
+        t_s: at.t_s,
+        east_m: at.east_m,
+        north_m: at.north_m,
+        course_deg: at.course_deg,
+        speed_mps,
+        node: None,
+    }
 }
 
 fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::encounter::ConductDocument;
 use super::memory::{StateDocument, steady};
 use super::parts::{PositionDocument, SegmentDocument, segment};
+use super::plan::departure::SailedManoeuvreDocument;
 use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
@@ -176,6 +177,9 @@ pub struct SailedDocument {
     pub breaks: Vec<String>,
     pub turns: usize,
     pub speed_changes: usize,
+    /// Own ship's departures from its mission, in order of time.
+    #[serde(default)]
+    pub manoeuvres: Vec<SailedManoeuvreDocument>,
     /// Plans that begin another manoeuvre before the one under way is finished.
     pub replaced_manoeuvres: usize,
     /// Those of them that turn to the other side.

@@ -142,7 +142,7 @@ impl SuiteRunDocument {
             verified: plan.verified,
             safe: plan.is_safe(),
             cost: plan.cost.clone(),
-            departure: plan.departure(),
+            departure: plan.departure_of_motion(),
             encounters: plan.encounters.clone(),
             targets: Some(plan.targets.len()),
             search_stats: Some(plan.search_stats),

@@ -4,6 +4,7 @@ use super::plan::monitors_key;
 use super::table::{Display, Grid, Tone, or_dash, plain};
 use crate::document::{
     CampaignDocument, GroupDocument, RareContactDocument, ShareDocument, WorstRowDocument,
+    rules_in_words,
 };
 use crate::text::{broken, counted, tenths};
 
@@ -71,6 +72,7 @@ fn breaks(summary: &CampaignDocument) -> impl Iterator<Item = String> {
             named.push("…".to_owned());
         }
         let count = counted(*count as usize, "row");
+        let name = rules_in_words([name.as_str()]);
         format!("  {name} in {count}: {}", named.join(", "))
     })
 }

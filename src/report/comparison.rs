@@ -1,8 +1,10 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
-use super::plan::{milliseconds, monitors_key, rules_broken};
+use super::plan::{CLEARANCE, milliseconds, monitors_key, rules_broken};
 use super::table::{Display, Grid, Styled, in_cell, or_dash, plain, verdict, verified, yes_or_no};
-use crate::document::{CollisionDocument, CostDocument, EntryDocument, ScenarioComparisonDocument};
+use crate::document::{
+    CollisionDocument, CostDocument, Departure, EntryDocument, ScenarioComparisonDocument,
+};
 use crate::evaluation::risk_figure;
 use crate::obstacle::LAND;
 use crate::report::plan::manoeuvre;
@@ -20,9 +22,11 @@ fn title(compared: &ScenarioComparisonDocument) -> &str {
 pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display) -> String {
     let table = comparison_grid(&compared.entries).text(display);
     // remarks on a column that is dropped are none
-    let has_cost = table.contains("[m²]");
+    let dropped = [("[m²]", "J "), ("clearance", CLEARANCE)];
+    let dropped = dropped.iter().filter(|(column, _)| !table.contains(column));
+    let dropped: Vec<&str> = dropped.map(|(_, remark)| *remark).collect();
     let remarks = remarks(compared).into_iter();
-    let remarks = remarks.filter(|remark| has_cost || !remark.starts_with("J "));
+    let remarks = remarks.filter(|remark| !dropped.iter().any(|start| remark.starts_with(start)));
     let mut lines = vec![title(compared).to_owned(), table];
     lines.extend(remarks);
     lines.join("\n")
@@ -176,6 +180,7 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
              come so near is counted to the end of the desired time"
                 .to_owned(),
         );
+        lines.push(CLEARANCE.to_owned());
     }
     if entries.iter().any(|e| e.cost.is_some() && !e.safe) {
         let why = "the motion is not safe, so its J is no measure of it";
@@ -241,6 +246,10 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
     let number =
         |value: fn(&CostDocument) -> f64| optional(cost.map(value).filter(|v| v.is_finite()));
     let word = |value: bool| cost.map_or_else(String::new, |_| value.to_string());
+    let turn = match entry.departure {
+        Some(Departure::Course { side, turn_deg, .. }) => Some((turn_deg, side)),
+        _ => None,
+    };
     vec![
         compared.file.clone(),
         compared.scenario.clone().unwrap_or_default(),
@@ -259,8 +268,8 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         number(|c| c.length_m),
         optional(cost.and_then(|c| c.min_clearance_m)),
         number(|c| c.max_risk),
-        optional(entry.largest_turn_deg),
-        entry.largest_turn_side.clone().unwrap_or_default(),
+        optional(turn.map(|(degrees, _)| degrees)),
+        turn.map_or_else(String::new, |(_, side)| side.to_string()),
         (entry.breaks.as_ref()).map_or_else(String::new, |b| b.join(" ")),
         (entry.search_stats).map_or_else(String::new, |stats| stats.expanded.to_string()),
         optional(entry.timing.map(|timing| 1e3 * timing.plan_s)),

@@ -8,7 +8,7 @@ use super::table::{
 };
 use crate::document::{
     Departure, EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument,
-    breaks, in_brackets, longest, met, passing, plan_lines, verdict_parts,
+    breaks, in_brackets, longest, met, passing, plan_lines, rules_in_words, verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -20,11 +20,20 @@ const MOST_LEGS: usize = 40;
 
 pub(super) const TIME_COLUMN: &str = "time";
 
-/// Formats a table with one row per scenario, and explains the monitors in it.
+/// What the column "clearance" measures.
+pub(super) const CLEARANCE: &str =
+    "clearance: own hull to any hull that a target may have, or own position to an explicit set";
+
+/// Formats a table with one row per scenario, and explains the clearance and the monitors in it.
 pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
     let broken = runs.iter().filter_map(|run| breaks(&run.encounters));
-    let key = monitors_key(broken.flatten()).map(|key| format!("\n{key}"));
-    suite_grid(runs).text(display) + &key.unwrap_or_default()
+    let table = suite_grid(runs).text(display);
+    let clearance = table.contains("clearance").then(|| CLEARANCE.to_owned());
+    let keys = clearance.into_iter().chain(monitors_key(broken.flatten()));
+    std::iter::once(table)
+        .chain(keys)
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
@@ -113,7 +122,7 @@ pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
     match broken {
         None => or_dash(None),
         Some(broken) if broken.is_empty() => ("none".to_owned(), Tone::Good),
-        Some(broken) => (broken.join(", "), Tone::Bad),
+        Some(broken) => (rules_in_words(broken), Tone::Bad),
     }
 }
 
@@ -315,7 +324,7 @@ mod tests {
             .expect("a ship")
             .monitors[0]
             .verdict = "violated".to_owned();
-        let ends = format!("({red}verified, not safe{end}; {red}breaks S{end})");
+        let ends = format!("({red}verified, not safe{end}; {red}breaks contact (S){end})");
         assert!(
             first(&plan, true).ends_with(&ends),
             "{}",

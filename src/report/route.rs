@@ -7,7 +7,7 @@ use std::path::Path;
 use chrono::{DateTime, SecondsFormat, Utc};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
-use crate::document::{PlanDocument, PlannedLeg};
+use crate::document::{CLOSEST, PlanDocument, PlannedLeg};
 use crate::frame::{
     GEOREFERENCE_REACH_M, Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps,
 };
@@ -229,8 +229,10 @@ fn geojson(legs: &[PlannedLeg], earth: &Georeference, present: Option<DateTime<U
 }
 
 /// A waypoint of RTZ: where two lines meet, and the arc that rounds the corner.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Waypoint {
+    /// The manoeuvre that begins here.
+    name: Option<String>,
     place: Vector,
     /// Metres; 0 where the course or the speed changes at once.
     radius: f64,
@@ -246,7 +248,8 @@ struct Waypoint {
 /// changes at once is a waypoint of its own. At least two waypoints, as RTZ requires.
 fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     let first = &legs[0].motion;
-    let at = |place, radius, speed, time| Waypoint {
+    let at = |leg, place, radius, speed, time| Waypoint {
+        name: manoeuvre(leg),
         place,
         radius,
         speed,
@@ -255,7 +258,13 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     };
     let moves = legs.iter().find(|leg| !leg.waits());
     let speed = moves.map_or(0.0, |leg| leg.motion.speed);
-    let mut all = vec![at(first.start.position, 0.0, speed, first.start_time)];
+    let mut all = vec![at(
+        legs.first(),
+        first.start.position,
+        0.0,
+        speed,
+        first.start_time,
+    )];
     for (index, leg) in legs.iter().enumerate() {
         let motion = &leg.motion;
         if leg.waits() {
@@ -265,7 +274,10 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         }
         if motion.is_arc() {
             let corners = corners(motion);
-            all.extend(corners.map(|(place, radius, time)| at(place, radius, motion.speed, time)));
+            all.extend(
+                corners
+                    .map(|(place, radius, time)| at(Some(leg), place, radius, motion.speed, time)),
+            );
         }
         // the tangents of an arc lead on
         let leads_on = legs.get(index + 1).is_some_and(|next| {
@@ -274,13 +286,31 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         });
         if !leads_on {
             let end = motion.end().position;
-            all.push(at(end, 0.0, motion.speed, motion.end_time()));
+            all.push(at(
+                legs.get(index + 1),
+                end,
+                0.0,
+                motion.speed,
+                motion.end_time(),
+            ));
         }
     }
-    if let [only] = all[..] {
-        all.push(Waypoint { stay: 0.0, ..only });
+    if let [only] = &all[..] {
+        let end = Waypoint {
+            stay: 0.0,
+            ..only.clone()
+        };
+        all.push(end);
     }
     all
+}
+
+/// What own ship begins to do on a leg, as in "turns for 'tanker', starboard 30°".
+fn manoeuvre(leg: Option<&PlannedLeg>) -> Option<String> {
+    let mut events = leg?.events.iter();
+    let event = events.find(|event| !event.starts_with(CLOSEST))?;
+    let turn = leg?.turn_words().filter(|turn| turn != "waits");
+    Some(turn.map_or(event.clone(), |turn| format!("{event}, {turn}")))
 }
 
 /// The corners whose lines touch a turn, its radius, and the times in the middle of its parts.
@@ -328,10 +358,12 @@ fn rtz(
             return Err(RouteError::BeyondRtz);
         }
         let leg = if id == 1 { "" } else { &orthodrome };
+        let name = waypoint.name.as_deref().map(in_xml);
+        let name = name.unwrap_or_else(|| format!("WP {id}"));
         // writing into a text does not fail
         let _ = writeln!(
             text,
-            "    <waypoint id=\"{id}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.11}\" \
+            "    <waypoint id=\"{id}\" name=\"{name}\" radius=\"{radius:.6}\"><position lat=\"{lat_deg:.11}\" \
              lon=\"{lon_deg:.11}\"/>{leg}</waypoint>"
         );
         let speed = knots_from_mps(waypoint.speed);

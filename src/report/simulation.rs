@@ -4,9 +4,10 @@ use super::plan::{monitors_key, rules_broken};
 use super::table::{Display, Grid, Tone, in_cell, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    ReplanDocument, SimulatedTargetDocument, SimulationDocument, conduct_breaks,
+    ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
+    SimulationDocument, conduct_breaks, rules_in_words,
 };
-use crate::text::{counted, tenths};
+use crate::text::{counted, tenths, to_side};
 
 pub(super) const TIMES: &str = "Planning";
 
@@ -48,7 +49,7 @@ pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
     let breaks = match &simulation.conduct.breaks[..] {
         [] if !is_judged => String::new(),
         [] => "; breaks no rule".to_owned(),
-        broken => format!("; breaks {}", broken.join(", ")),
+        broken => format!("; breaks {}", in_words(broken)),
     };
     let headline = headline(simulation) + &breaks;
     let mut blocks = vec![format!("### {}", in_cell(&headline))];
@@ -120,6 +121,23 @@ pub(super) fn headline(simulation: &SimulationDocument) -> String {
     )
 }
 
+fn in_words(broken: &[String]) -> String {
+    rules_in_words(broken.iter().map(String::as_str))
+}
+
+/// Own ship's manoeuvres, and when it turns back.
+fn manoeuvres(sailed: &SailedDocument) -> String {
+    let manoeuvre = |m: &SailedManoeuvreDocument| match m.returns_s {
+        Some(time) => format!("{}, back from {time:.0} s", m.departure),
+        None => m.departure.to_string(),
+    };
+    let all: Vec<String> = sailed.manoeuvres.iter().map(manoeuvre).collect();
+    match all.is_empty() {
+        true => "none".to_owned(),
+        false => all.join("; "),
+    }
+}
+
 /// A row per target: captain's figures, and the rules that own ship breaks toward it.
 pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
     let rows = targets.iter().map(|target| {
@@ -158,7 +176,7 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
         });
     let breaks = match sailed.breaks.is_empty() {
         true => "nothing".to_owned(),
-        false => sailed.breaks.join(" "),
+        false => in_words(&sailed.breaks),
     };
     let plans = simulation.replans.len();
     let kept = simulation.replans.iter().filter(|r| r.keeps_plan).count();
@@ -185,6 +203,7 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
                 counted(sailed.speed_changes, "change")
             ),
         ),
+        ("Manoeuvres", manoeuvres(sailed)),
         (
             "Plans",
             format!(
@@ -239,7 +258,9 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
         let violations = violations.map(|v| format!("{}: {}, at {:.0} s", v.rule, v.what, v.t_s));
         let monitors = |verdict: &str| -> Vec<String> {
             let found = conduct.monitors.iter().filter(|m| m.verdict == verdict);
-            found.map(|monitor| monitor.monitor.clone()).collect()
+            found
+                .map(|m| rules_in_words([m.monitor.as_str()]))
+                .collect()
         };
         vec![
             plain(target.name.clone()),
@@ -308,8 +329,7 @@ fn turn_text(degrees: f64) -> String {
     if degrees.abs() < 0.5 {
         return "none, by speed".to_owned();
     }
-    let side = if degrees > 0.0 { "starboard" } else { "port" };
-    format!("{:.0}° to {side}", degrees.abs())
+    to_side(degrees)
 }
 
 /// Alarms that are listed; the others are counted.

@@ -1,5 +1,6 @@
 //! Text of a plan document's verification.
 
+use super::plan::CLEARANCE;
 use super::table::{Display, Grid, Tone, or_dash, plain};
 use crate::evaluation::{Violation, facts, outcome_word, skipped_waypoints};
 use crate::text::{counted, printable, short_numbers, tenths};
@@ -128,7 +129,11 @@ fn margins(checked: &Verification, display: Display) -> String {
             ]
         });
     let header = "target, margin\n[m], at\n[s], clearance\n[m], dCPA\n[m], tCPA\n[s]";
-    Grid::new(header, 1..6, rows).text(display)
+    let table = Grid::new(header, 1..6, rows).text(display);
+    format!(
+        "{table}\nmargin: own position to the set that the plan avoids\n{CLEARANCE}\n\
+         dCPA: hull to hull, as expected"
+    )
 }
 
 /// Formats three decimals; values that round to zero have no sign.

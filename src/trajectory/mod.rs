@@ -1,6 +1,5 @@
 //! Trajectories: lines and arcs in time, the desired trajectory, and the network of paths.
 
-mod alteration;
 mod desired;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -8,13 +7,12 @@ mod network;
 mod segment;
 mod steered;
 
-pub(crate) use alteration::{Alteration, DEPARTURE_DEG, first_alteration};
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;
 pub use segment::Segment;
 pub(crate) use steered::{Bounds, hermite};
-pub use steered::{Cubic, ForceNode, Steered, Swing};
+pub use steered::{Cubic, ForceNode, Steered};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;

@@ -45,19 +45,6 @@ impl ForceNode {
     }
 }
 
-/// Smallest alteration of course, radians: 5°. A motion under forces never holds a heading exactly,
-/// so smaller swings are steering.
-const LEAST_SWING: f64 = std::f64::consts::PI / 36.0;
-
-/// A change of heading from one extreme to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Swing {
-    /// Time of the first extreme, seconds.
-    pub start_time: f64,
-    /// Radians, positive to port; at least 5°.
-    pub turned: f64,
-}
-
 /// A motion given at nodes. Between two nodes position and heading are the cubics that interpolate
 /// values and rates.
 ///
@@ -116,43 +103,6 @@ impl Steered {
     pub fn node_at(&self, time: f64) -> &ForceNode {
         let after = self.nodes.partition_point(|node| node.time <= time);
         &self.nodes[after.clamp(1, self.nodes.len()) - 1]
-    }
-
-    /// The alterations of course of 5° or more, in order of time, from the headings at the nodes.
-    /// Smaller swings back are ignored. O(nodes).
-    pub fn swings(&self) -> Vec<Swing> {
-        // time and heading
-        let mut extremes: Vec<(f64, f64)> = Vec::new();
-        // the least and the greatest heading since the last extreme
-        let [mut least, mut greatest] = [(0.0, f64::INFINITY), (0.0, f64::NEG_INFINITY)];
-        let mut to_port = None;
-        for node in &self.nodes {
-            let here = (node.time, node.pose.heading);
-            if here.1 < least.1 {
-                least = here;
-            }
-            if here.1 > greatest.1 {
-                greatest = here;
-            }
-            let (extreme, port) = if to_port != Some(false) && greatest.1 - here.1 >= LEAST_SWING {
-                (greatest, false)
-            } else if to_port != Some(true) && here.1 - least.1 >= LEAST_SWING {
-                (least, true)
-            } else {
-                continue;
-            };
-            extremes.push(extreme);
-            to_port = Some(port);
-            (least, greatest) = (here, here);
-        }
-        extremes.extend(to_port.map(|port| if port { greatest } else { least }));
-        extremes
-            .windows(2)
-            .map(|pair| Swing {
-                start_time: pair[0].0,
-                turned: pair[1].1 - pair[0].1,
-            })
-            .collect()
     }
 
     /// Length of the motion, metres, to about 1e-5 of it.

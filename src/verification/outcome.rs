@@ -76,15 +76,6 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         let so = objectives.join(" or ");
         found.push(mismatch("objective", &file.objective, so));
     }
-    let most_important = file.relaxations.first();
-    if file.relaxation.as_ref() != most_important {
-        let name = |r: Option<&RelaxationDocument>| {
-            let name = |r: &RelaxationDocument| format!("{} of '{}'", r.kind, r.target);
-            r.map_or("nothing".to_owned(), name)
-        };
-        let so = format!("the first of relaxations, {}", name(most_important));
-        found.push(mismatch("relaxation", name(file.relaxation.as_ref()), so));
-    }
     for (index, relaxation) in file.relaxations.iter().enumerate() {
         let what = format!("relaxation of '{}'", relaxation.target);
         let asked = match relaxation.kind.as_str() {

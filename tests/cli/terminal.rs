@@ -85,12 +85,14 @@ fn every_target_of_a_plan_has_one_block() {
     let new = "'t2': no role on the desired trajectory; on the plan own ship is give-way from 0 to";
     assert!(text.contains(new), "{text}");
     let text = stdout(&run("plan scenarios/harbour/ferry-crossing.toml").success());
-    let without = "  target       'launch': no role; closest 422.5 m at 226 s, to port\n";
+    let without =
+        "  target       'launch': no role; closest: 422.5 m hull to hull at 226 s, to port\n";
     assert!(text.contains(without), "{text}");
     // a rule that is broken without a role is named, too
     let text = stdout(&run("plan tests/faults/infeasible-at-goal.toml").code(1));
     assert!(
-        text.contains("; breaks R1, S)") && text.contains("\n               breaks S at 0 s: "),
+        text.contains("; breaks collision course (R1), contact (S))")
+            && text.contains("\n               breaks contact (S) at 0 s: "),
         "{text}"
     );
 }

@@ -188,7 +188,10 @@ fn every_view_tells_the_clearance_of_the_right_target() {
     };
 
     let said = stdout(&run(&format!("plan {file}")).success());
-    says(&said, "clearance    worst case 290.0 m;");
+    says(
+        &said,
+        "clearance    290.0 m to any hull that a target may have;",
+    );
     let plan = run(&format!("plan {file} --json")).success();
     let plan_file = folder.write("plan.json", stdout(&plan));
     let plan = document(&plan);

@@ -11,7 +11,10 @@ use crate::frame::{
     Side, Vector, cross, deg_from_radians, heading_from_course_deg, heading_of, wrap,
 };
 use crate::text::{knots, significant};
-use crate::trajectory::{DEPARTURE_DEG, DesiredLeg, DesiredTrajectory};
+use crate::trajectory::{DesiredLeg, DesiredTrajectory};
+
+/// Degrees: a smaller departure from the desired course is none.
+pub(super) const LEAST_DEG: f64 = 5.0;
 
 /// Fraction of the desired speed. A smaller departure from it is none.
 const SPEED: f64 = 0.02;
@@ -47,7 +50,25 @@ pub enum Departure {
     },
 }
 
+/// A departure as it was sailed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SailedManoeuvreDocument {
+    #[serde(flatten)]
+    pub departure: Departure,
+    /// When own ship begins to turn back to its path, or where it needs not, to the desired course;
+    /// null where it has not, and where only the speed departs.
+    pub returns_s: Option<f64>,
+}
+
 impl Departure {
+    /// When it begins, seconds; a wait has a place instead.
+    pub fn begins_s(&self) -> Option<f64> {
+        match *self {
+            Self::Course { from_s, .. } | Self::Speed { from_s, .. } => Some(from_s),
+            Self::Waits { .. } => None,
+        }
+    }
+
     /// Side and degrees, with a wait its duration, or the speed.
     pub fn brief(&self) -> String {
         match *self {
@@ -77,7 +98,7 @@ impl std::fmt::Display for Departure {
 
 impl PlanDocument {
     /// The plan's departure from its mission; `None` without a plan, or where it has none.
-    pub fn departure(&self) -> Option<Departure> {
+    pub(crate) fn departure_of_motion(&self) -> Option<Departure> {
         let points = self.mission.waypoints.iter().map(|point| point.point());
         let points: Vec<Vector> = points.collect();
         let desired = DesiredTrajectory::new(&points, &self.mission.leg_speeds_mps).ok()?;
@@ -96,10 +117,41 @@ pub(crate) fn departure(
     radius: f64,
     is_along_path: bool,
 ) -> Option<Departure> {
-    let turn = || turn(samples, desired, radius);
-    let turn = if is_along_path { None } else { turn() };
-    turn.or_else(|| wait(samples))
+    let turns = match is_along_path {
+        true => Vec::new(),
+        false => turns(samples, desired, radius),
+    };
+    let greatest = turns
+        .iter()
+        .rev()
+        .max_by(|a, b| a.degrees.total_cmp(&b.degrees));
+    (greatest.map(Turn::departure))
+        .or_else(|| wait(samples))
         .or_else(|| change(samples, desired))
+}
+
+/// Manoeuvres of a motion that was sailed, in order of time: every departure from the desired
+/// course, or else the one of [`departure`].
+pub(crate) fn manoeuvres(
+    samples: &[SampleDocument],
+    desired: &DesiredTrajectory,
+    radius: f64,
+    is_along_path: bool,
+) -> Vec<SailedManoeuvreDocument> {
+    let only = departure(samples, desired, radius, is_along_path);
+    if let Some(Departure::Course { .. }) = only {
+        let turns = turns(samples, desired, radius).into_iter();
+        let sailed = turns.map(|turn| SailedManoeuvreDocument {
+            departure: turn.departure(),
+            returns_s: turn.returns.or(turn.resumes),
+        });
+        return sailed.collect();
+    }
+    let departs = |departure| SailedManoeuvreDocument {
+        departure,
+        returns_s: None,
+    };
+    only.map(departs).into_iter().collect()
 }
 
 /// Index of the desired leg at a sample.
@@ -117,11 +169,33 @@ fn place_on(leg: &DesiredLeg, sample: &SampleDocument) -> (f64, f64) {
     (along, off.copysign(cross(leg.direction, offset)))
 }
 
-fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -> Option<Departure> {
+/// A turn away from the desired course.
+struct Turn {
+    side: Side,
+    /// Greatest departure.
+    degrees: f64,
+    /// Seconds: its start, and those of the turns back to the desired course and to the path.
+    from: f64,
+    resumes: Option<f64>,
+    returns: Option<f64>,
+}
+
+impl Turn {
+    fn departure(&self) -> Departure {
+        Departure::Course {
+            side: self.side,
+            turn_deg: self.degrees,
+            from_s: self.from,
+        }
+    }
+}
+
+/// All turns away, in order of time.
+fn turns(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -> Vec<Turn> {
     let legs = desired.legs();
-    let mut greatest: Option<(Side, f64, f64)> = None;
-    // the side of the present departure, its start, and whether it is a return
-    let mut current: Option<(Side, f64, bool)> = None;
+    let mut turns: Vec<Turn> = Vec::new();
+    // the side of the present departure, and whether it is a return
+    let mut current: Option<(Side, bool)> = None;
     let moving: Vec<&SampleDocument> = (samples.iter())
         .filter(|sample| sample.speed_mps > STILL_MPS)
         .collect();
@@ -150,23 +224,31 @@ fn turn(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) ->
             turned = if is_between { 0.0 } else { least };
         }
         let degrees = deg_from_radians(turned.abs());
-        let side = Side::of_turn(turned).filter(|_| degrees >= DEPARTURE_DEG);
-        if side != current.map(|(side, ..)| side) {
+        let side = Side::of_turn(turned).filter(|_| degrees >= LEAST_DEG);
+        if side != current.map(|(side, _)| side) {
+            let begin = |side| begin(&moving[..=at], side, radius);
             let returns = off.abs() > 0.1 * radius && off * turned < 0.0;
-            current = side.map(|side| (side, begin(&moving[..=at], side, radius), returns));
+            match (current, turns.last_mut()) {
+                (Some((last, false)), Some(turn)) => turn.resumes = Some(begin(last.opposite())),
+                (None, Some(turn)) if returns => turn.returns = turn.returns.or(side.map(begin)),
+                _ => {}
+            }
+            current = side.map(|side| (side, returns));
+            if let Some((side, false)) = current {
+                turns.push(Turn {
+                    side,
+                    degrees,
+                    from: begin(side),
+                    resumes: None,
+                    returns: None,
+                });
+            }
         }
-        if let Some((side, from_s, false)) = current
-            && greatest.is_none_or(|(_, most, _)| degrees > most)
-        {
-            greatest = Some((side, degrees, from_s));
+        if let (Some((_, false)), Some(turn)) = (current, turns.last_mut()) {
+            turn.degrees = turn.degrees.max(degrees);
         }
     }
-    let (side, turn_deg, from_s) = greatest?;
-    Some(Departure::Course {
-        side,
-        turn_deg,
-        from_s,
-    })
+    turns
 }
 
 /// Start of the turn to a side that leads to the last sample: back over the samples between which
@@ -308,6 +390,32 @@ mod tests {
         }
     }
 
+    /// The turn back to the path counts, not the one to the desired course before it.
+    #[test]
+    fn every_turn_away_has_its_turn_back() {
+        let parts = [
+            (10, 90.0, 5.0),
+            (20, 120.0, 5.0),
+            (30, 90.0, 5.0),
+            (20, 60.0, 5.0),
+            (10, 90.0, 5.0),
+            (10, 110.0, 5.0),
+            (20, 88.0, 5.0),
+        ];
+        let points = [(0.0, 0.0), (2000.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("a path");
+        let sailed = manoeuvres(&sailed(&parts), &desired, 30.0, false);
+        let sailed = sailed
+            .iter()
+            .map(|m| (m.departure.to_string(), m.returns_s));
+        let expected = [
+            ("30° from 10 s", Some(60.0)),
+            ("20° from 90 s", Some(100.0)),
+        ];
+        let expected = expected.map(|(turn, returns)| (format!("starboard {turn}"), returns));
+        assert_eq!(sailed.collect::<Vec<_>>(), expected);
+    }
+
     /// 5° are reached two seconds after the turn has begun.
     #[test]
     fn a_departure_begins_with_its_turn() {
@@ -324,11 +432,8 @@ mod tests {
             let file = format!("scenarios/colregs/{name}.toml");
             let scenario = crate::scenario::Scenario::read(file.as_ref()).expect("valid");
             let plan = PlanDocument::of(&crate::pipeline::run(scenario));
-            let (Departure::Course { from_s, .. } | Departure::Speed { from_s, .. }) =
-                plan.departure().expect("a manoeuvre")
-            else {
-                panic!("{name}: a wait");
-            };
+            let departure = plan.departure.expect("a manoeuvre");
+            let from_s = departure.begins_s().expect("no wait");
             let begins_s = plan.manoeuvres[0].begins_s;
             assert!(
                 (from_s - begins_s).abs() < 1e-3,

@@ -3,7 +3,7 @@
 use super::PlanDocument;
 use super::reasons::Before;
 use crate::document::encounter::EncounterDocument;
-use crate::document::lines::passing;
+use crate::document::lines::{distance_words, is_set, passing};
 use crate::document::parts::segment;
 use crate::frame::{
     clockwise_deg, course_deg_from_heading, heading_from_course_deg, heading_of, wrap,
@@ -38,6 +38,9 @@ const RETURNS: &str = "returns";
 
 /// Event of a leg: a turn at a corner of the mission.
 const FOLLOWS: &str = "follows the mission";
+
+/// Begins the event of a closest approach.
+pub(crate) const CLOSEST: &str = "closest to";
 
 /// m/s. A slower ship lies still.
 pub(super) const STILL_MPS: f64 = 1e-3;
@@ -251,7 +254,7 @@ impl PlanDocument {
             e.role != "none" || e.conduct.as_ref().is_some_and(|c| !c.roles.is_empty())
         };
         let met = self.encounters.iter().filter(has_role);
-        events.extend(met.filter_map(closest_approach));
+        events.extend(met.filter_map(|e| closest_approach(e, is_set(self, &e.target))));
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
         events
     }
@@ -324,12 +327,12 @@ fn are_one(last: &Segment, next: &Segment) -> bool {
         && (last.turn_rate - next.turn_rate).abs() <= SAME_SPEED * turns
 }
 
-fn closest_approach(encounter: &EncounterDocument) -> Option<(f64, String)> {
+fn closest_approach(encounter: &EncounterDocument, is_set: bool) -> Option<(f64, String)> {
     let (distance, time) = (encounter.dcpa_m?, encounter.tcpa_s?);
-    let (target, distance) = (&encounter.target, tenths(distance));
+    let (target, distance) = (&encounter.target, distance_words(distance, is_set));
     let side = match encounter.passing_side {
         Some(_) => format!(", {}", passing(encounter)),
         None => String::new(),
     };
-    Some((time, format!("closest to '{target}': {distance} m{side}")))
+    Some((time, format!("{CLOSEST} '{target}': {distance}{side}")))
 }

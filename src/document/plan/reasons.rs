@@ -1,14 +1,14 @@
 //! Why own ship alters course or speed: the set that it would enter if it held on.
 
-use super::PlanDocument;
 use super::legs::PlannedLeg;
+use super::{PlanDocument, departure};
 use crate::document::parts::{ObstacleDocument, PositionDocument};
 use crate::frame::{Pose, Vector, deg_from_radians, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::target::Uncertainty;
 use crate::tolerance;
-use crate::trajectory::{DEPARTURE_DEG, Segment};
+use crate::trajectory::Segment;
 use crate::vessel::Hull;
 
 /// Metres. Plans run along the edges of sets: what is no deeper in a set does not enter it.
@@ -70,7 +70,7 @@ impl PlanDocument {
         let on = |place: Vector, heading: f64| {
             let near = self.nearest_leg(place)?;
             let turned = deg_from_radians(wrap(heading - heading_of(near.along)).abs());
-            let is_on = turned < DEPARTURE_DEG && near.off <= self.own_ship.length_m;
+            let is_on = turned < departure::LEAST_DEG && near.off <= self.own_ship.length_m;
             is_on.then_some(near.index)
         };
         let end = leg.end();

@@ -9,7 +9,7 @@ use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::recording::Logged;
-use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::canvas::{Canvas, clock, flat, style};
 use crate::recording::write::Recorder;
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -139,7 +139,7 @@ impl Judge<'_> {
 
 fn reason(what: &str, met: Option<f64>, limit: &str) -> String {
     match met {
-        Some(time) => format!("{what} at {time:.0} s: {limit}"),
+        Some(time) => format!("{what} at {}: {limit}", clock(time)),
         None => format!("{what}: {limit}"),
     }
 }

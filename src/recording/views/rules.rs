@@ -4,9 +4,10 @@ use rerun::{Color, Points2D, Points3D, StateChange, StateConfiguration, TimeColu
 
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument,
+    ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument, escape_words,
+    rules_in_words,
 };
-use crate::frame::{Vector, knots_from_mps};
+use crate::frame::Vector;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{Canvas, Labels, clock, flat};
 use crate::recording::write::Recorder;
@@ -75,7 +76,7 @@ impl<'a> Judged<'a> {
         let rules = rules.map(|violation| (violation.t_s, violation.rule.clone()));
         let monitors = self.conduct.monitors.iter();
         let monitors = monitors.filter(|m| m.verdict == MonitorVerdict::Violated.word());
-        let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), format!("monitor {}", m.monitor)));
+        let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), m.monitor.clone()));
         let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all
@@ -99,7 +100,8 @@ impl<'a> Judged<'a> {
             if !rules.contains(&rule) {
                 rules.push(rule);
             }
-            let text = format!("{} broken by own ship toward {name}", rules.join(", "));
+            let broken = rules_in_words(rules.iter().map(String::as_str));
+            let text = format!("{broken} broken by own ship toward {name}");
             breaks.add(time, text, style::ALARM);
             let mut ends = self.roles.iter().map(|state| state.until_s);
             until = ends.find(|end| *end > time).unwrap_or(end);
@@ -129,7 +131,7 @@ pub fn add_broken(labels: &mut Labels, broken: Option<&[&str]>) {
         None => {}
         Some([]) => labels.add_in_corner("breaks no rule", style::CHART_TEXT),
         Some(broken) => {
-            let text = format!("breaks {}", broken.join(", "));
+            let text = format!("breaks {}", rules_in_words(broken.iter().copied()));
             labels.add_in_corner(&text, style::ALARM);
         }
     }
@@ -142,7 +144,7 @@ pub fn lanes(judged: &[Judged], escape: Option<&EscapeDocument>, end: f64) -> Ve
         let mut lane = Lane::default();
         let held = "own ship holds course and speed".to_owned();
         lane.add(0.0, held, SpeedClass::Slow.color());
-        let away = format!("own ship escapes: {}", manoeuvre(escape));
+        let away = format!("own ship escapes: {}", escape_words(escape));
         lane.add(escape.held_until_s, away, SpeedClass::Fast.color());
         lane.end(end);
         lanes.push(lane);
@@ -245,16 +247,6 @@ pub fn log_marks_in_volume(rec: &mut Recorder, canvas: &Canvas, marks: &[Mark]) 
         .with_labels(marks.iter().map(|mark| mark.text.as_str()))
         .with_show_labels(false);
     rec.log_static(path(&[VOLUME, "rules"]), &in_volume)
-}
-
-fn manoeuvre(escape: &EscapeDocument) -> String {
-    let speed = knots_from_mps(escape.speed_mps);
-    let turn = escape.turn_deg;
-    if turn == 0.0 {
-        return format!("{speed:.1} kn");
-    }
-    let side = if turn > 0.0 { "starboard" } else { "port" };
-    format!("{:.0}° to {side} at {speed:.1} kn", turn.abs())
 }
 
 #[cfg(test)]

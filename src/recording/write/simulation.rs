@@ -6,7 +6,7 @@ use rerun::{TextLog, TextLogLevel, TimeColumn};
 
 use super::{Recorder, RecordingError, encoding_error, put};
 use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
-use crate::recording::canvas::ClosedLoop;
+use crate::recording::canvas::{ClosedLoop, clock};
 use crate::recording::views::{chart, closed_loop, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
@@ -122,6 +122,7 @@ struct Event {
 
 fn log_events(rec: &mut Recorder, document: &SimulationDocument) -> Logged {
     let mut events = outcomes(document);
+    events.extend(manoeuvres(document));
     events.extend(alarms(document));
     for target in &document.targets {
         events.extend(target.contact_t_s.map(|time| Event {
@@ -168,12 +169,11 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
             (true, true) => "plan kept",
             (true, false) => "new plan",
         };
-        let mut text = format!("{kind} from {:.0} s: {}", replan.start_t_s, replan.verdict);
-        // a manoeuvre by less speed turns nowhere
-        if let Some(turn) = replan.turn_deg.filter(|turn| turn.abs() >= 0.5) {
-            let side = if turn < 0.0 { "port" } else { "starboard" };
-            text += &format!("; turns {:.0}° to {side}", turn.abs());
-        }
+        let mut text = format!(
+            "{kind} from {}: {}",
+            clock(replan.start_t_s),
+            replan.verdict
+        );
         if !relaxed.is_empty() {
             text += &format!("; relaxed: {}", relaxed.join(", "));
         }
@@ -189,6 +189,24 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
         });
     }
     events
+}
+
+/// What own ship sailed: each manoeuvre, and the turn back from it.
+fn manoeuvres(document: &SimulationDocument) -> impl Iterator<Item = Event> {
+    let sailed = document.conduct.manoeuvres.iter();
+    let events = sailed.flat_map(|manoeuvre| {
+        let begins = manoeuvre.departure.begins_s();
+        let begins = begins.map(|time| (time, manoeuvre.departure.brief()));
+        let returns = manoeuvre
+            .returns_s
+            .map(|time| (time, "turns back".to_owned()));
+        begins.into_iter().chain(returns)
+    });
+    events.map(|(time, text)| Event {
+        time,
+        level: TextLogLevel::INFO,
+        text,
+    })
 }
 
 /// The alarms; one that goes on from plan to plan is there once.

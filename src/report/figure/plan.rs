@@ -161,7 +161,7 @@ pub(in crate::report) fn plan_panels(
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
     let mut title = document::verdict_line(document);
-    if let Some(departure) = document.departure() {
+    if let Some(departure) = document.departure_of_motion() {
         let headlines = [departure.to_string(), departure.brief()];
         let mut headlines = headlines.map(|text| format!("{title}: {text}")).into_iter();
         let fits = |headline: &String| headline.chars().count() <= LETTERS;

@@ -4,8 +4,8 @@ use super::{Simulated, Simulation};
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
     ConductDocument, CycleTimingDocument, SIMULATION_FORMAT, SailedDocument, SailedLandDocument,
-    SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument, finite,
-    segment_document, state_document,
+    SampleDocument, SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument,
+    finite, manoeuvres, sample, segment_document, state_document,
 };
 use crate::evaluation::{counted_error_of_segments, least_land_distance};
 use crate::frame::Vector;
@@ -85,6 +85,12 @@ impl Simulation {
                 breaks,
                 turns: most(&|m| m.turns),
                 speed_changes: most(&|m| m.speed_changes),
+                manoeuvres: manoeuvres(
+                    &self.sailed_samples(),
+                    desired,
+                    own.turning_radius,
+                    self.scenario.planner.facts().follows_paths,
+                ),
                 within_tracking_margin,
                 ..self.conduct.clone()
             },
@@ -95,6 +101,17 @@ impl Simulation {
                 plan_s: self.plan_seconds.clone(),
             },
         }
+    }
+
+    /// The sailed motion at the start of each segment, and at every second of it.
+    fn sailed_samples(&self) -> Vec<SampleDocument> {
+        let times = self.sailed.iter().flat_map(|segment| {
+            let steps = segment.duration.ceil().max(1.0) as u32;
+            (0..steps).map(move |k| (segment, segment.start_time + f64::from(k)))
+        });
+        times
+            .map(|(segment, time)| sample(segment.pose_at(time), time, segment.speed))
+            .collect()
     }
 
     /// Own hull's least distance from the land of the map over the sailed motion.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    CollisionDocument, Departure, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
+    CollisionDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument, cost_of, departure, finite, minimised, objective, position, samples,
     timing,
 };
@@ -68,10 +68,6 @@ impl EntryDocument {
         let departure = entry.trajectory().and_then(|motion| {
             departure(&samples(motion), &scenario.desired, radius, is_along_path)
         });
-        let turn = match departure {
-            Some(Departure::Course { side, turn_deg, .. }) => Some((side, turn_deg)),
-            _ => None,
-        };
         let conduct = entry.conduct(scenario);
         let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
         let broken = broken.into_iter().map(str::to_owned).collect();
@@ -98,14 +94,11 @@ impl EntryDocument {
                 let objective = run.zip(plan).map_or(found.space_time_error, |(run, plan)| {
                     minimised(&run.scenario, plan, found)
                 });
-                let (way, risks) = (&motion.trajectory, &motion.risks);
-                let mut cost = cost_of(way, found, objective, motion.arrived, risks);
+                let mut cost = cost_of(found, objective, motion.arrived, &motion.risks);
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
                 cost
             }),
             lower_bound: entry.lower_bound,
-            largest_turn_deg: turn.map(|(_, degrees)| degrees),
-            largest_turn_side: turn.map(|(side, _)| side.to_string()),
             departure,
             breaks: (!conduct.is_empty()).then_some(broken),
             collision: collision(scenario, entry),

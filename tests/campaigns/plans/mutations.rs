@@ -11,9 +11,8 @@ fn is_said_only(pointer: &str) -> bool {
     [
         "/search_stats",
         "/timing",
-        "/relaxation/",
         "/escape/",
-        "/cost/first_turn/",
+        "/departure/",
         "/optimal_control/intervals",
         "/optimal_control/start_intervals",
         "/optimal_control/state_weights",
