@@ -25,7 +25,8 @@ const PLAN: &str = r#"
 /encounters/0/roles/0/role "head-on"
 /verified true
 /cost/arrived true
-/relaxation null
+/relaxations []
+/departure/side "starboard"
 /land []
 "#;
 
