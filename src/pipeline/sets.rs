@@ -1,7 +1,7 @@
 //! The obstacles of every target, grown by own ship's footprint.
 
 use super::rules::without_domains_of_give_way_targets;
-use crate::colregs::{self, Encounter, Role, ShipDomain, TargetMemory};
+use crate::colregs::{self, Encounter, Risk, Role, ShipDomain, TargetMemory};
 use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::parallel;
@@ -96,15 +96,9 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
     let mut encounter = colregs::encounter(own, desired, target, horizon, &scenario.limits);
     if let Some(known) = scenario.memory.target(index) {
-        // a role lasts; another begins where own ship is, or where it will be back on its path
-        let from_here = desired.from(own.pose.position);
-        let begins = |ship| colregs::first_risk(own, &from_here, ship, horizon, &scenario.limits);
-        let on_the_path = encounter.risk.filter(|_| !known.passed);
-        let begins = || match known.track.is_empty() {
-            true => encounter.risk,
-            false => begins(target.ship()?).or(on_the_path),
-        };
-        encounter.risk = known.role.or_else(begins);
+        encounter.risk = known
+            .role
+            .or_else(|| new_role(scenario, target, known, encounter.risk));
         encounter.role = encounter.risk.map_or(Role::None, |risk| risk.role);
     }
     // explicit sets are used unchanged: own ship is a point
@@ -149,6 +143,27 @@ fn target_sets(scenario: &Scenario, index: usize, target: &Target) -> TargetSets
         }
         Motion::Sets(sets) => explicit(obstacle(target, sets.clone())),
     }
+}
+
+/// A role toward a target without one: where there is a risk on the desired course from own place.
+/// While a manoeuvre takes own ship off its path, it also keeps clear of a ship that it would meet
+/// there, or it would return across that ship's bow.
+fn new_role(
+    scenario: &Scenario,
+    target: &Target,
+    known: &TargetMemory,
+    on_the_path: Option<Risk>,
+) -> Option<Risk> {
+    if known.track.is_empty() {
+        return on_the_path;
+    }
+    let own = &scenario.own_ship;
+    let from_here = scenario.desired.from(own.pose.position);
+    let (horizon, limits) = (scenario.horizon, &scenario.limits);
+    let keeps_clear = |risk: &Risk| risk.role.duties().keeps_clear;
+    let is_off = scenario.memory.under_way.is_some() && !known.passed;
+    colregs::first_risk(own, &from_here, target.ship()?, horizon, limits)
+        .or(on_the_path.filter(|risk| is_off && keeps_clear(risk)))
 }
 
 /// The obstacle of a target's sets. An ellipsoid around polygons that do not change where the

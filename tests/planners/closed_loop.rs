@@ -418,7 +418,7 @@ fn a_target_at_rest_cannot_plan() {
 fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
     let text = campaigns::documents::fault("rules-foreseen-role.toml");
     let mut scenario = Scenario::parse(&text).expect("a scenario");
-    scenario.simulation.duration = Some(600.0);
+    scenario.simulation.duration = Some(800.0);
     let sailed = sail(scenario);
     let course = |time: u32| {
         sailed
@@ -430,4 +430,6 @@ fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
     // the ships are abreast after 525 s
     assert!((course(200) - course(300)).abs() > 0.4);
     assert!((300..515).all(|time| (course(time) - course(300)).abs() < 0.01));
+    // to port, back to the path
+    assert!((540..700).any(|time| course(time) - course(300) > 0.2));
 }

@@ -173,12 +173,11 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     plan_with(problem, proxies, clock, true)
 }
 
-/// Plans a problem whose conflicts are passed in one manoeuvre.
-fn plan_together(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
+fn plan_in_one_manoeuvre(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
     plan_with(problem, proxies, clock, false)
 }
 
-fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, divides: bool) -> Planned {
+fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: bool) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
     for proxy in proxies {
@@ -257,8 +256,8 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, divides: bool) 
     }
     let targets = by_obstacle(proxies).count();
     let budget = SearchBudget::of(targets, problem.search);
-    let motion = (&nominal_motion[..], &conflicts[..]);
-    let best = attempt(&context, budget, motion, divides, clock);
+    let apart = sequentially && sequential::are_several(&conflicts);
+    let best = attempt(&context, budget, &nominal_motion, &conflicts, apart, clock);
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
@@ -280,12 +279,13 @@ struct Attempt {
 }
 
 /// Searches the graph, refines its plan and the manoeuvres around the conflicts of the nominal
-/// motion, and resolves conflicts that are far apart one after another.
+/// motion, and resolves conflicts that are far `apart` one after another.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,
-    (nominal_motion, conflicts): (&[Segment], &[Conflict]),
-    divides: bool,
+    nominal_motion: &[Segment],
+    conflicts: &[Conflict],
+    apart: bool,
     clock: Clock,
 ) -> Attempt {
     let mut graph = Graph::new(context, nominal_motion, clock);
@@ -320,7 +320,7 @@ fn attempt(
     }
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    if !timed_out && divides && sequential::are_several(conflicts) {
+    if !timed_out && apart {
         let motion = sequential::resolve_sequentially(context, nominal_motion, clock);
         // without a motion, too, the time may have been up
         timed_out = clock.is_up();
