@@ -173,6 +173,40 @@ pub fn broken(line: &str, width: usize, indent: &str) -> String {
         .replace(BOUND, " ")
 }
 
+/// A time as minutes and seconds, such as `12:05`.
+pub(crate) fn clock(seconds: f64) -> String {
+    let sign = if seconds <= -0.5 { "-" } else { "" };
+    let whole = seconds.abs().round() as u64;
+    format!("{sign}{}:{:02}", whole / 60, whole % 60)
+}
+
+/// How a text writes times: in seconds, or as charts do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    not(feature = "recording"),
+    allow(dead_code, reason = "recordings have clocks")
+)]
+pub(crate) enum Times {
+    Seconds,
+    Clock,
+}
+
+impl Times {
+    /// A time, in seconds with so many decimals.
+    pub fn at(self, time: f64, decimals: usize) -> String {
+        let unit = if self == Self::Seconds { " s" } else { "" };
+        self.figure(time, decimals) + unit
+    }
+
+    /// The same without its unit.
+    pub fn figure(self, time: f64, decimals: usize) -> String {
+        match self {
+            Self::Seconds => format!("{time:.decimals$}"),
+            Self::Clock => clock(time),
+        }
+    }
+}
+
 /// Formats a speed, m/s, in knots with its unit.
 pub(crate) fn knots(speed: f64) -> String {
     format!("{} kn", knots_figure(speed))

@@ -396,7 +396,7 @@ pub struct Written {
     #[arg(requires = "figure", allow_hyphen_values = true)]
     pub times: Vec<f64>,
     /// Draw one chart for each of up to six times: those of --times, or four around the closest
-    /// approach
+    /// approaches
     #[arg(long, requires = "figure")]
     pub panels: bool,
     /// Write a report for a browser, index.html and its figures, into this folder

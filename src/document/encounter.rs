@@ -121,8 +121,24 @@ pub(crate) fn rules_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> S
     broken.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
+/// Own ship's role toward a target in the words of a chart: its roles along the motion, or the one
+/// on the desired trajectory in brackets. `None` without one.
+pub(crate) fn chart_role(along: &[RoleDocument], desired: &str) -> Option<String> {
+    let mut roles: Vec<&str> = along.iter().map(|state| state.role.as_str()).collect();
+    roles.dedup();
+    match roles.is_empty() {
+        false => Some(format!("own ship: {}", roles.join(", "))),
+        true => has_role(desired).then(|| format!("own ship: {desired} (desired)")),
+    }
+}
+
+/// True for the names of roles, not for those of other states.
+pub(crate) fn has_role(word: &str) -> bool {
+    !["none", "static"].contains(&word)
+}
+
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
-pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
+pub(crate) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
     let conduct = run.judged_compliance();

@@ -7,14 +7,14 @@ use std::collections::BTreeSet;
 use super::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
-    conduct_breaks, rules_in_words,
+    conduct_breaks, has_role, rules_in_words,
 };
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
 use crate::planner::SearchKind;
 use crate::text::{
-    counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
+    Times, counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
 };
 
 const LISTED: usize = 3;
@@ -66,7 +66,7 @@ fn skipped(plan: &PlanDocument, cost: &CostDocument) -> String {
 }
 
 /// Named lines of a plan. A line without a name continues the previous one.
-pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
+pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
     let search = SearchKind::WORDS
@@ -84,22 +84,22 @@ pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
         add("reason", reason.clone());
     }
     for relaxation in &plan.relaxations {
-        let (name, text) = relaxed(plan, relaxation);
+        let (name, text) = relaxed(plan, relaxation, times);
         add(name, text);
     }
     if let Some(memory) = &plan.memory {
         memory_lines(plan, memory, &mut add);
     }
     if let Some(escape) = &plan.escape {
-        add("stands on", stand_on(escape));
+        add("stands on", stand_on(escape, times));
     }
-    target_lines(plan, &mut add);
+    target_lines(plan, times, &mut add);
     if let Some(cost) = &plan.cost {
-        cost_lines(plan, cost, &mut add);
+        cost_lines(plan, cost, times, &mut add);
     }
     for violation in &plan.violations {
-        let time = violation.t_s.unwrap_or(f64::NAN);
-        add("violation", format!("{} (at {time:.1} s)", violation.what));
+        let time = times.at(violation.t_s.unwrap_or(f64::NAN), 1);
+        add("violation", format!("{} (at {time})", violation.what));
     }
     if let Some(control) = &plan.optimal_control {
         control_lines(plan, control, &mut add);
@@ -163,7 +163,11 @@ fn memory_lines(plan: &PlanDocument, memory: &MemoryDocument, add: &mut Add) {
     }
 }
 
-fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
+fn relaxed(
+    plan: &PlanDocument,
+    relaxation: &RelaxationDocument,
+    times: Times,
+) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
     let text = match relaxation.kind.as_str() {
         "domain" => format!(
@@ -172,7 +176,10 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
         ),
         "risk" => {
             let until = relaxation.until_s.map_or(String::new(), |time| {
-                format!("; the plan is clear of it only from {time:.1} s on")
+                format!(
+                    "; the plan is clear of it only from {} on",
+                    times.at(time, 1)
+                )
             });
             let text = format!("the set of '{target}', at a risk of up to {amount:.3}{until}");
             return ("enters", text);
@@ -191,11 +198,9 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
 }
 
 /// Time until which own ship holds course and speed, and the subsequent manoeuvre.
-fn stand_on(escape: &EscapeDocument) -> String {
-    let (until, escape_words) = (escape.held_until_s, escape_words(escape));
-    format!(
-        "course and speed are held until {until:.1} s, then there is a clear escape: {escape_words}"
-    )
+fn stand_on(escape: &EscapeDocument, times: Times) -> String {
+    let (until, escape_words) = (times.at(escape.held_until_s, 1), escape_words(escape));
+    format!("course and speed are held until {until}, then there is a clear escape: {escape_words}")
 }
 
 /// The manoeuvre with which own ship escapes.
@@ -209,7 +214,7 @@ pub(crate) fn escape_words(escape: &EscapeDocument) -> String {
 
 /// A block per target: own ship's role, the closest approach, the manoeuvre, and what the judges
 /// say of the plan. Targets without a role follow in one line each, the nearest first.
-fn target_lines(plan: &PlanDocument, add: &mut Add) {
+fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
     if plan.encounters.is_empty() {
         add("target", "none".to_owned());
     }
@@ -228,13 +233,13 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
     others.sort_by(by(|e| e.dcpa_m.or(e.undisturbed_dcpa_m)));
     for encounter in met {
         let EncounterDocument { target, role, .. } = encounter;
-        add("target", format!("'{target}': {}", roles(encounter)));
-        let apart = apart(plan, encounter, true);
+        add("target", format!("'{target}': {}", roles(encounter, times)));
+        let apart = apart(plan, encounter, true, times);
         if !apart.is_empty() {
             add("", apart);
         }
         if let Some(conduct) = &encounter.conduct {
-            conduct_lines(plan, conduct, add);
+            conduct_lines(plan, conduct, times, add);
         }
         if plan.compliance == "rules" && role == "none" && altered.contains(target) {
             let text = "gives no role: the rules do not restrict the alteration for it";
@@ -245,7 +250,7 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
     for encounter in others.into_iter().take(LISTED) {
         let text = [
             format!("'{}': no role", encounter.target),
-            apart(plan, encounter, false),
+            apart(plan, encounter, false, times),
         ];
         let text: Vec<String> = text.into_iter().filter(|part| !part.is_empty()).collect();
         add("target", text.join("; "));
@@ -259,7 +264,7 @@ fn target_lines(plan: &PlanDocument, add: &mut Add) {
 }
 
 /// Own ship's role on the desired trajectory, and its roles along the plan where these differ.
-fn roles(encounter: &EncounterDocument) -> String {
+fn roles(encounter: &EncounterDocument, times: Times) -> String {
     let role = match encounter.role.as_str() {
         "none" => "no role".to_owned(),
         "static" => "at rest, so without a role".to_owned(),
@@ -270,20 +275,28 @@ fn roles(encounter: &EncounterDocument) -> String {
         return role;
     };
     let along = conduct.roles.iter();
-    let along = along.map(|r| format!("{} from {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
+    let along = along.map(|r| {
+        let from = times.figure(r.from_s, 0);
+        format!("{} from {from} to {}", r.role, times.at(r.until_s, 0))
+    });
     let along = format!("own ship is {}", along.collect::<Vec<_>>().join(", "));
     let first = conduct.roles.first().map(|role| role.role.as_str());
     match first {
         Some(first) if first == encounter.role => along,
         Some(_) => format!("{role} on the desired trajectory; on the plan {along}"),
-        None if ["none", "static"].contains(&encounter.role.as_str()) => role,
+        None if !has_role(&encounter.role) => role,
         None => format!("{role} on the desired trajectory, no role on the plan"),
     }
 }
 
 /// The closest approach of the plan, and with `desired` that of the desired trajectory, for the
 /// expected motion of the target.
-fn apart(plan: &PlanDocument, encounter: &EncounterDocument, desired: bool) -> String {
+fn apart(
+    plan: &PlanDocument,
+    encounter: &EncounterDocument,
+    desired: bool,
+    times: Times,
+) -> String {
     let is_set = is_set(plan, &encounter.target);
     let mut parts = Vec::new();
     if let (Some(distance), Some(time)) = (encounter.dcpa_m, encounter.tcpa_s) {
@@ -293,17 +306,15 @@ fn apart(plan: &PlanDocument, encounter: &EncounterDocument, desired: bool) -> S
             (Some(side), Some(true)) => format!(", to {side}, own ship crosses astern"),
             (Some(side), Some(false)) => format!(", to {side}, own ship crosses ahead"),
         };
-        let distance = distance_words(distance, is_set);
-        parts.push(format!("closest: {distance} at {time:.0} s{side}"));
+        let (distance, time) = (distance_words(distance, is_set), times.at(time, 0));
+        parts.push(format!("closest: {distance} at {time}{side}"));
     }
     let undisturbed = encounter
         .undisturbed_dcpa_m
         .zip(encounter.undisturbed_tcpa_s);
     if let Some((distance, time)) = undisturbed.filter(|_| desired || parts.is_empty()) {
-        let distance = distance_words(distance, is_set);
-        parts.push(format!(
-            "on the desired trajectory {distance} at {time:.0} s"
-        ));
+        let (distance, time) = (distance_words(distance, is_set), times.at(time, 0));
+        parts.push(format!("on the desired trajectory {distance} at {time}"));
     }
     parts.join("; ")
 }
@@ -328,16 +339,17 @@ pub(super) fn is_set(plan: &PlanDocument, name: &str) -> bool {
 }
 
 /// The manoeuvre, the rules that own ship breaks toward a target, and its scores.
-fn conduct_lines(plan: &PlanDocument, conduct: &ConductDocument, add: &mut Add) {
+fn conduct_lines(plan: &PlanDocument, conduct: &ConductDocument, times: Times, add: &mut Add) {
     if let Some(manoeuvre) = &conduct.manoeuvre {
-        add("", manoeuvre_text(manoeuvre));
+        add("", manoeuvre_text(manoeuvre, times));
     }
     for violation in &conduct.violations {
-        let (rule, time, what) = (&violation.rule, violation.t_s, &violation.what);
-        add("", format!("breaks {rule} at {time:.0} s: {what}"));
+        let (rule, what) = (&violation.rule, &violation.what);
+        let time = times.at(violation.t_s, 0);
+        add("", format!("breaks {rule} at {time}: {what}"));
     }
     for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
-        add("", monitor_text(plan, monitor));
+        add("", monitor_text(plan, monitor, times));
     }
     // without a role nobody asks for the scores
     let scores = conduct.scores.iter();
@@ -364,7 +376,7 @@ fn altered_for(plan: &PlanDocument) -> BTreeSet<String> {
 
 /// How own ship violated a monitor, when, and by how much. The limits are named if the profile
 /// is a published one.
-fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
+fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument, times: Times) -> String {
     let published = Thresholds::named(&plan.thresholds);
     let degrees = |limit: fn(&Thresholds) -> f64| {
         published.map(|t| format!("{:.0}°", deg_from_radians(limit(t))))
@@ -394,13 +406,13 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument) -> String {
         "deg" => format!(", missed by {:.0}°", short.ceil()),
         unit => format!(", missed by {:.0} {unit}", short.ceil()),
     };
-    let time = monitor.t_s.unwrap_or(f64::NAN);
+    let time = times.at(monitor.t_s.unwrap_or(f64::NAN), 0);
     let name = rules_in_words([monitor.monitor.as_str()]);
-    format!("breaks {name} at {time:.0} s: {what}{short}")
+    format!("breaks {name} at {time}: {what}{short}")
 }
 
 /// The manoeuvre as a navigator looks at it.
-fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
+fn manoeuvre_text(manoeuvre: &ManoeuvreDocument, times: Times) -> String {
     if manoeuvre.lead_s.is_none() && manoeuvre.turns + manoeuvre.speed_changes == 0 {
         return "no alteration for it".to_owned();
     }
@@ -408,8 +420,8 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
         None => "no alteration".to_owned(),
         // without a negative zero
         Some(lead) => {
-            let lead = lead.round() + 0.0;
-            format!("first alteration {lead} s before the closest approach on the course before it")
+            let lead = times.at(lead.round() + 0.0, 0);
+            format!("first alteration {lead} before the closest approach on the course before it")
         }
     };
     let turns = counted(manoeuvre.turns, "turn");
@@ -426,18 +438,18 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument) -> String {
     }
 }
 
-fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
+fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut Add) {
     let none = || "none".to_owned();
     let departure = plan
         .departure_of_motion()
-        .map(|departure| departure.to_string());
+        .map(|departure| departure.words(times));
     add("manoeuvre", departure.unwrap_or_else(none));
     let error = square_metres(cost.space_time_error_m2);
     let by_length = cost.space_time_error_arc_length_m2;
     let by_length = square_metres(by_length.unwrap_or(f64::NAN));
     add("J", format!("{error} m² ({by_length} m² by arc length)"));
-    let (lasts, length) = (tenths(cost.duration_s), significant(cost.length_m));
-    let way = format!("{lasts} s and {length} m");
+    let (lasts, length) = (times.at(cost.duration_s, 1), significant(cost.length_m));
+    let way = format!("{lasts} and {length} m");
     match cost.delay_s {
         Some(delay) => {
             let delay = signed(delay);
@@ -445,15 +457,13 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         }
         None if plan.optimal_control.is_some() => {
             add("horizon", format!("{way}; no arrival is asked for"));
-            let until = cost.space_time_error_until_s;
-            add("", format!("J is counted until {until:.1} s"));
+            let until = times.at(cost.space_time_error_until_s, 1);
+            add("", format!("J is counted until {until}"));
         }
         None => {
             add("delay", format!("does not arrive ({way} at the horizon)"));
-            add(
-                "",
-                format!("J is counted until {:.1} s", cost.space_time_error_until_s),
-            );
+            let until = times.at(cost.space_time_error_until_s, 1);
+            add("", format!("J is counted until {until}"));
         }
     }
     let skipped = skipped(plan, cost);
@@ -492,12 +502,12 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, add: &mut Add) {
         add("land", format!("{} m off", tenths(distance)));
     }
     if !plan.encounters.is_empty() {
-        add("risk", risk(plan, cost.max_risk));
+        add("risk", risk(plan, cost.max_risk, times));
     }
 }
 
 /// Largest risk, with its targets and time.
-fn risk(plan: &PlanDocument, largest: f64) -> String {
+fn risk(plan: &PlanDocument, largest: f64, times: Times) -> String {
     let mut text = format!("{largest:.3} at most");
     if plan.max_risk > 0.0 {
         text += &format!(" ({} accepted)", rounded(plan.max_risk));
@@ -505,7 +515,8 @@ fn risk(plan: &PlanDocument, largest: f64) -> String {
     for encounter in &plan.encounters {
         if let (Some(risk), Some(time)) = (encounter.max_risk, encounter.max_risk_t_s) {
             let name = &encounter.target;
-            text += &format!(", {risk:.3} with '{name}' at {time:.0} s");
+            let time = times.at(time, 0);
+            text += &format!(", {risk:.3} with '{name}' at {time}");
         }
     }
     text
@@ -608,7 +619,7 @@ mod tests {
                 unit: unit.to_owned(),
                 t_s: Some(40.4),
             };
-            monitor_text(&plan, &monitor)
+            monitor_text(&plan, &monitor, Times::Seconds)
         };
         let name = &Thresholds::standard().name;
         let late = format!(
@@ -641,7 +652,7 @@ mod tests {
         let run = pipeline::run(Scenario::parse(text).expect("valid"));
         let mut plan = PlanDocument::of(&run);
         let scores = |plan: &PlanDocument| {
-            let mut lines = plan_lines(plan).into_iter();
+            let mut lines = plan_lines(plan, Times::Seconds).into_iter();
             lines.find_map(|(_, line)| Some(line.split_once("scores: ")?.1.to_owned()))
         };
         let conduct = |plan: &mut PlanDocument, score| {

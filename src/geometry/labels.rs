@@ -10,8 +10,14 @@ use crate::frame::{Vector, direction, to_port};
 const AWAY: [f64; 6] = [7.0, 14.0, 24.0, 40.0, 60.0, 85.0];
 const WITHOUT_LEADER: f64 = 14.0;
 
+/// Length of a short line of a text, as a fraction of the longest.
+const SHORT_LINE: f64 = 0.4;
+
+/// Points along a leader, as fractions of it, that keep off texts; the second is its middle.
+const LEADER: [f64; 5] = [0.3, 0.5, 0.65, 0.8, 0.95];
+
 /// Pixels that a label goes farther to keep off the frame, a text or ship, a filled area, a line.
-const COSTS: [f64; 4] = [1000.0, 300.0, 60.0, 28.0];
+const COSTS: [f64; 4] = [1000.0, 300.0, 60.0, 40.0];
 
 /// Cost in pixels of the next best position.
 const NEXT: f64 = 20.0;
@@ -107,7 +113,11 @@ impl Drawn {
             let off = Vector::new(side.x * (half.x + far), side.y * (half.y + far));
             let center = at + off * pixel;
             let window = Window::new(center - half * pixel, center + half * pixel);
-            let leader = [at, at.sup(&window.low).inf(&window.high)];
+            // lines of a text differ in length: from above and below a leader meets the middle
+            let is_beside = window.low.y <= at.y && at.y <= window.high.y;
+            let part = if is_beside { 1.0 } else { SHORT_LINE };
+            let reach = Vector::new(part * half.x, half.y) * pixel;
+            let leader = [at, at.sup(&(center - reach)).inf(&(center + reach))];
             Place {
                 index,
                 window,
@@ -130,14 +140,16 @@ impl Drawn {
                 cost += STAY;
             }
             // a leader along a line or through a text is not seen
-            let middle = place.leader.map(|[at, end]| 0.5 * (at + end));
-            let middle = middle.map(|middle| Window::at(middle).grown(2.0 * pixel));
+            let leader = place.leader.map(|[at, end]| {
+                let along = LEADER.map(|part| at + part * (end - at));
+                along.map(|point| Window::at(point).grown(2.0 * pixel))
+            });
             for (kind, weight) in COSTS.into_iter().enumerate() {
                 // most places are dearer than the best one long before all is counted
                 if !(cost < least) {
                     break;
                 }
-                let count = self.covered(kind, view, &place.window, middle.as_ref());
+                let count = self.covered(kind, view, &place.window, leader.as_ref());
                 if matches!(needed, Needed::OffFirst(kinds) if kind < kinds && count > 0) {
                     cost = f64::INFINITY;
                 }
@@ -150,9 +162,15 @@ impl Drawn {
         best
     }
 
-    /// How much of a kind of [`COSTS`] a label and the middle of its leader cover: the frame, texts
-    /// and ships, filled areas, lines.
-    fn covered(&self, kind: usize, view: Window, place: &Window, middle: Option<&Window>) -> usize {
+    /// How much of a kind of [`COSTS`] a label and its leader cover: the frame, texts and ships,
+    /// filled areas, lines.
+    fn covered(
+        &self,
+        kind: usize,
+        view: Window,
+        place: &Window,
+        leader: Option<&[Window; LEADER.len()]>,
+    ) -> usize {
         let meets = |place: &Window| self.boxes.iter().filter(|other| other.meets(place)).count();
         let crossed = |place: &Window| {
             let lines = self.lines.iter().filter(|(around, _)| around.meets(place));
@@ -167,8 +185,11 @@ impl Drawn {
                 ends.filter(|corner| !view.contains(*corner)).count()
             }
             1 => meets(place),
-            2 => self.filled.iter().filter(filled).count() + middle.map_or(0, meets),
-            _ => crossed(place) + middle.map_or(0, crossed),
+            2 => {
+                let most = leader.into_iter().flatten().map(meets).max();
+                self.filled.iter().filter(filled).count() + most.unwrap_or(0)
+            }
+            _ => crossed(place) + leader.map_or(0, |points| crossed(&points[1])),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::document::{
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
-use crate::text::{counted, knots_figure, printable, signed, square_metres, tenths};
+use crate::text::{Times, counted, knots_figure, printable, signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
 const LISTED: usize = 3;
@@ -151,7 +151,7 @@ pub fn plan_text(run: &Run) -> String {
 
 /// [`plan_text`] for a document.
 pub fn plan_document_text(plan: &PlanDocument, display: Display) -> String {
-    let lines = plan_lines(plan).into_iter();
+    let lines = plan_lines(plan, Times::Seconds).into_iter();
     let aligned = lines.map(|(name, value)| format!("  {name:<13}{value}"));
     let all: Vec<String> = std::iter::once(painted_headline(plan, display))
         .chain(aligned)

@@ -7,13 +7,13 @@ use crate::document::{
     ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
     SimulationDocument, conduct_breaks, rules_in_words,
 };
-use crate::text::{counted, tenths, to_side};
+use crate::text::{Times, counted, tenths, to_side};
 
 pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.
 pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> String {
-    let headline = headline(simulation);
+    let headline = headline(simulation, Times::Seconds);
     let (title, rest) = headline.split_at(simulation.scenario.len() + 2);
     let (outcome, end) = rest.rsplit_once("; ").unwrap_or((rest, ""));
     let tone = match simulation.safe && !simulation.contact {
@@ -23,15 +23,15 @@ pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> Str
     let outcome = painted((outcome.to_owned(), tone), display);
     let mut blocks = vec![format!("{title}{outcome}; {end}")];
     if !simulation.targets.is_empty() {
-        blocks.push(targets_grid(&simulation.targets).text(display));
+        blocks.push(targets_grid(&simulation.targets, Times::Seconds).text(display));
     }
-    let lines = conduct_lines(simulation).into_iter();
+    let lines = conduct_lines(simulation, Times::Seconds).into_iter();
     let lines: Vec<String> = lines
         .map(|(name, text)| format!("{name}: {text}"))
         .collect();
     blocks.push(lines.join("\n"));
     if !simulation.alarms.is_empty() {
-        let alarms = alarm_lines(simulation).into_iter();
+        let alarms = alarm_lines(simulation, Times::Seconds).into_iter();
         let lines: Vec<String> = alarms
             .map(|line| match line.starts_with("and ") {
                 true => line,
@@ -43,7 +43,8 @@ pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> Str
     blocks.join("\n\n")
 }
 
-/// Formats the same as markdown, for a pane that is narrower than the table in a terminal.
+/// Formats the same as markdown, with times as on a chart, for a pane that is narrower than the table in a
+/// terminal.
 pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
     let is_judged = simulation.targets.iter().any(|t| t.set_m.is_none());
     let breaks = match &simulation.conduct.breaks[..] {
@@ -51,14 +52,14 @@ pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
         [] => "; breaks no rule".to_owned(),
         broken => format!("; breaks {}", in_words(broken)),
     };
-    let headline = headline(simulation) + &breaks;
+    let headline = headline(simulation, Times::Clock) + &breaks;
     let mut blocks = vec![format!("### {}", in_cell(&headline))];
     if !simulation.targets.is_empty() {
-        blocks.push(targets_grid(&simulation.targets).markdown());
+        blocks.push(targets_grid(&simulation.targets, Times::Clock).markdown());
     }
-    let lines = conduct_lines(simulation).into_iter();
+    let lines = conduct_lines(simulation, Times::Clock).into_iter();
     let lines = lines.map(|(name, text)| format!("- **{name}**: {}", in_cell(&text)));
-    let alarms = alarm_lines(simulation).into_iter();
+    let alarms = alarm_lines(simulation, Times::Clock).into_iter();
     let alarms = alarms.map(|line| format!("- **Alarm**: {}", in_cell(&line)));
     blocks.push(lines.chain(alarms).collect::<Vec<_>>().join("\n"));
     blocks.join("\n\n")
@@ -89,7 +90,7 @@ pub fn simulations_line(simulations: &[SimulationDocument], failed: usize) -> St
 }
 
 /// Formats whether ships met, and whether own ship arrived.
-pub(super) fn headline(simulation: &SimulationDocument) -> String {
+pub(super) fn headline(simulation: &SimulationDocument, times: Times) -> String {
     let met = (simulation.targets.iter())
         .filter(|target| target.contact_t_s.is_some())
         .map(|target| target.name.as_str());
@@ -116,8 +117,9 @@ pub(super) fn headline(simulation: &SimulationDocument) -> String {
         (false, false) => "not arrived",
     };
     format!(
-        "{}: {outcome}{broken}; {arrived} after {:.0} s",
-        simulation.scenario, simulation.duration_s
+        "{}: {outcome}{broken}; {arrived} after {}",
+        simulation.scenario,
+        times.at(simulation.duration_s, 0)
     )
 }
 
@@ -139,7 +141,7 @@ fn manoeuvres(sailed: &SailedDocument) -> String {
 }
 
 /// A row per target: captain's figures, and the rules that own ship breaks toward it.
-pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
+pub(super) fn targets_grid(targets: &[SimulatedTargetDocument], times: Times) -> Grid {
     let rows = targets.iter().map(|target| {
         let roles = target.conduct.roles.iter();
         let roles: Vec<&str> = roles.map(|r| r.role.as_str()).collect();
@@ -154,19 +156,29 @@ pub(super) fn targets_grid(targets: &[SimulatedTargetDocument]) -> Grid {
             plain(target.behaviour.clone()),
             or_dash((!roles.is_empty()).then(|| roles.join("\n"))),
             clearance,
-            plain(format!("{:.0}", target.least_clearance_t_s)),
-            or_dash(lead.map(|lead| format!("{lead:.0}"))),
+            plain(times.figure(target.least_clearance_t_s, 0)),
+            or_dash(lead.map(|lead| times.figure(lead, 0))),
             plain(target.outside_sets.to_string()),
             rules_broken(Some(broken)),
         ]
     });
-    let header = "target, behaviour, own\nrole, clearance\n[m], at\n[s], acts before\n[s], \
-                  outside\nits set, breaks";
+    let header = match times {
+        Times::Seconds => {
+            "target, behaviour, own\nrole, clearance\n[m], at\n[s], acts before\n[s], \
+             outside\nits set, breaks"
+        }
+        Times::Clock => {
+            "target, behaviour, own\nrole, clearance\n[m], at, acts before, outside\nits set, breaks"
+        }
+    };
     Grid::new(header, 3..7, rows).breaking("breaks", 9)
 }
 
 /// Named lines of what was sailed and of the plans.
-pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static str, String)> {
+pub(super) fn conduct_lines(
+    simulation: &SimulationDocument,
+    times: Times,
+) -> Vec<(&'static str, String)> {
     let (sailed, timing) = (&simulation.conduct, &simulation.timing);
     let first = sailed.first_plan_cost_m2;
     let share = first
@@ -183,9 +195,9 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
     let land = simulation.land.as_ref().map(|land| {
         let text = match (land.least_m, land.grounded) {
             (Some(metres), _) => format!(
-                "{} m off at least, at {:.0} s",
+                "{} m off at least, at {}",
                 tenths(metres),
-                land.least_t_s
+                times.at(land.least_t_s, 0)
             ),
             (None, true) => "touched".to_owned(),
             (None, false) => "none in the map".to_owned(),
@@ -219,9 +231,9 @@ pub(super) fn conduct_lines(simulation: &SimulationDocument) -> Vec<(&'static st
         (
             "Off the plan",
             format!(
-                "at most {} m, at {:.0} s, {} the tracking margin",
+                "at most {} m, at {}, {} the tracking margin",
                 tenths(sailed.largest_off_plan_m),
-                sailed.largest_off_plan_t_s,
+                times.at(sailed.largest_off_plan_t_s, 0),
                 match sailed.within_tracking_margin {
                     true => "within",
                     false => "BEYOND",
@@ -336,13 +348,13 @@ fn turn_text(degrees: f64) -> String {
 const LISTED: usize = 12;
 
 /// Lines of the first alarms, and the number of the others.
-pub(super) fn alarm_lines(simulation: &SimulationDocument) -> Vec<String> {
+pub(super) fn alarm_lines(simulation: &SimulationDocument, times: Times) -> Vec<String> {
     let alarms = &simulation.alarms;
     let mut lines: Vec<String> = (alarms.iter().take(LISTED))
         .map(|alarm| {
             let target = alarm.target.as_ref();
             let target = target.map_or(String::new(), |target| format!(": {target}"));
-            format!("{:.0} s: {}{target}", alarm.t_s, alarm.alarm)
+            format!("{}: {}{target}", times.at(alarm.t_s, 0), alarm.alarm)
         })
         .collect();
     if alarms.len() > LISTED {
@@ -353,10 +365,11 @@ pub(super) fn alarm_lines(simulation: &SimulationDocument) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{simulation_markdown, simulation_text};
+    use super::{conduct_lines, headline, simulation_markdown, simulation_text};
     use crate::report::Display;
     use crate::scenario::Scenario;
     use crate::simulation::Simulation;
+    use crate::text::Times;
 
     #[test]
     fn markdown_says_what_the_text_says() {
@@ -364,16 +377,17 @@ mod tests {
         let mut simulation = Simulation::new(scenario, false).expect("a closed loop");
         simulation.step();
         let document = simulation.record();
-        let text = simulation_text(&document, Display::default());
-        let (title, _) = text.split_once('\n').expect("several lines");
         let markdown = simulation_markdown(&document);
+        let title = headline(&document, Times::Clock);
         let headline = format!("### {title}; breaks no rule\n\n| target | ");
         assert!(markdown.starts_with(&headline), "{markdown}");
-        let named = text.lines().filter_map(|line| line.split_once(": "));
-        let named: Vec<_> = named
-            .skip(1)
-            .filter(|(n, _)| !n.starts_with("alarm"))
-            .collect();
+        let named = conduct_lines(&document, Times::Clock);
+        let text = simulation_text(&document, Display::default());
+        assert!(
+            named
+                .iter()
+                .all(|(name, _)| text.contains(&format!("\n{name}: ")))
+        );
         assert!(named.len() >= 4);
         for (name, said) in named {
             assert!(

@@ -260,6 +260,43 @@ fn panels_show_one_time_each() {
     }
 }
 
+/// Each target is drawn at its own closest approach, with own ship at the same time, and each of them
+/// has a panel.
+#[test]
+fn every_encounter_is_drawn_at_its_closest_approach() {
+    let folder = Folder::new();
+    let text = include_str!("../../scenarios/sound/kronborg.toml");
+    let long = "the ferry with a name of many words";
+    let text = text
+        .replace("../../", concat!(env!("CARGO_MANIFEST_DIR"), "/"))
+        .replace("\"ferry\"", &format!("\"{long}\""));
+    let (scenario, file) = (folder.write("a.toml", &text), folder.at("a.svg"));
+    let draw = |options: &str| {
+        let asked = format!("plan {scenario} --quiet --figure {file} {options}");
+        run(&asked).success();
+        fs::read_to_string(&file).expect("written")
+    };
+    let svg = draw("");
+    let times = ["8:27", "11:46", "12:26"];
+    for time in times {
+        assert_eq!(svg.matches(&format!(" m, {time}<")).count(), 1, "{time}");
+    }
+    // the dots on own ship, the thick line with its key, and the thin ones
+    assert_eq!(svg.matches("r=\"2.6\"").count(), 3);
+    let lines = |width: &str| format!("stroke=\"#b3001b\" stroke-width=\"{width}\"");
+    let lines = ["1.8", "0.8"].map(|width| svg.matches(&lines(width)).count());
+    assert_eq!(lines, [2, 2]);
+    for role in ["give-way", "port-to-port (desired)"] {
+        assert!(svg.contains(&format!(">own ship: {role}<")), "{role}");
+    }
+    assert!(svg.contains(">the ferry with a name<") || svg.contains(">the ferry with a name of<"));
+    assert!(!svg.contains('…'));
+    let svg = draw("--panels");
+    for title in ["0:00"].into_iter().chain(times) {
+        assert!(svg.contains(&format!(">{title}<")), "{title}");
+    }
+}
+
 /// Methods with the same motions have one curve and one name.
 #[test]
 fn equal_motions_of_a_comparison_share_a_curve() {
@@ -273,7 +310,7 @@ fn equal_motions_of_a_comparison_share_a_curve() {
     for (text, count) in [
         (">space-time, A* and Dijkstra<", 1),
         (">space-time, Dijkstra<", 0),
-        (">sets at the closest approach<", 1),
+        (">sets at their closest approach<", 1),
     ] {
         assert_eq!(svg.matches(text).count(), count, "{text}");
     }

@@ -10,7 +10,7 @@ use crate::document::parts::SampleDocument;
 use crate::frame::{
     Side, Vector, cross, deg_from_radians, heading_from_course_deg, heading_of, wrap,
 };
-use crate::text::{knots, significant};
+use crate::text::{Times, knots, significant};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 
 /// Degrees: a smaller departure from the desired course is none.
@@ -82,17 +82,23 @@ impl Departure {
             }
         }
     }
+
+    /// [`Departure::brief`], and when or where.
+    pub(crate) fn words(&self, times: Times) -> String {
+        let place = match *self {
+            Self::Course { from_s, .. } | Self::Speed { from_s, .. } => {
+                format!("from {}", times.at(from_s, 0))
+            }
+            Self::Waits { at_m, .. } => format!("at {} m", significant(at_m)),
+        };
+        format!("{} {place}", self.brief())
+    }
 }
 
 impl std::fmt::Display for Departure {
     /// [`Departure::brief`], and when or where.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let place = match *self {
-            Self::Course { from_s, .. } => format!("from {from_s:.0} s"),
-            Self::Waits { at_m, .. } => format!("at {} m", significant(at_m)),
-            Self::Speed { from_s, .. } => format!("from {from_s:.0} s"),
-        };
-        write!(f, "{} {place}", self.brief())
+        f.write_str(&self.words(Times::Seconds))
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Canvas, Palette, cursor_times, with_sea};
 use crate::colregs::{self, SteadyShip};
 use crate::document::{
     self, EncounterDocument, PlanDocument, RoleDocument, SampleDocument, SimulatedTargetDocument,
-    SimulationDocument,
+    SimulationDocument, has_role,
 };
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::{ConvexPolygon, Window};
@@ -137,6 +137,14 @@ impl<'a> ClosedLoop<'a> {
         all
     }
 
+    /// Own ship's role toward a target on the desired trajectory, the first that a plan has.
+    pub fn desired_role(&self, target: &str) -> &'a str {
+        let met = self.plans.iter().flat_map(|plan| plan.encounters);
+        let met = met.filter(|met| met.target == target);
+        let mut roles = met.map(|met| met.role.as_str());
+        roles.find(|role| has_role(role)).unwrap_or("none")
+    }
+
     /// Metres between own ship and where its plan has it; at the start of a plan, where the one
     /// before has it.
     pub fn off_plan(&self, time: f64) -> Option<f64> {
@@ -150,9 +158,7 @@ impl<'a> ClosedLoop<'a> {
         let targets = self.simulation.targets.iter();
         let least = targets.filter_map(|target| target.least_clearance_m);
         let least = least.reduce(f64::min)?;
-        let own = &self.canvas.scenario.own_ship;
-        let near = (10.0 * own.safety_margin).max(4.0 * own.hull.length);
-        Some([least.min(0.0), near.max(4.0 * least)])
+        Some(self.canvas.near(least))
     }
 
     /// Times at which the hulls come nearer than before, with the distance in metres.

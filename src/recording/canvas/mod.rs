@@ -29,6 +29,9 @@ use crate::target::Target;
 /// Least time between two rows of what moves, seconds.
 const CURSOR_STEP_S: f64 = 2.0;
 
+/// Plots of distances end at this many safety margins, or beyond the least distance.
+const NEAR: f64 = 5.0;
+
 /// Seconds by which an arrival on schedule may differ from its time.
 const ROUNDING_S: f64 = 1e-6;
 const CURSOR_TIMES: f64 = 120.0;
@@ -137,6 +140,16 @@ impl<'a> Canvas<'a> {
         (size.x / self.pane[0]).max(size.y / self.pane[1])
     }
 
+    /// The distances that matter beside the least one: from 0 to a round number of metres.
+    pub fn near(&self, least: f64) -> [f64; 2] {
+        let own = &self.scenario.own_ship;
+        let near = [NEAR * own.safety_margin, 2.0 * own.hull.length, 2.0 * least];
+        let near = near.into_iter().filter(|metres| metres.is_finite());
+        let near = near.fold(0.0, f64::max);
+        let step = 10f64.powf(near.log10().floor() - 1.0);
+        [least.min(0.0), (near / step).ceil() * step]
+    }
+
     /// The point of the space-time volume, metres.
     pub fn lifted(&self, position: Vector, time: f64) -> [f32; 3] {
         let [east, north] = flat(position);
@@ -172,13 +185,6 @@ const ROUND_S: [f64; 12] = [
 pub fn round_down_time(seconds: f64) -> f64 {
     let fits = ROUND_S.into_iter().rev().find(|step| *step <= seconds);
     fits.unwrap_or_else(|| round_down(seconds))
-}
-
-/// A time as minutes and seconds, such as `12:05`.
-pub fn clock(seconds: f64) -> String {
-    let sign = if seconds <= -0.5 { "-" } else { "" };
-    let whole = seconds.abs().round() as u64;
-    format!("{sign}{}:{:02}", whole / 60, whole % 60)
 }
 
 fn one_digit(value: f64) -> f64 {

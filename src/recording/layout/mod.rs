@@ -36,8 +36,14 @@ use crate::recording::{
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
-/// Lays out a run with so many lanes of rules, and with or without legs.
-pub fn of_run(model: &ViewModel, lanes: usize, has_legs: bool) -> Logged<Recorder> {
+/// Lays out a run with so many lanes of rules, with or without legs, and with the least clearance
+/// and margin in metres.
+pub fn of_run(
+    model: &ViewModel,
+    lanes: usize,
+    has_legs: bool,
+    [clearance, margin]: [f64; 2],
+) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let mut chart = chart_view(to, model)?;
@@ -61,12 +67,10 @@ pub fn of_run(model: &ViewModel, lanes: usize, has_legs: bool) -> Logged<Recorde
     left_shares.push(0.34);
     let left = to.below(&left, left_shares)?;
     let volume = volume_view(to, model, path(&[VOLUME, "explored", BLOCKED]))?;
-    let mut plots = vec![
-        ("Clearance between hulls (m)", CLEARANCE),
-        ("Margin to the sets (m)", MARGIN),
-        ("Speed (kn)", SPEED),
-        ("Course (deg)", COURSE),
-    ];
+    let [_, top] = model.near(clearance);
+    let names = ["Hull clearance", "Set margin"].map(|what| format!("{what} up to {top} m"));
+    let distances = [(&*names[0], CLEARANCE), (&*names[1], MARGIN)];
+    let mut plots = vec![("Speed (kn)", SPEED), ("Course (deg)", COURSE)];
     if curves::has_risk(model) {
         plots.push(("Risk", RISK));
     }
@@ -79,9 +83,17 @@ pub fn of_run(model: &ViewModel, lanes: usize, has_legs: bool) -> Logged<Recorde
     }
     let velocities = velocity_view(to, model)?;
     let volume = to.tabs(&[volume, velocities])?;
+    let distances = plot_views(to, model, &distances, legend_room(model))?;
+    for (plot, least) in distances.iter().zip([clearance, margin]) {
+        let axis = ScalarAxis::new().with_range([least.min(0.0).max(-top), top]);
+        to.set(plot, "ScalarAxis", &axis)?;
+    }
     let small = plot_views(to, model, &plots, 0.7)?;
-    let small = to.grid(&small, 2)?;
-    let right = to.below(&[volume, small], [0.5, 0.5])?;
+    let rows = small.len().div_ceil(2) as f32;
+    let mut right = vec![volume];
+    right.extend(distances);
+    right.push(to.grid(&small, 2)?);
+    let right = to.below(&right, [0.4, 0.22, 0.19, 0.19 * rows])?;
     let root = to.beside(&[left, right], [0.54, 0.46])?;
     layout.finished(&root, &time_panel(model))
 }
@@ -131,14 +143,18 @@ pub fn of_simulation(model: &ClosedLoop, lanes: usize) -> Logged<Recorder> {
     shares.push(0.22);
     let left = to.below(&left, shares)?;
     let mut right = vec![to.view::<TextDocumentView>("Summary", SUMMARY)?];
+    let range = model.near_clearances();
+    let hulls = range.map_or(String::new(), |[_, top]| {
+        format!("Distance of the hulls up to {top} m")
+    });
     let plots = [
-        ("Distance of the hulls (m)", CLEARANCE),
+        (&*hulls, CLEARANCE),
         ("Distance off the plan (m)", OFF_PLAN),
         ("Time of planning (ms)", PLANNING),
     ];
     let first = usize::from(model.simulation.targets.is_empty());
-    let plots = plot_views(to, canvas, &plots[first..], 0.3)?;
-    if let Some(range) = model.near_clearances() {
+    let plots = plot_views(to, canvas, &plots[first..], legend_room(canvas))?;
+    if let Some(range) = range {
         to.set(
             &plots[0],
             "ScalarAxis",
@@ -231,6 +247,16 @@ fn volume_view(to: &mut Panes, canvas: &Canvas, hidden: EntityPath) -> Logged<Pa
     to.set(&volume, "Background", &plain_background())?;
     hide(to, &volume, hidden)?;
     Ok(volume)
+}
+
+/// Room for a legend with the names of the targets, in a plot as wide as half the window of
+/// 1280 × 800, as a part of the time.
+fn legend_room(canvas: &Canvas) -> f64 {
+    let names = canvas.scenario.targets.iter();
+    let letters = names.map(|target| target.name.chars().count()).max();
+    let pixels = 44.0 + 6.4 * letters.unwrap_or(0).max("safety margin".len()) as f64;
+    let share = (pixels / 520.0).min(0.6);
+    share / (1.0 - share)
 }
 
 /// Plots over the whole time, by name and entity, with room for their legends beside the

@@ -8,12 +8,13 @@ use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Canvas, Labels, Lines, ShownMotion, ViewModel, clock, desired_leg, flat, labelled, round_down,
+    Canvas, Labels, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
     round_down_time,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
 use crate::target::Target;
+use crate::text::clock;
 use crate::trajectory::{Cubic, Segment, Trajectory};
 
 /// Turn between two drawn points of an arc, radians.

@@ -9,10 +9,10 @@ use super::curves::{self, CLEARANCE, Series};
 use super::rules::{self, Judged};
 use super::ships::{self, Sighted, outline};
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{AssumedTarget, ClosedLoop, Labels, clock, flat, labelled, style};
+use crate::recording::canvas::{AssumedTarget, ClosedLoop, Labels, flat, labelled, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
-use crate::text::tenths;
+use crate::text::{clock, tenths};
 
 pub const OFF_PLAN: &str = "curves/off_plan_m";
 pub const PLANNING: &str = "curves/planning_ms";
@@ -49,7 +49,8 @@ pub fn judged<'a>(model: &ClosedLoop<'a>) -> Vec<Judged<'a>> {
         target: &target.name,
         color: style::target(index),
         roles: model.roles(&target.name),
-        conduct: &target.conduct,
+        desired: model.desired_role(&target.name),
+        conduct: Some(&target.conduct),
     });
     judged.collect()
 }

@@ -6,10 +6,10 @@ use super::chart::Strip;
 use super::ships::Sighted;
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{Canvas, Labels, Lines, ViewModel, clock, flat, style};
+use crate::recording::canvas::{Canvas, Labels, Lines, ViewModel, flat, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
-use crate::text::tenths;
+use crate::text::{clock, tenths};
 use crate::tolerance;
 
 /// Strength of the colours of ships at their closest approach, of 1, and of the lines to targets

@@ -27,13 +27,16 @@ pub const STATES: &str = "curves/states";
 /// Surge force, sway force and yaw moment, held from node to node.
 pub const FORCES: &str = "curves/forces";
 
-pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
+/// Logs the curves, and gives back the least clearance and the least margin, metres.
+pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged<[f64; 2]> {
     let mut log = |entity: &str, times: &[f64], series: &[Series]| {
         log_plot(rec, path(&[entity]), times, Linear, series)
     };
-    log(CLEARANCE, &model.samples, &clearance_curves(model))?;
+    let clearances = clearance_curves(model);
+    log(CLEARANCE, &model.samples, &clearances)?;
+    let margins = margin_curves(model);
     if !model.sets.is_empty() {
-        log(MARGIN, &model.samples, &margin_curves(model))?;
+        log(MARGIN, &model.samples, &margins)?;
     }
     let times = risk_times(model);
     log(RISK, &times, &risk_curves(model, &times))?;
@@ -41,10 +44,14 @@ pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let drawn = (&model.samples[..], Linear);
     log_broken_plot(rec, path(&[COURSE]), drawn, &courses, &jumps(&courses))?;
     log_speed(rec, model)?;
-    match steered(model) {
-        Some(motion) => log_forces(rec, motion),
-        None => Ok(()),
+    if let Some(motion) = steered(model) {
+        log_forces(rec, motion)?;
     }
+    let curves = [&clearances[..clearances.len() - 1], &margins];
+    Ok(curves.map(|curves| {
+        let values = curves.iter().flat_map(|curve| &curve.values);
+        values.copied().fold(f64::INFINITY, f64::min)
+    }))
 }
 
 pub struct Series {

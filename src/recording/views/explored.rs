@@ -9,8 +9,9 @@ use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::recording::Logged;
-use crate::recording::canvas::{Canvas, clock, flat, style};
+use crate::recording::canvas::{Canvas, flat, style};
 use crate::recording::write::Recorder;
+use crate::text::clock;
 use crate::tolerance;
 use crate::trajectory::Segment;
 

@@ -4,14 +4,15 @@ use rerun::{Color, Points2D, Points3D, StateChange, StateConfiguration, TimeColu
 
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument, escape_words,
-    rules_in_words,
+    ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument, chart_role,
+    escape_words, has_role, rules_in_words,
 };
 use crate::frame::Vector;
 use crate::recording::canvas::style::{self, SpeedClass};
-use crate::recording::canvas::{Canvas, Labels, clock, flat};
+use crate::recording::canvas::{Canvas, Labels, flat};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, ROLES, TIMELINE, VOLUME, path};
+use crate::text::clock;
 
 /// Strength of a colour behind white letters.
 const LANE_STRENGTH: f32 = 0.55;
@@ -48,18 +49,24 @@ pub struct Judged<'a> {
     pub target: &'a str,
     pub color: Color,
     pub roles: Vec<RoleDocument>,
-    pub conduct: &'a ConductDocument,
+    /// The one on the desired trajectory, or none.
+    pub desired: &'a str,
+    /// `None` without a plan.
+    pub conduct: Option<&'a ConductDocument>,
 }
 
 impl<'a> Judged<'a> {
-    /// The targets that a plan judges.
+    /// The targets that a plan judges, or toward which own ship has a role.
     pub fn of_plan(canvas: &Canvas, plan: &'a PlanDocument) -> Vec<Self> {
         let judged = |(index, encounter): (usize, &'a EncounterDocument)| {
-            let conduct = encounter.conduct.as_ref()?;
-            Some(Self {
+            let conduct = encounter.conduct.as_ref();
+            let roles = conduct.map(|conduct| conduct.roles.clone());
+            let is_met = conduct.is_some() || has_role(&encounter.role);
+            is_met.then(|| Self {
                 target: &encounter.target,
                 color: canvas.target_color(index),
-                roles: conduct.roles.clone(),
+                roles: roles.unwrap_or_default(),
+                desired: &encounter.role,
                 conduct,
             })
         };
@@ -72,9 +79,9 @@ impl<'a> Judged<'a> {
 
     /// When own ship violates rules and monitors, and their short names, in order of time.
     fn violated(&self) -> Vec<(f64, String)> {
-        let rules = self.conduct.violations.iter();
+        let rules = self.conduct.iter().flat_map(|conduct| &conduct.violations);
         let rules = rules.map(|violation| (violation.t_s, violation.rule.clone()));
-        let monitors = self.conduct.monitors.iter();
+        let monitors = self.conduct.iter().flat_map(|conduct| &conduct.monitors);
         let monitors = monitors.filter(|m| m.verdict == MonitorVerdict::Violated.word());
         let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), m.monitor.clone()));
         let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
@@ -92,7 +99,12 @@ impl<'a> Judged<'a> {
             roles.add(state.from_s.max(0.0), text, self.color);
             roles.end(state.until_s);
         }
-        lanes.extend((!self.roles.is_empty()).then_some(roles));
+        if self.roles.is_empty() && has_role(self.desired) {
+            let text = format!("{} (desired): own ship to {name}", self.desired);
+            roles.add(0.0, text, self.color);
+            roles.end(end);
+        }
+        lanes.extend((!roles.states.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
         let mut breaks = Lane::default();
         let mut until = end;
@@ -114,15 +126,25 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// The name of a target with own ship's role toward it at a time.
+/// The name of a target with own ship's role toward it: at a time, else the next one or the last,
+/// else that on the desired trajectory.
 pub fn name_with_role(judged: &[Judged], target: &str, time: f64) -> String {
-    let judged = judged.iter().find(|judged| judged.target == target);
-    let mut roles = judged.iter().flat_map(|judged| &judged.roles);
-    let role = roles.find(|role| role.from_s <= time && time < role.until_s);
-    match role {
-        Some(role) => format!("{target}\nown ship: {}", role.role),
-        None => target.to_owned(),
-    }
+    let Some(judged) = judged.iter().find(|judged| judged.target == target) else {
+        return target.to_owned();
+    };
+    let coming = judged.roles.iter().find(|role| time < role.until_s);
+    let words = match coming.or(judged.roles.last()) {
+        None => chart_role(&[], judged.desired),
+        Some(role) => {
+            let when = match time {
+                _ if time < role.from_s => format!(" from {}", clock(role.from_s)),
+                _ if time < role.until_s => String::new(),
+                _ => format!(" until {}", clock(role.until_s)),
+            };
+            Some(format!("own ship: {}{when}", role.role))
+        }
+    };
+    words.map_or(target.to_owned(), |words| format!("{target}\n{words}"))
 }
 
 /// Writes in a corner of the chart which rules own ship breaks.
@@ -208,7 +230,7 @@ pub fn marks(
         });
     };
     for judged in judged {
-        for violation in &judged.conduct.violations {
+        for violation in judged.conduct.iter().flat_map(|c| &c.violations) {
             let (rule, time) = (&violation.rule, violation.t_s);
             let text = format!("{rule} at {}, toward {}", clock(time), judged.target);
             add(time, text, style::ALARM);
@@ -257,7 +279,10 @@ mod tests {
     use crate::scenario::{Compliance, Scenario};
 
     /// Tests the lanes of a plan.
-    fn stand_on(compliance: Compliance, test: impl Fn(&PlanDocument, &[Judged], &[Lane], f64)) {
+    fn stand_on(
+        compliance: Compliance,
+        test: impl Fn(&ViewModel, &PlanDocument, &[Judged], &[Lane], f64),
+    ) {
         let file = "scenarios/colregs/stand-on.toml";
         let mut scenario = Scenario::read(file.as_ref()).expect("valid");
         scenario.compliance = compliance;
@@ -267,13 +292,13 @@ mod tests {
         let judged = Judged::of_plan(&model, &plan);
         let end = model.motion.end();
         let lanes = lanes(&judged, plan.escape.as_ref(), end);
-        test(&plan, &judged, &lanes, end);
+        test(&model, &plan, &judged, &lanes, end);
     }
 
     #[test]
     fn a_rule_is_broken_from_its_moment_on() {
-        stand_on(Compliance::Shape, |_, judged, lanes, end| {
-            let conduct = judged[0].conduct;
+        stand_on(Compliance::Shape, |model, plan, judged, lanes, end| {
+            let conduct = judged[0].conduct.expect("judged");
             let violation = conduct.violations.iter().find(|b| b.rule == "17(c)");
             let violation = violation.expect("a turn to port");
             let [roles, broken] = lanes else {
@@ -287,13 +312,29 @@ mod tests {
             assert_eq!(broken.at(role.until_s), "");
             let named = |time| name_with_role(judged, "target", time);
             assert_eq!(named(role.from_s), "target\nown ship: stand-on");
-            assert_eq!(named(role.until_s), "target");
+            let until = clock(role.until_s);
+            let past = format!("target\nown ship: stand-on until {until}");
+            assert_eq!(named(role.until_s), past);
+            let mut later = Judged {
+                roles: vec![RoleDocument {
+                    from_s: 60.0,
+                    ..role.clone()
+                }],
+                ..Judged::of_plan(model, plan).remove(0)
+            };
+            let one = |judged: &Judged| name_with_role(std::slice::from_ref(judged), "target", 0.0);
+            assert_eq!(one(&later), "target\nown ship: stand-on from 1:00");
+            later.roles.clear();
+            later.desired = "head-on";
+            assert_eq!(one(&later), "target\nown ship: head-on (desired)");
+            let lane = &later.lanes(end).next().expect("a lane");
+            assert_eq!(lane.at(0.0), "head-on (desired): own ship to target");
         });
     }
 
     #[test]
     fn a_hold_ends_at_its_latest_time() {
-        stand_on(Compliance::Rules, |plan, _, lanes, _| {
+        stand_on(Compliance::Rules, |_, plan, _, lanes, _| {
             let latest = plan.escape.as_ref().expect("stands on").held_until_s;
             let own = &lanes[0];
             assert_eq!(own.at(0.0), "own ship holds course and speed");

@@ -9,9 +9,10 @@ use super::ships::{DrawnShip, ship_colors, ship_places};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, Lines, ViewModel, clock, style};
+use crate::recording::canvas::{Canvas, Lines, ViewModel, style};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, VOLUME, path};
+use crate::text::clock;
 
 /// Strength of the shadow of a plan on the sea, of 1.
 const SHADOW: f32 = 0.35;

@@ -4,15 +4,15 @@ use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
 use crate::document::{PlanDocument, TIME_LINE, headline, longest, plan_lines};
 use crate::evaluation::Evaluation;
-use crate::recording::canvas::{ShownMotion, ViewModel, clock};
-use crate::text::{broken, knots_figure, rounded, significant};
+use crate::recording::canvas::{ShownMotion, ViewModel};
+use crate::text::{Times, broken, clock, knots_figure, rounded, significant};
 
 /// Characters of a line that a window 1280 wide shows.
 const CELL_WIDTH: usize = 78;
 const EVENT_WIDTH: usize = 42;
 
 pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String {
-    let lines = targets_first(plan_lines(plan)).into_iter();
+    let lines = targets_first(plan_lines(plan, Times::Clock)).into_iter();
     // the planning time would make equal recordings differ
     let rows = lines.filter(|(name, _)| *name != TIME_LINE);
     let rows = rows.flat_map(|(name, value)| table_rows([name.to_owned()], &value, CELL_WIDTH));

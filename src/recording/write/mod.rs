@@ -128,7 +128,7 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     ships::log_names_of_run(rec, model, &labels, &judged)?;
     geographic::log_geographic(rec, model)?;
     space_time::log_volume(rec, model)?;
-    curves::log_curves(rec, model)?;
+    let least = curves::log_curves(rec, model)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
     rec.log_markdown(SUMMARY, summary::text(model, plan, drawn))?;
@@ -141,5 +141,5 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     let marks = rules::marks(&judged, escape, |t| model.motion.pose_at(t).position);
     rules::log_marks(rec, &marks)?;
     rules::log_marks_in_volume(rec, model, &marks)?;
-    layout::of_run(model, lanes.len(), has_legs)
+    layout::of_run(model, lanes.len(), has_legs, least)
 }

@@ -6,11 +6,11 @@ use rerun::{TextLog, TextLogLevel, TimeColumn};
 
 use super::{Recorder, RecordingError, encoding_error, put};
 use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
-use crate::recording::canvas::{ClosedLoop, clock};
+use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
-use crate::text::rounded;
+use crate::text::{clock, rounded};
 
 /// An alarm goes on where it is raised again within this many times between plans.
 const GOES_ON: f64 = 1.5;

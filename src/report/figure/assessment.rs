@@ -2,12 +2,12 @@
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::mark;
-use super::panel::window_around;
-use super::plan::{LAND, NAME_LETTERS, land_areas};
-use super::render::shortened;
+use super::panel::{name_lines, window_around};
+use super::plan::{LAND, land_areas};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::frame::Vector;
+use crate::geometry::Needed;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Land;
 use crate::study::assess::OwnSituation;
@@ -109,7 +109,11 @@ fn name(panel: &mut Panel, situation: &OwnSituation) {
             Vector::new(west, middle.y),
             Vector::new(east, middle.y),
         ];
-        let name = shortened(target.name(), NAME_LETTERS);
-        panel.label(&sides.map(|side| (name.clone(), side)), OWN.colour, true);
+        let name = name_lines(target.name());
+        panel.label(
+            &sides.map(|side| (name.clone(), side)),
+            OWN.colour,
+            Needed::Always,
+        );
     }
 }

@@ -2,15 +2,15 @@
 //! risk. Methods with equal motions share a curve.
 
 use super::outline::{marks, sampled_boundary};
-use super::panel::window_around;
+use super::panel::{name_lines, window_around};
 use super::path_time::{run_panel, target_colour};
-use super::plan::{DESIRED, FILLED, LAND, NAME_LETTERS, OTHER_SETS, land_areas};
-use super::render::shortened;
+use super::plan::{DESIRED, FILLED, LAND, OTHER_SETS, land_areas};
 use super::sections::{PLAN, minutes_list};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
-use crate::geometry::Window;
+use crate::geometry::{Needed, Window};
+use crate::obstacle::Obstacle;
 use crate::report::comparison::joined;
 use crate::scenario::Scenario;
 use crate::study::compare::{Candidate, Entry, Method};
@@ -144,8 +144,8 @@ fn named<'a>(name: &str, entries: impl IntoIterator<Item = &'a Entry>) -> String
     }
 }
 
-/// Draws all motions, the desired trajectory, and the targets with their sets at the closest
-/// approach of the first candidate with a motion. At times that are asked for, sets are outlined.
+/// Draws all motions, the desired trajectory, and each target with its set at its closest approach
+/// to the first candidate with a motion. At times that are asked for, sets are outlined.
 fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
     let ways: Vec<(Stroke, Vec<Vector>)> = (curves.iter())
         .flat_map(|curve| curve.entries.iter().map(|entry| (curve.stroke, *entry)))
@@ -162,17 +162,14 @@ fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
     let first = (curves.iter().flat_map(|curve| &curve.entries)).find_map(|e| e.motion.as_ref());
     let passages = first.iter().flat_map(|motion| &motion.evaluation.passages);
-    let nearest = passages.min_by(|a, b| a.dcpa.total_cmp(&b.dcpa));
-    let nearest = nearest.map(|passage| passage.tcpa);
+    let closest: Vec<f64> = passages.map(|passage| passage.tcpa).collect();
     let obstacles = first.map_or(&[][..], |motion| &motion.obstacles);
-    let sections = |time: f64| {
+    let section = |set: &Obstacle, time: f64| {
         let time = time.min(scenario.horizon);
-        let sections = obstacles
-            .iter()
-            .map(move |o| sampled_boundary(&o.section(time)));
-        sections.collect::<Vec<_>>()
+        sampled_boundary(&set.section(time))
     };
-    let filled = nearest.map(sections).unwrap_or_default();
+    let each = obstacles.iter().zip(&closest);
+    let filled: Vec<_> = each.map(|(set, time)| section(set, *time)).collect();
     shown.extend(filled.iter().flatten().copied().filter(within));
     let title = format!("{}: trajectories", scenario.title);
     let mut panel = Panel::plan(title, PLAN, window_around(shown, 0.06)).sized(style.area);
@@ -181,27 +178,24 @@ fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
     for (index, boundary) in filled.iter().enumerate() {
         panel.fill_set(boundary, target_colour(index), FILLED);
     }
-    for boundary in style.times.iter().flat_map(|time| sections(*time)) {
-        panel.curve(&boundary, true, OTHER_SETS);
+    for time in &style.times {
+        for set in obstacles {
+            panel.curve(&section(set, *time), true, OTHER_SETS);
+        }
     }
     panel.curve(&waypoints, false, DESIRED);
     // the first row on top
     for (stroke, way) in ways.iter().rev() {
         panel.curve(way, false, *stroke);
     }
-    let ships = scenario
-        .targets
-        .iter()
-        .enumerate()
-        .zip(nearest.iter().cycle());
-    for ((index, target), time) in ships {
+    for (index, (target, time)) in scenario.targets.iter().zip(&closest).enumerate() {
         let place = target.position_at(*time);
         if let Some(ship) = target.ship() {
             panel.ship(&ship.hull, &ship.pose_at(*time), target_colour(index));
         }
         if panel.window().contains(place) {
-            let name = shortened(&target.name, NAME_LETTERS);
-            panel.label(&[(name, place)], target_colour(index), true);
+            let name = name_lines(&target.name);
+            panel.label(&[(name, place)], target_colour(index), Needed::Always);
         }
     }
     for curve in curves
@@ -213,7 +207,7 @@ fn chart(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
     }
     panel.line_key("desired", DESIRED);
     if !filled.is_empty() {
-        panel.area_key("sets at the closest approach", target_colour(0), FILLED);
+        panel.area_key("sets at their closest approach", target_colour(0), FILLED);
     }
     if !style.times.is_empty() {
         let label = format!("sets at {}", minutes_list(&style.times));

@@ -59,13 +59,17 @@ pub(super) fn bends(points: &[Vector]) -> Vec<Vector> {
 
 /// Draws a point.
 pub fn mark(at: Vector, colour: &str) -> Plot {
-    let point = ScatterPlot::new().with_data([(at.x, at.y)]);
-    Plot::Scatter(point.with_color(colour).with_size(4.5))
+    dots(&[at], colour, 4.5)
 }
 
 pub(super) fn marks(at: &[Vector], colour: &str) -> Plot {
+    dots(at, colour, 4.0)
+}
+
+/// Dots of a radius in pixels.
+pub(super) fn dots(at: &[Vector], colour: &str, radius: f64) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
-    Plot::Scatter(points.with_color(colour).with_size(4.0))
+    Plot::Scatter(points.with_color(colour).with_size(radius))
 }
 
 /// Draws a filled convex polygon as the band between its lower and upper chain. `None` if its area

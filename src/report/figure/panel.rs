@@ -9,6 +9,7 @@ use super::outline::{area, bends, curve};
 use super::render::in_lines;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Drawn, Label, Needed, Window};
+use crate::text::broken;
 use crate::vessel::Hull;
 
 /// Size in pixels of the area between the axes.
@@ -36,6 +37,9 @@ const AXIS: f64 = 38.0;
 /// of its size.
 pub(super) const LETTERS: usize = 58;
 const LINE: f64 = 1.17;
+
+/// Letters of a line of a name on a chart.
+const NAME: usize = 24;
 
 /// Pixels by which a title is larger than other texts.
 const TITLE: u32 = 2;
@@ -65,6 +69,11 @@ pub(super) const COLOURED: char = '\0';
 /// Brightness of a text in the colour of a ship, as a fraction of it.
 const TEXT_SHADE: f64 = 0.75;
 
+/// A name in lines that fit beside a ship.
+pub(super) fn name_lines(name: &str) -> String {
+    broken(name, NAME, "")
+}
+
 /// True for an area without room for details.
 pub(super) fn is_small(area: [f64; 2]) -> bool {
     area[0] < SMALL
@@ -75,9 +84,22 @@ pub(super) fn text_size(area: [f64; 2]) -> u32 {
     if is_small(area) { 10 } else { 11 }
 }
 
-/// Width of a text in pixels, on average.
+/// Width of the longest line of a text in pixels, on average.
 pub(super) fn text_width(text: &str, area: [f64; 2]) -> f64 {
-    0.57 * f64::from(text_size(area)) * text.chars().count() as f64
+    let line = |line: &str| line.chars().map(letter_width).sum();
+    let longest = text.lines().map(line).fold(0.0, f64::max);
+    f64::from(text_size(area)) * longest
+}
+
+/// Width of a letter of DejaVu Sans, as a fraction of its size.
+fn letter_width(letter: char) -> f64 {
+    match letter {
+        'i' | 'j' | 'l' | 'I' | ' ' | ',' | '.' | ':' | ';' | '\'' => 0.32,
+        'f' | 'r' | 't' | '-' | '(' | ')' | '/' => 0.4,
+        'm' | 'w' | 'M' | 'W' | '%' | '…' => 0.95,
+        letter if letter.is_uppercase() => 0.72,
+        _ => 0.62,
+    }
 }
 
 /// One entry of the legend: a line, or an area of an opacity.
@@ -241,41 +263,46 @@ impl Panel {
     }
 
     /// Adds one of some texts beside its position, where it covers least of what is there: the
-    /// frame, texts and ships first, then filled areas, then lines. A text that is not `needed`
-    /// stands close to its position or nowhere; it gives way to others, and in a small area to
-    /// filled ones. Returns the position.
+    /// frame, texts and ships first, then filled areas, then lines. Returns the position.
     pub(super) fn label(
         &mut self,
         texts: &[(String, Vector)],
         colour: &str,
-        needed: bool,
+        needed: Needed,
     ) -> Option<Vector> {
         let (size, pixel) = (f64::from(text_size(self.area)), self.pixel());
         let label = |(text, at): &(String, Vector)| Label {
             at: *at,
-            half: Vector::new(0.5 * text_width(text, self.area), 0.5 * size),
+            half: Vector::new(
+                0.5 * text_width(text, self.area),
+                0.5 * LINE * size * text.lines().count() as f64,
+            ),
         };
         let labels: Vec<Label> = texts.iter().map(label).collect();
-        let needed = match (needed, is_small(self.area)) {
-            (true, _) => Needed::Always,
-            (false, true) => Needed::OffFirst(3),
-            (false, false) => Needed::OffFirst(2),
-        };
         let view = (self.window, pixel);
         let place = self.drawn.place(view, &labels, needed, None)?;
         if let Some(leader) = place.leader {
-            self.plots.push(curve(&leader, false, LEADER));
+            self.curve(&leader, false, LEADER);
         }
         let best = place.window;
         let corner = |x: f64, y: f64| Vector::new(x, y);
         let Window { low, high } = best;
         let around = [low, corner(high.x, low.y), high, corner(low.x, high.y)];
         self.fill_hull(&around, "#ffffff", 0.6);
-        // a note is above its position
         let (text, at) = &texts[place.index];
-        self.note(text, best.center() - Vector::new(0.0, size * pixel), colour);
+        for (index, line) in text.lines().enumerate() {
+            // a note is above its position
+            let down = ((index as f64 + 0.5) * LINE + 1.0) * size * pixel;
+            let below = corner(best.center().x, high.y - down);
+            self.note(line, below, colour);
+        }
         self.drawn.boxes.push(best);
         Some(*at)
+    }
+
+    /// A text that gives way to others, and in a small area to filled ones.
+    pub(super) fn optional(&self) -> Needed {
+        Needed::OffFirst(if is_small(self.area) { 3 } else { 2 })
     }
 
     /// Width in pixels to the left of an area.

@@ -4,29 +4,30 @@
 use kuva::render::plots::Plot;
 
 use super::forces::force_panels;
-use super::outline::{area, curve, sampled_boundary};
-use super::panel::{AREA, LETTERS, window_around};
+use super::outline::{area, curve, dots, sampled_boundary};
+use super::panel::{AREA, LETTERS, name_lines, window_around};
 use super::path_time::{run_panel, target_colour};
-use super::render::shortened;
-use super::sections::{PLAN, minutes, sections_beside};
+use super::sections::{PLAN, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
-use crate::document::{self, PlanDocument};
+use crate::document::{self, EncounterDocument, PlanDocument, chart_role};
 use crate::frame::{Pose, Vector};
-use crate::geometry::{ConvexPolygon, Window};
+use crate::geometry::{ConvexPolygon, Needed, Window};
 use crate::obstacle::Obstacle;
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
 use crate::scenario::{Land, Scenario};
-use crate::text::significant;
+use crate::text::{Times, clock, significant};
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
 
-pub(super) const DESIRED: Stroke = Stroke::dashed("#777777", 1.4);
+/// Wide and pale, so that it is seen under the tracks that run along it.
+pub(super) const DESIRED: Stroke = Stroke::solid("#c4c4c4", 5.0);
 pub(super) const PLANNED: Stroke = Stroke::solid("#000000", 2.4);
 
-/// Stroke between the centres of the hulls at the closest approach.
-const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.6);
-const ALTERNATIVE: Stroke = Stroke::solid("#b0b0b0", 1.4);
+/// Stroke between the centres of the hulls at the least closest approach, and at the others.
+const CLOSEST: Stroke = Stroke::solid("#b3001b", 1.8);
+const CLOSE: Stroke = Stroke::solid(CLOSEST.colour, 0.8);
+const ALTERNATIVE: Stroke = Stroke::dashed("#888888", 1.2);
 const FOUND: Stroke = Stroke::solid("#009e73", 0.8);
 pub(super) const LAND: &str = "#d9cba3";
 const LAND_OUTLINE: Stroke = Stroke::solid(LAND, 0.8);
@@ -42,18 +43,22 @@ const BOTH: f64 = 1.0 - (1.0 - FILLED) * (1.0 - HARD);
 const AIR: f64 = 0.07;
 const REACH: f64 = 0.3;
 
-/// Interval in seconds to which the times of panels are rounded.
+/// Interval in seconds to which the times of panels are rounded, how many are chosen, and the least
+/// time between closest approaches of different encounters as a fraction of the whole.
 const ROUND: f64 = 10.0;
-
-/// Most letters of a name beside a ship.
-pub(super) const NAME_LETTERS: usize = 14;
+const PANELS: usize = 4;
+const DISTINCT: f64 = 0.025;
 
 /// Targets outside the chart that the legend names.
 const MOST_OUTSIDE: usize = 4;
 
-/// Least interval between a round time and the closest approach, as a fraction of the interval
+/// Most closest approaches that a chart marks, and the radius in pixels of their dots on own ship.
+const MOST_MET: usize = 4;
+const MET_DOT: f64 = 2.6;
+
+/// Least interval between a round time and a closest approach, as a fraction of the interval
 /// between round times.
-const TIMES_APART: f64 = 0.25;
+const TIMES_APART: f64 = 0.125;
 
 /// Most instants after the start at which the sets are drawn.
 const INSTANTS: f64 = 4.0;
@@ -75,52 +80,58 @@ fn round_times(end: f64, most: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The times that a chart marks: those asked for, or round ones, and the closest approach; and the
-/// index of the closest approach, of 0 without one. For panels: those asked for, or the start, the
-/// closest approach, the end and the middles between them; the index is beyond them without one.
+/// The times that a chart marks: those asked for, or round ones; for panels, [`panel_times`].
+/// `closest` are the distances and times of the closest approaches.
 pub(super) fn marked_times(
     style: &Style,
     end: f64,
     most: f64,
-    closest: Option<f64>,
-) -> (Vec<f64>, usize) {
-    let asked = !style.times.is_empty();
-    let closest = closest.filter(|time| time.is_finite());
-    if style.panels {
-        let middle = closest.unwrap_or(0.5 * end);
-        let round = |time: f64| (time / ROUND).round() * ROUND;
-        let mut times = match asked {
-            true => style.times.clone(),
-            false => vec![
-                0.0,
-                round(0.5 * middle),
-                middle,
-                round(0.5 * (middle + end)).min(end),
-            ],
-        };
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let is_closest = |time: &f64| closest.is_some_and(|c| minutes(c) == minutes(*time));
-        let place = times.iter().position(is_closest);
-        return (times.clone(), place.unwrap_or(times.len()));
+    closest: impl Iterator<Item = [f64; 2]>,
+) -> Vec<f64> {
+    let mut closest: Vec<[f64; 2]> = closest.filter(|[_, time]| time.is_finite()).collect();
+    closest.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let closest: Vec<f64> = closest.into_iter().map(|[_, time]| time).collect();
+    match (style.times.is_empty(), style.panels) {
+        (false, _) => style.times.clone(),
+        (true, true) => panel_times(end, &closest),
+        (true, false) => {
+            // a small chart has room for fewer
+            let mut times = round_times(end, most * (style.area[0] / AREA[0]).clamp(0.5, 1.0));
+            let apart = TIMES_APART * times.get(1).copied().unwrap_or(0.0);
+            // hulls on one another hide which is which; the start stays
+            let is_near = |time: f64| {
+                let mut marked = closest.iter().take(MOST_MET);
+                marked.any(|closest| (time - closest).abs() < apart)
+            };
+            times.retain(|time| *time == 0.0 || !is_near(*time));
+            times
+        }
     }
-    let mut times = match asked {
-        true => style.times.clone(),
-        // a small chart has room for fewer
-        false => round_times(end, most * (style.area[0] / AREA[0]).clamp(0.5, 1.0)),
-    };
-    let Some(closest) = closest else {
-        return (times, 0);
-    };
-    let apart = match (asked, &times[..]) {
-        (false, [first, second, ..]) => TIMES_APART * (second - first),
-        _ => 0.0,
-    };
-    // hulls on one another hide which is which; the start stays
-    times.retain(|time| *time != closest && (*time == 0.0 || (time - closest).abs() > apart));
-    let place = times.partition_point(|time| *time < closest);
-    times.insert(place, closest);
-    (times, place)
+}
+
+/// The least closest approaches of different encounters, then the start, then the middles between
+/// them.
+fn panel_times(end: f64, closest: &[f64]) -> Vec<f64> {
+    let round = |time: f64| (time / ROUND).round() * ROUND;
+    let mut times: Vec<f64> = Vec::new();
+    for time in closest.iter().filter(|time| 0.0 < **time && **time < end) {
+        let is_other = times.iter().all(|t| (t - time).abs() > DISTINCT * end);
+        if is_other && times.len() + 1 < PANELS {
+            times.push(*time);
+        }
+    }
+    if times.is_empty() {
+        times.push(round(0.5 * end));
+    }
+    times.sort_by(f64::total_cmp);
+    let all = [&[0.0], &times[..], &[end]].concat();
+    let middle = |pair: &[f64]| round(0.5 * (pair[0] + pair[1])).min(end);
+    let more: Vec<f64> = all.windows(2).map(middle).collect();
+    let free = PANELS - times.len();
+    times.extend([&[0.0], &more[..]].concat().iter().take(free));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 /// Time step of a curve in seconds, and the maximum number of points besides its joints.
@@ -137,7 +148,11 @@ pub fn plan_figure(
 ) -> Result<Figure, FigureError> {
     options.draw(end(run), |style| {
         let figure = if style.panels {
-            moments(&run.scenario, style, &traffic(run, style))
+            moments(
+                &run.scenario,
+                style,
+                &traffic(run, &document.encounters, style),
+            )
         } else {
             Figure::new(2, plan_panels(run, document, style))
         };
@@ -162,12 +177,12 @@ pub(in crate::report) fn plan_panels(
     let plan = run.planned.outcome.plan();
     let mut title = document::verdict_line(document);
     if let Some(departure) = document.departure_of_motion() {
-        let headlines = [departure.to_string(), departure.brief()];
+        let headlines = [departure.words(Times::Clock), departure.brief()];
         let mut headlines = headlines.map(|text| format!("{title}: {text}")).into_iter();
         let fits = |headline: &String| headline.chars().count() <= LETTERS;
         title = headlines.find(fits).unwrap_or(title);
     }
-    let mut panels = vec![chart(&title, run, style, Vec::new())];
+    let mut panels = vec![chart(&title, run, &document.encounters, style, Vec::new())];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(motion));
     }
@@ -190,98 +205,141 @@ pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Ve
     panel
 }
 
-/// Draws the desired and the planned trajectory. Sets are drawn at several times, with own ship's
-/// position at the same time.
+/// Draws the desired and the planned trajectory, and each target with its set at its closest
+/// approach, with own ship's position at the same time.
 pub fn chart_panel(title: &str, run: &Run) -> Panel {
-    chart(title, run, &Style::default(), Vec::new())
+    let met = document::encounters(run);
+    chart(title, run, &met, &Style::default(), Vec::new())
 }
 
 /// Draws the chart with `others` above the sets and below the plan.
-fn chart(title: &str, run: &Run, style: &Style, others: Vec<Plot>) -> Panel {
-    let traffic = traffic(run, style);
+fn chart(
+    title: &str,
+    run: &Run,
+    encounters: &[EncounterDocument],
+    style: &Style,
+    others: Vec<Plot>,
+) -> Panel {
+    let traffic = traffic(run, encounters, style);
     traffic_chart(title, &run.scenario, style, &traffic, None, others)
 }
 
 /// Own ship of a run and its targets.
-fn traffic(run: &Run, style: &Style) -> Traffic {
+fn traffic(run: &Run, encounters: &[EncounterDocument], style: &Style) -> Traffic {
     let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
     let end = end(run);
-    let passages = run.evaluation.iter().flat_map(|judged| &judged.passages);
-    let nearest = passages
-        .zip(&scenario.targets)
-        .min_by(|(a, _), (b, _)| a.dcpa.total_cmp(&b.dcpa));
-    let tcpa = nearest.map(|(passage, _)| passage.tcpa);
-    let (times, filled) = marked_times(style, end, INSTANTS, tcpa);
+    let passages = run.evaluation.as_ref().map(|judged| &judged.passages[..]);
+    let passages = passages.unwrap_or_default();
+    let closest = passages.iter().map(|passage| [passage.dcpa, passage.tcpa]);
+    let times = marked_times(style, end, INSTANTS, closest);
     let sampled = match trajectory {
         Some(trajectory) => trajectory.sample_times(STEP, MOST_POINTS),
         None => vec![0.0, end],
     };
-    let sections = |set: &Obstacle| -> Vec<Vec<Vector>> {
-        let section = |time: &f64| sampled_boundary(&set.section(*time));
-        times.iter().map(section).collect()
-    };
-    let targets = scenario.targets.iter().zip(&run.targets);
-    let targets = targets.map(|(target, sets)| Charted {
-        name: target.name.clone(),
-        hull: target.ship().map(|ship| ship.hull),
-        track: sampled
-            .iter()
-            .map(|time| target.position_at(*time))
-            .collect(),
-        poses: (times.iter())
-            .map(|time| target.ship().map(|ship| ship.pose_at(*time)))
-            .collect(),
-        areas: sections(&sets.obstacle),
-        hard: match sets.obstacle.sets() == sets.sets.hard.sets() {
-            true => Vec::new(),
-            false => sections(&sets.sets.hard),
-        },
+    let targets = scenario.targets.iter().zip(&run.targets).enumerate();
+    let targets = targets.map(|(index, (target, sets))| {
+        let is_hard = sets.obstacle.sets() == sets.sets.hard.sets();
+        let section = |set: &Obstacle, time: f64| sampled_boundary(&set.section(time));
+        let moment = |time: f64| Moment {
+            pose: target.ship().map(|ship| ship.pose_at(time)),
+            area: section(&sets.obstacle, time),
+            hard: match is_hard {
+                true => Vec::new(),
+                false => section(&sets.sets.hard, time),
+            },
+        };
+        let met = encounters.get(index);
+        let roles = met
+            .and_then(|met| met.conduct.as_ref())
+            .map(|c| &c.roles[..]);
+        let passage = passages.get(index).filter(|p| p.tcpa.is_finite());
+        Charted {
+            name: target.name.clone(),
+            role: met.and_then(|met| chart_role(roles.unwrap_or_default(), &met.role)),
+            hull: target.ship().map(|ship| ship.hull),
+            track: sampled
+                .iter()
+                .map(|time| target.position_at(*time))
+                .collect(),
+            moments: times.iter().map(|time| moment(*time)).collect(),
+            closest: passage
+                .zip(trajectory)
+                .map(|(passage, trajectory)| Meeting {
+                    time: passage.tcpa,
+                    own: trajectory.pose_at(passage.tcpa),
+                    target: moment(passage.tcpa),
+                    apart: passage.dcpa,
+                    text: format!("{} m", significant(passage.dcpa)),
+                }),
+        }
     });
-    let targets: Vec<Charted> = targets.collect();
     let pose = |time: &f64| trajectory.map(|t| t.pose_at(*time));
-    let closest = nearest.and_then(|(passage, target)| {
-        let ends = [
-            pose(&passage.tcpa)?.position,
-            target.position_at(passage.tcpa),
-        ];
-        Some((ends, format!("{} m", significant(passage.dcpa))))
-    });
     Traffic {
+        targets: targets.collect(),
         own: times.iter().filter_map(pose).collect(),
         track: (sampled.iter().filter_map(pose))
             .map(|pose| pose.position)
             .collect(),
         times,
-        filled,
-        targets,
         words: ["planned", "nominal tracks"],
-        closest,
     }
 }
 
+/// A target as a chart shows it.
 pub(super) struct Charted {
     pub name: String,
+    /// Own ship's role toward it.
+    pub role: Option<String>,
     /// Its hull, if it has one.
     pub hull: Option<Hull>,
     /// Its track, which may be empty.
     pub track: Vec<Vector>,
-    /// Where it is at each of the times, if it is known.
-    pub poses: Vec<Option<Pose>>,
-    /// The boundary of its set at each of the times; empty without one.
-    pub areas: Vec<Vec<Vector>>,
-    /// The boundary of its hard set at each of the times; empty where the set is the hard one.
-    pub hard: Vec<Vec<Vector>>,
+    /// The target at each of the times.
+    pub moments: Vec<Moment>,
+    pub closest: Option<Meeting>,
 }
 
 impl Charted {
-    /// Where it is at one of the times, or the middle of its set.
-    fn place(&self, k: usize) -> Option<Vector> {
-        let pose = self.poses.get(k).copied().flatten();
-        let area = self.areas.get(k).filter(|area| !area.is_empty());
-        pose.map(|pose| pose.position)
+    /// The moment whose set is filled: the closest approach, or the time of a panel.
+    fn filled(&self, only: Option<usize>) -> Option<&Moment> {
+        let closest = self.closest.as_ref().map(|met| &met.target);
+        match only {
+            Some(k) => self.moments.get(k),
+            None => closest.or(self.moments.first()),
+        }
+    }
+}
+
+/// A target at a time.
+pub(super) struct Moment {
+    /// Where it is, if it is known.
+    pub pose: Option<Pose>,
+    /// The boundary of its set; empty without one.
+    pub area: Vec<Vector>,
+    /// The boundary of its hard set; empty where the set is the hard one.
+    pub hard: Vec<Vector>,
+}
+
+impl Moment {
+    /// Where it is, or the middle of its set.
+    fn place(&self) -> Option<Vector> {
+        let area = Some(&self.area).filter(|area| !area.is_empty());
+        self.pose
+            .map(|pose| pose.position)
             .or_else(|| Some(area?.iter().sum::<Vector>() / area?.len() as f64))
     }
+}
+
+/// Own ship and a target at their closest approach.
+pub(super) struct Meeting {
+    pub time: f64,
+    pub own: Pose,
+    pub target: Moment,
+    /// Metres, of which the least is marked most.
+    pub apart: f64,
+    /// The same in words.
+    pub text: String,
 }
 
 /// Own ship and the targets at the same times, as a chart shows them.
@@ -290,22 +348,36 @@ pub(super) struct Traffic {
     pub track: Vec<Vector>,
     /// Times in seconds.
     pub times: Vec<f64>,
-    /// The one of these times whose sets are filled; those of other times are outlined.
-    pub filled: usize,
     /// Own ship at these times; empty without a track.
     pub own: Vec<Pose>,
     pub targets: Vec<Charted>,
     /// The legend's words for own ship's track and for those of the targets.
     pub words: [&'static str; 2],
-    /// Where own ship and a target are closest, and how close.
-    pub closest: Option<([Vector; 2], String)>,
+}
+
+impl Traffic {
+    /// The closest approaches within a window that a chart marks, the least first, with the index
+    /// of the target; those at the time of a panel.
+    fn met(&self, only: Option<usize>, window: Window) -> Vec<(usize, &Meeting)> {
+        let all = self.targets.iter().enumerate();
+        let all = all.filter_map(|(index, target)| Some((index, target.closest.as_ref()?)));
+        let is_shown = |place: Option<Vector>| place.is_some_and(|place| window.contains(place));
+        let mut met: Vec<_> = all
+            .filter(|(_, met)| is_shown(met.target.place()) && window.contains(met.own.position))
+            .collect();
+        met.sort_by(|(_, a), (_, b)| a.apart.total_cmp(&b.apart));
+        met.truncate(MOST_MET);
+        let is_then = |time: f64| only.is_none_or(|k| clock(self.times[k]) == clock(time));
+        met.retain(|(_, met)| is_then(met.time));
+        met
+    }
 }
 
 /// Draws one chart per time, all of the same window.
 pub(super) fn moments(scenario: &Scenario, style: &Style, traffic: &Traffic) -> Figure {
     let count = traffic.times.len();
     let charts = (0..count).map(|k| {
-        let title = minutes(traffic.times[k]);
+        let title = clock(traffic.times[k]);
         traffic_chart(&title, scenario, style, traffic, Some(k), Vec::new())
     });
     let columns = (count as f64).sqrt().ceil() as usize;
@@ -321,18 +393,24 @@ fn shown(scenario: &Scenario, style: &Style, traffic: &Traffic) -> Window {
         .copied()
         .collect();
     let reach = window_around(shown.iter().copied(), REACH);
-    let filled = |k: usize| style.panels || k == traffic.filled;
-    for k in (0..traffic.times.len()).filter(|k| filled(*k)) {
-        for target in &traffic.targets {
-            let area = target.areas.get(k).into_iter().flatten().copied();
-            shown.extend(area.chain(target.place(k)).filter(|p| reach.contains(*p)));
+    for target in &traffic.targets {
+        let closest = target.filled(None).filter(|_| !style.panels);
+        let panels = target.moments.iter().filter(|_| style.panels);
+        for moment in panels.chain(closest) {
+            let area = moment.area.iter().copied();
+            shown.extend(area.chain(moment.place()).filter(|p| reach.contains(*p)));
         }
     }
     window_around(shown, AIR)
 }
 
-/// Colour and name of a ship, and its texts with their places.
-type Labelled = (&'static str, String, Vec<(String, Vector)>);
+/// Colour of a ship, its name with own ship's role toward it, and its times with their places.
+type Labelled<'a> = (
+    &'static str,
+    &'a str,
+    Option<&'a str>,
+    Vec<(String, Vector)>,
+);
 
 /// Draws the mission, land, the targets and own ship, with the times beside the ships; in a panel
 /// of one time, at that one alone. `others` are above the sets and below own ship.
@@ -345,27 +423,23 @@ pub(super) fn traffic_chart(
     others: Vec<Plot>,
 ) -> Panel {
     let instants = only.map_or(0..traffic.times.len(), |k| k..k + 1);
-    let filled = only.unwrap_or(traffic.filled);
     let content = shown(scenario, style, traffic);
     let mut panel = Panel::plan(title.to_owned(), PLAN, content).sized(style.area);
     let window = panel.window();
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.inside()));
-    let outlined = only.is_none() && !style.is_small();
+    // own ship may cross a set of another time: of several targets they are drawn if asked for
+    let clear = traffic.targets.len() == 1 || !style.times.is_empty();
+    let outlined = only.is_none() && !style.is_small() && clear;
     for (index, target) in traffic.targets.iter().enumerate() {
         let colour = target_colour(index);
-        for (k, area) in target.areas.iter().enumerate() {
-            // sets of other times are no place that own ship has to avoid at this one
-            if k == filled {
-                panel.fill_set(area, colour, FILLED);
-                if let Some(hard) = target.hard.get(k) {
-                    panel.fill_hull(hard, colour, HARD);
-                }
-            } else if outlined {
-                panel
-                    .plots
-                    .push(curve(area, true, Stroke::dashed(colour, 0.5)));
-            }
+        for moment in target.moments.iter().filter(|_| outlined) {
+            let stroke = Stroke::dashed(colour, 0.5);
+            panel.plots.push(curve(&moment.area, true, stroke));
+        }
+        if let Some(moment) = target.filled(only) {
+            panel.fill_set(&moment.area, colour, FILLED);
+            panel.fill_hull(&moment.hard, colour, HARD);
         }
     }
     for path in &scenario.alternatives {
@@ -377,42 +451,46 @@ pub(super) fn traffic_chart(
         let stroke = Stroke::solid(target_colour(index), 1.2);
         panel.curve(&target.track, false, stroke);
     }
-    let closest = traffic
-        .closest
-        .as_ref()
-        .filter(|_| filled == traffic.filled);
-    // that of the closest approach stands there
-    let time = |k: usize| match only.is_some() || (k == filled && closest.is_some()) {
-        true => String::new(),
-        false => minutes(traffic.times[k]),
+    let met = traffic.met(only, window);
+    let time = |k: usize| match only {
+        Some(_) => String::new(),
+        None => clock(traffic.times[k]),
     };
     let mut ships: Vec<Labelled> = Vec::new();
     let mut outside: Vec<(Stroke, String)> = Vec::new();
     for (index, target) in traffic.targets.iter().enumerate() {
-        let name = shortened(&target.name, NAME_LETTERS);
+        let closest = target.closest.as_ref().filter(|_| only.is_none());
+        let all = instants.clone().map(|k| (time(k), &target.moments[k]));
+        let all = all.chain(closest.map(|met| (String::new(), &met.target)));
         let mut places = Vec::new();
-        for k in instants.clone() {
-            if let Some(place) = target.place(k).filter(|place| window.contains(*place)) {
-                if let Some((hull, pose)) = target.hull.zip(target.poses[k]) {
+        for (time, moment) in all {
+            if let Some(place) = moment.place().filter(|place| window.contains(*place)) {
+                if let Some((hull, pose)) = target.hull.zip(moment.pose) {
                     panel.ship(&hull, &pose, target_colour(index));
                 }
-                places.push((time(k), place));
+                places.push((time, place));
             }
         }
         if places.is_empty() && only.is_none() {
             let stroke = Stroke::solid(target_colour(index), 1.2);
-            outside.push((stroke, format!("{name}: outside the chart")));
+            outside.push((stroke, format!("{}: outside the chart", target.name)));
         }
-        // small charts of one time have each name once
-        let seen = |k: usize| target.place(k).is_some_and(|place| window.contains(place));
-        let again = only.is_some() && style.is_small() && (0..instants.start).any(seen);
-        let name = if again { String::new() } else { name };
-        ships.push((target_colour(index), name, places));
+        // charts of one time have each role once, small ones each name
+        let is_seen = |moment: &Moment| moment.place().is_some_and(|p| window.contains(p));
+        let again = only.is_some() && target.moments[..instants.start].iter().any(is_seen);
+        let name = &target.name[..if again && style.is_small() {
+            0
+        } else {
+            target.name.len()
+        }];
+        let role = target.role.as_deref().filter(|_| !again);
+        ships.push((target_colour(index), name, role, places));
+    }
+    for (rank, (_, met)) in met.iter().enumerate() {
+        let ends = [met.own.position, met.target.place().unwrap_or_default()];
+        panel.curve(&ends, false, if rank == 0 { CLOSEST } else { CLOSE });
     }
     // no hull hides own ship
-    if let Some((ends, _)) = closest {
-        panel.curve(ends, false, CLOSEST);
-    }
     panel.curve(&traffic.track, false, PLANNED);
     let mut places = Vec::new();
     for (k, pose) in traffic.own.iter().enumerate() {
@@ -421,38 +499,63 @@ pub(super) fn traffic_chart(
             places.push((time(k), pose.position));
         }
     }
+    for (index, met) in met.iter().filter(|_| only.is_none()) {
+        panel.ship(&scenario.own_ship.hull, &met.own, PLANNED.colour);
+        let dot = dots(&[met.own.position], target_colour(*index), MET_DOT);
+        panel.plots.push(dot);
+    }
     let again = only.is_some() && style.is_small() && instants.start > 0;
     let name = if again { "" } else { "own ship" };
     // its labels go first
-    ships.insert(0, (PLANNED.colour, name.to_owned(), places));
-    if let Some((ends, apart)) = closest {
-        let text = match only.is_some() {
-            true => apart.clone(),
-            false => format!("{apart}, {}", minutes(traffic.times[filled])),
+    ships.insert(0, (PLANNED.colour, name, None, places));
+    for (rank, (index, met)) in met.iter().enumerate() {
+        let text = match only {
+            Some(_) => met.text.clone(),
+            None => format!("{}, {}", met.text, clock(met.time)),
         };
-        let middle = 0.5 * (ends[0] + ends[1]);
-        panel.label(
-            &[(text.clone(), middle), (text, ends[0])],
-            CLOSEST.colour,
-            true,
-        );
+        let place = met.own.position;
+        let middle = 0.5 * (place + met.target.place().unwrap_or(place));
+        let (colour, needed) = match (rank, style.is_small()) {
+            (0, _) => (CLOSEST.colour, Needed::Always),
+            (_, true) => (target_colour(*index), panel.optional()),
+            (_, false) => (target_colour(*index), Needed::Always),
+        };
+        panel.label(&[(text.clone(), middle), (text, place)], colour, needed);
     }
-    // names first
+    // names before times
     let mut labelled: Vec<Vector> = Vec::new();
-    for (colour, name, places) in ships.iter().filter(|(_, name, _)| !name.is_empty()) {
-        let named = |(time, place): &(String, Vector)| match time.is_empty() {
-            true => (name.clone(), *place),
-            false => (format!("{name}, {time}"), *place),
+    for (colour, name, role, places) in ships.iter().filter(|(_, name, ..)| !name.is_empty()) {
+        let mut add = |role: Option<&str>, needed: Needed| {
+            let named = |(time, place): &(String, Vector)| {
+                let name = match time.is_empty() {
+                    true => name_lines(name),
+                    false => name_lines(&format!("{name}, {time}")),
+                };
+                let text = role.map_or(name.clone(), |role| format!("{name}\n{role}"));
+                (text, *place)
+            };
+            let named: Vec<(String, Vector)> = places.iter().map(named).collect();
+            panel.label(&named, colour, needed)
         };
-        let named: Vec<(String, Vector)> = places.iter().map(named).collect();
-        labelled.extend(panel.label(&named, colour, true));
+        // a small chart has roles where there is room
+        let placed = match role {
+            Some(_) if style.is_small() => {
+                add(*role, Needed::OffFirst(4)).or_else(|| add(None, Needed::Always))
+            }
+            role => add(*role, Needed::Always),
+        };
+        labelled.extend(placed);
     }
     // a ship that hardly moves has one label, own ship first
     let apart = LABELS_APART * window.size().x;
-    for (colour, _, places) in ships {
+    let needed = match style.times.is_empty() {
+        true => panel.optional(),
+        false => Needed::Always,
+    };
+    for (colour, _, _, places) in ships {
         for (time, place) in places {
             if !time.is_empty() && labelled.iter().all(|p| (p - place).norm() > apart) {
-                panel.label(&[(time, place)], colour, !style.times.is_empty());
+                panel.label(&[(time, place)], colour, needed);
                 labelled.push(place);
             }
         }
@@ -463,29 +566,39 @@ pub(super) fn traffic_chart(
     panel.line_key("desired", DESIRED);
     let colour = target_colour(0);
     if traffic.targets.iter().any(|target| target.track.len() > 1) {
-        panel.line_key(traffic.words[1], Stroke::solid(colour, 1.2));
+        let word = if style.is_small() {
+            "targets"
+        } else {
+            traffic.words[1]
+        };
+        panel.line_key(word, Stroke::solid(colour, 1.2));
     }
     if land.is_some() {
         panel.area_key("land", LAND, 1.0);
     }
-    if closest.is_some() {
-        panel.line_key("closest approach", CLOSEST);
+    if !met.is_empty() {
+        let several = if met.len() > 1 { "es" } else { "" };
+        panel.line_key(&format!("closest approach{several}"), CLOSEST);
     }
-    let has_sets = |k: usize| {
-        let mut areas = traffic
+    let filled = || {
+        traffic
             .targets
             .iter()
-            .filter_map(|target| target.areas.get(k));
-        areas.any(|area| !area.is_empty())
+            .filter_map(|target| target.filled(only))
     };
-    if has_sets(filled) {
-        let label = match closest {
+    if filled().any(|moment| !moment.area.is_empty()) {
+        let is_met = traffic
+            .targets
+            .iter()
+            .any(|target| target.closest.is_some());
+        let label = match is_met {
             _ if only.is_some() => "sets".to_owned(),
-            Some(_) => "sets at the closest approach".to_owned(),
-            None => format!("sets at {}", minutes(traffic.times[filled])),
+            true if style.is_small() => "sets then".to_owned(),
+            true => "sets at their closest approach".to_owned(),
+            false => format!("sets at {}", clock(traffic.times[0])),
         };
         panel.area_key(&label, colour, FILLED);
-        if traffic.targets.iter().any(|target| !target.hard.is_empty()) {
+        if filled().any(|moment| !moment.hard.is_empty()) {
             panel.area_key("hard sets", colour, BOTH);
         }
         if outlined && traffic.times.len() > 1 {
@@ -513,7 +626,8 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
         let way: Vec<Vector> = times.map(|t| trajectory.pose_at(t).position).collect();
         Some(curve(&way, false, FOUND))
     });
-    let mut panel = chart(title, run, &Style::default(), ways.collect());
+    let met = document::encounters(run);
+    let mut panel = chart(title, run, &met, &Style::default(), ways.collect());
     panel.line_key("found clear of all sets", FOUND);
     panel
 }

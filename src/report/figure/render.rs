@@ -532,7 +532,7 @@ fn drawn_key(key: &Key, [x, y]: [f64; 2], letters: usize, size: u32) -> [Primiti
 }
 
 /// A text cut to at most this many letters.
-pub(super) fn shortened(text: &str, letters: usize) -> String {
+fn shortened(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters {
         return text.to_owned();
     }

@@ -6,6 +6,7 @@ use super::{Panel, Stroke};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
 use crate::obstacle::Obstacle;
+use crate::text::clock;
 
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
 pub(super) const INITIAL: Stroke = Stroke::solid("#0072b2", 2.4);
@@ -136,15 +137,9 @@ pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
 }
 
-/// A time as minutes and seconds, such as `12:05`.
-pub(super) fn minutes(time: f64) -> String {
-    let whole = time.round() as i64;
-    format!("{}:{:02}", whole / 60, whole % 60)
-}
-
 /// Times as minutes and seconds.
 pub(super) fn minutes_list(times: &[f64]) -> String {
-    let list: Vec<String> = times.iter().map(|time| minutes(*time)).collect();
+    let list: Vec<String> = times.iter().map(|time| clock(*time)).collect();
     list.join(", ")
 }
 

@@ -1,12 +1,12 @@
 //! Figure of a simulation: what was sailed, and the closest approach.
 
-use super::plan::{Charted, Traffic, marked_times, moments, traffic_chart};
+use super::plan::{Charted, Meeting, Moment, Traffic, marked_times, moments, traffic_chart};
 use super::{Figure, FigureError, FigureOptions, Panel, Style};
-use crate::document::{SimulatedTargetDocument, SimulationDocument};
+use crate::document::{SimulatedTargetDocument, SimulationDocument, chart_role};
 use crate::frame::{Pose, Vector};
 use crate::report::simulation::headline;
 use crate::scenario::Scenario;
-use crate::text::significant;
+use crate::text::{Times, significant};
 
 /// Most instants after the start at which hulls are drawn.
 const INSTANTS: f64 = 6.0;
@@ -15,7 +15,7 @@ const INSTANTS: f64 = 6.0;
 const STEP: f64 = 1.0;
 const MOST_POINTS: f64 = 5_000.0;
 
-/// Draws the tracks of all ships, their hulls at round times and the closest approach.
+/// Draws the tracks of all ships, their hulls at round times and the closest approaches.
 pub fn simulation_figure(
     scenario: &Scenario,
     simulation: &SimulationDocument,
@@ -23,7 +23,7 @@ pub fn simulation_figure(
 ) -> Result<Figure, FigureError> {
     let title = match simulation.safe {
         true => simulation.scenario.clone(),
-        false => headline(simulation),
+        false => headline(simulation, Times::Clock),
     };
     options.draw(simulation.duration_s, |style| {
         let figure = match style.panels {
@@ -54,53 +54,53 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let steps = (end / step).ceil() as usize;
     let sampled = (0..=steps).map(|k| (k as f64 * step).min(end));
     let sampled: Vec<f64> = sampled.collect();
-    let nearest = simulation.targets.iter().min_by(|a, b| {
-        // a distance that is no number is a contact
-        let [a, b] = [a, b].map(|t| t.least_clearance_m.unwrap_or(f64::NEG_INFINITY));
-        a.total_cmp(&b)
-    });
-    let closest = nearest.map(|target| target.least_clearance_t_s);
-    let (times, filled) = marked_times(style, end, INSTANTS, closest);
+    // a distance that is no number is a contact
+    let apart =
+        |target: &SimulatedTargetDocument| target.least_clearance_m.unwrap_or(f64::NEG_INFINITY);
+    let closest = simulation.targets.iter();
+    let closest = closest.map(|target| [apart(target), target.least_clearance_t_s]);
+    let times = marked_times(style, end, INSTANTS, closest);
     let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
-    let targets = simulation.targets.iter().map(|target| Charted {
-        name: target.name.clone(),
-        hull: target.set_m.is_none().then(|| target.hull()),
-        track: (sampled.iter())
-            .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))
-            .collect(),
-        poses: (times.iter())
-            .map(|time| target.at(*time).map(|ship| ship.pose))
-            .collect(),
-        areas: match target.set_m {
-            None => Vec::new(),
-            Some(_) => (times.iter())
-                .map(|time| {
-                    target
-                        .at(*time)
-                        .map_or_else(Vec::new, |s| corners(target, &s.pose))
-                })
-                .collect(),
-        },
-        hard: Vec::new(),
-    });
-    let closest = nearest.and_then(|target| {
+    let targets = simulation.targets.iter().map(|target| {
+        let moment = |time: f64| {
+            let pose = target.at(time).map(|ship| ship.pose);
+            let is_set = target.set_m.is_some();
+            let area = pose.filter(|_| is_set).map(|pose| corners(target, &pose));
+            Moment {
+                pose,
+                area: area.unwrap_or_default(),
+                hard: Vec::new(),
+            }
+        };
         let time = target.least_clearance_t_s;
-        let ends = [own(&time)?.position, target.at(time)?.pose.position];
-        let apart = target
-            .least_clearance_m
-            .filter(|_| target.contact_t_s.is_none());
-        let apart = apart.map_or("CONTACT".to_owned(), |m| format!("{} m", significant(m)));
-        Some((ends, apart))
+        let text = match target.contact_t_s {
+            None if apart(target).is_finite() => format!("{} m", significant(apart(target))),
+            _ => "CONTACT".to_owned(),
+        };
+        Charted {
+            name: target.name.clone(),
+            role: chart_role(&target.conduct.roles, "none"),
+            hull: target.set_m.is_none().then(|| target.hull()),
+            track: (sampled.iter())
+                .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))
+                .collect(),
+            moments: times.iter().map(|time| moment(*time)).collect(),
+            closest: own(&time).map(|own| Meeting {
+                time,
+                own,
+                target: moment(time),
+                apart: apart(target),
+                text,
+            }),
+        }
     });
     Traffic {
+        targets: targets.collect(),
         track: (sampled.iter().filter_map(own))
             .map(|pose| pose.position)
             .collect(),
         own: times.iter().filter_map(own).collect(),
-        targets: targets.collect(),
         words: ["sailed", "targets"],
-        closest,
         times,
-        filled,
     }
 }

@@ -29,6 +29,7 @@ use crate::output::{WriteError, write_atomically};
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use crate::study::compare::Entry;
+use crate::text::Times;
 
 pub use link::link_from;
 
@@ -71,7 +72,7 @@ impl HtmlReport {
         self.section(html! {
             h2 { (headline(plan)) }
             (origin(subject))
-            (named_lines(plan_lines(plan), TIME_LINE))
+            (named_lines(plan_lines(plan, Times::Seconds), TIME_LINE))
             (figures)
             @if !legs.rows.is_empty() { (table(legs, &[])) }
         });
@@ -130,13 +131,13 @@ impl HtmlReport {
         );
         let targets = &simulation.targets;
         self.section(html! {
-            h2 { (simulation_headline(simulation)) }
+            h2 { (simulation_headline(simulation, Times::Seconds)) }
             (origin(subject))
-            (named_lines(conduct_lines(simulation), TIMES))
+            (named_lines(conduct_lines(simulation, Times::Seconds), TIMES))
             (figures)
             @if !targets.is_empty() {
                 h3 { "Targets" }
-                (table(targets_grid(targets), &[]))
+                (table(targets_grid(targets, Times::Seconds), &[]))
                 h3 { "Rules, by both judges" }
                 (table(judges_grid(targets), &[]))
             }
@@ -144,7 +145,7 @@ impl HtmlReport {
             (table(replans_grid(&simulation.replans), &[]))
             @if !simulation.alarms.is_empty() {
                 h3 { "Alarms" }
-                ul { @for line in alarm_lines(simulation) { li { (line) } } }
+                ul { @for line in alarm_lines(simulation, Times::Seconds) { li { (line) } } }
             }
         });
     }
