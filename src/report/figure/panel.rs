@@ -227,6 +227,11 @@ impl Panel {
         self.drawn.line(bends(points));
     }
 
+    /// Labels keep off a line that is drawn already.
+    pub(super) fn keep_off(&mut self, points: &[Vector]) {
+        self.drawn.line(bends(points));
+    }
+
     /// Fills a set, from which labels keep clear, with its boundary.
     pub(super) fn fill_set(&mut self, points: &[Vector], colour: &'static str, opacity: f64) {
         if let Ok(hull) = ConvexPolygon::hull(points) {

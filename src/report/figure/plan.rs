@@ -58,7 +58,7 @@ const MET_DOT: f64 = 2.6;
 
 /// Least interval between a round time and a closest approach, as a fraction of the interval
 /// between round times.
-const TIMES_APART: f64 = 0.125;
+const TIMES_APART: f64 = 0.15;
 
 /// Most instants after the start at which the sets are drawn.
 const INSTANTS: f64 = 4.0;
@@ -490,8 +490,9 @@ pub(super) fn traffic_chart(
         let ends = [met.own.position, met.target.place().unwrap_or_default()];
         panel.curve(&ends, false, if rank == 0 { CLOSEST } else { CLOSE });
     }
-    // no hull hides own ship
+    // no hull hides own ship, and labels keep off its track more than off others
     panel.curve(&traffic.track, false, PLANNED);
+    panel.keep_off(&traffic.track);
     let mut places = Vec::new();
     for (k, pose) in traffic.own.iter().enumerate() {
         if instants.contains(&k) && window.contains(pose.position) {
