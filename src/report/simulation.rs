@@ -128,10 +128,13 @@ fn in_words(broken: &[String]) -> String {
 }
 
 /// Own ship's manoeuvres, and when it turns back.
-fn manoeuvres(sailed: &SailedDocument) -> String {
+fn manoeuvres(sailed: &SailedDocument, times: Times) -> String {
     let manoeuvre = |m: &SailedManoeuvreDocument| match m.returns_s {
-        Some(time) => format!("{}, back from {time:.0} s", m.departure),
-        None => m.departure.to_string(),
+        Some(time) => {
+            let departure = m.departure.words(times);
+            format!("{departure}, back from {}", times.at(time, 0))
+        }
+        None => m.departure.words(times),
     };
     let all: Vec<String> = sailed.manoeuvres.iter().map(manoeuvre).collect();
     match all.is_empty() {
@@ -215,7 +218,7 @@ pub(super) fn conduct_lines(
                 counted(sailed.speed_changes, "change")
             ),
         ),
-        ("Manoeuvres", manoeuvres(sailed)),
+        ("Manoeuvres", manoeuvres(sailed, times)),
         (
             "Plans",
             format!(
