@@ -162,11 +162,19 @@ impl<'a> Field<'a> {
         Fault::new(self.path_of(key), found, allowed).at_line(node.line)
     }
 
-    /// Notes a key of this table that is not among the `known` ones.
-    pub(super) fn unknown(&self, key: &str, found: impl Display, known: &[String]) {
+    /// Notes a key of this table that is not among the `known` ones, and which of them was meant.
+    pub(super) fn unknown(&self, key: &str, meant: Option<&String>, known: &[String]) {
         let allowed = format_args!("one of {}", known.join(", "));
-        let fault = self.fault_of(key, found, allowed);
-        self.faults.note_unknown(key, fault);
+        match meant {
+            Some(meant) => {
+                let found = format_args!("an unknown key, perhaps for '{meant}'");
+                self.fault_at(key, found, allowed);
+            }
+            None => {
+                let fault = self.fault_of(key, "an unknown key", allowed);
+                self.faults.note_unknown(key, fault);
+            }
+        }
     }
 
     /// Notes the keys that this table may have.

@@ -13,6 +13,7 @@ pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fmt::{self, Display};
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
@@ -125,7 +126,7 @@ pub(crate) struct Faults {
     noted: RefCell<Vec<Fault>>,
     /// The tables that were read: where each is, and its known keys.
     tables: RefCell<Vec<(String, Vec<String>)>>,
-    /// Faults of unknown keys, and the keys.
+    /// Faults of unknown keys that are like no known one, and the keys.
     unknown: RefCell<Vec<(Fault, String)>>,
 }
 
@@ -162,7 +163,10 @@ impl Faults {
         let mut faults = self.noted.take();
         let tables = self.tables.take();
         faults.extend(self.unknown.take().into_iter().map(|(mut fault, key)| {
-            if let Some((path, _)) = tables.iter().find(|(_, known)| known.contains(&key)) {
+            let owners = tables.iter().filter(|(_, known)| known.contains(&key));
+            let owners: BTreeSet<String> = owners.map(|(path, _)| without_index(path)).collect();
+            // where several tables have the key, nobody knows which is meant
+            if let (Some(path), 1) = (owners.first(), owners.len()) {
                 fault.found = match path.as_str() {
                     "" => "a key that belongs above all tables".to_owned(),
                     path => format!("a key that belongs in '{path}'"),
@@ -173,6 +177,14 @@ impl Faults {
         faults.sort_by_key(|fault| fault.line);
         faults
     }
+}
+
+/// The path of a table without the places in lists: `targets` for `targets[0]`.
+fn without_index(path: &str) -> String {
+    let parts = path.split('[');
+    parts
+        .map(|part| part.split_once(']').map_or(part, |(_, rest)| rest))
+        .collect()
 }
 
 const MEBIBYTE: u64 = 1024 * 1024;

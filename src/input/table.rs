@@ -220,12 +220,8 @@ impl<'a> Table<'a> {
                 continue;
             }
             let meant = nearest(name, &self.known);
-            let found = match meant {
-                Some(meant) => format!("an unknown key, perhaps for '{meant}'"),
-                None => "an unknown key".to_owned(),
-            };
             missing.retain(|(keys, _)| !keys.iter().any(|key| Some(key) == meant));
-            self.field.unknown(name, found, &self.known);
+            self.field.unknown(name, meant, &self.known);
         }
         for (keys, allowed) in missing {
             let or = match &keys[1..] {

@@ -152,6 +152,17 @@ fn a_key_in_the_wrong_table_is_told_where_it_belongs() {
     assert_eq!(moved.found, "a key that belongs above all tables");
     let moved = first(format!("{SCENARIO}{SHIP}safety_margin_m = 20\n"));
     assert_eq!(moved.found, "a key that belongs in 'own_ship'");
+    let with = |table: &str, line: &str| {
+        let text = SCENARIO.replace(table, &format!("{table}\n{line}"));
+        first(format!("{text}{SHIP}")).found
+    };
+    let near = with("[mission]", "speeds_mps = [5]");
+    assert_eq!(near, "an unknown key, perhaps for 'leg_speeds_mps'");
+    let ship = with("title = \"least\"", "name = \"ship\"");
+    assert_eq!(ship, "a key that belongs in 'targets'");
+    // own ship and targets have one
+    let place = with("[mission]", "position = { east_m = 0, north_m = 0 }");
+    assert_eq!(place, "an unknown key");
     let late = first(SCENARIO.replace("[mission]", "[mission]\nstart_s = 60"));
     assert_eq!(late.path, "mission.start_s");
     assert!(late.allowed.ends_with("(the present, 'time_s')"), "{late}");
