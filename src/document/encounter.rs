@@ -102,20 +102,59 @@ pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
     broken.into_iter().collect()
 }
 
-/// Names of the compliance monitors.
-const MONITORS: [(&str, &str); 6] = [
-    ("S", "contact"),
-    ("R1", "collision course"),
-    ("R3", "crossing"),
-    ("R4", "head-on"),
-    ("R5", "overtaking"),
-    ("R6", "stand-on"),
+/// A compliance monitor in words.
+pub(crate) struct MonitorWords {
+    pub(crate) number: &'static str,
+    name: &'static str,
+    /// What own ship does that breaks it.
+    pub(crate) breaks: &'static str,
+    /// What own ship did not do, with TURN, HOLD and TIME in place of the limits.
+    pub(super) violated: &'static str,
+}
+
+pub(crate) const MONITORS: [MonitorWords; 6] = [
+    MonitorWords {
+        number: "S",
+        name: "contact",
+        breaks: "the hulls touch",
+        violated: "did not keep the hulls apart",
+    },
+    MonitorWords {
+        number: "R1",
+        name: "collision course",
+        breaks: "holds a collision course until the hulls meet",
+        violated: "held a collision course until the hulls met",
+    },
+    MonitorWords {
+        number: "R3",
+        name: "crossing",
+        breaks: "in a crossing, alters too little or too late",
+        violated: "did not turn TURN to starboard or halve its speed TIME",
+    },
+    MonitorWords {
+        number: "R4",
+        name: "head-on",
+        breaks: "head-on, turns to starboard too little or too late",
+        violated: "did not turn TURN to starboard TIME",
+    },
+    MonitorWords {
+        number: "R5",
+        name: "overtaking",
+        breaks: "overtaking, alters too little or too late",
+        violated: "did not turn TURN or halve its speed TIME",
+    },
+    MonitorWords {
+        number: "R6",
+        name: "stand-on",
+        breaks: "does not stand on",
+        violated: "did not hold its courseHOLD",
+    },
 ];
 
 /// Rules and monitors in words: a monitor has its name before its number, as in `overtaking (R5)`.
 pub(crate) fn rules_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> String {
-    let word = |number: &str| match MONITORS.iter().find(|(known, _)| *known == number) {
-        Some((_, name)) => format!("{name} ({number})"),
+    let word = |number: &str| match MONITORS.iter().find(|known| known.number == number) {
+        Some(known) => format!("{} ({number})", known.name),
         None => number.to_owned(),
     };
     broken.into_iter().map(word).collect::<Vec<_>>().join(", ")

@@ -1,11 +1,10 @@
 //! The plan document in named lines: the one wording of a plan for a terminal, a page and a
 //! recording.
 
-use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use super::{
-    ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
+    ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument, MONITORS,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
     conduct_breaks, has_role, rules_in_words,
 };
@@ -16,6 +15,7 @@ use crate::planner::SearchKind;
 use crate::text::{
     Times, counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
 };
+use crate::tolerance;
 
 const LISTED: usize = 3;
 
@@ -322,14 +322,38 @@ fn apart(
 /// What a distance is from and to: own hull to a target's hull, or own position to a set, which has
 /// no hull.
 pub(super) fn distance_words(metres: f64, is_set: bool) -> String {
-    match (metres.total_cmp(&0.0), is_set) {
-        (Ordering::Less, true) => "in its set, deepest".to_owned(),
-        (Ordering::Less, false) => "the hulls overlap, deepest".to_owned(),
-        (Ordering::Equal, true) => "touches its set".to_owned(),
-        (Ordering::Equal, false) => "the hulls touch".to_owned(),
-        (Ordering::Greater, true) => format!("{} m to its set", tenths(metres)),
-        (Ordering::Greater, false) => format!("{} m hull to hull", tenths(metres)),
+    match (contact(metres), is_set) {
+        (Contact::Overlap(None), true) => "in its set".to_owned(),
+        (Contact::Overlap(Some(depth)), true) => format!("{} m deep in its set", tenths(depth)),
+        (Contact::Overlap(depth), false) => format!("the hulls overlap{}", by(depth)),
+        (Contact::Touch, true) => "touches its set".to_owned(),
+        (Contact::Touch, false) => "the hulls touch".to_owned(),
+        (Contact::Apart, true) => format!("{} m to its set", tenths(metres)),
+        (Contact::Apart, false) => format!("{} m hull to hull", tenths(metres)),
     }
+}
+
+/// How two bodies lie to each other, with the depth of an overlap where it is known.
+enum Contact {
+    Apart,
+    Touch,
+    Overlap(Option<f64>),
+}
+
+/// Planned motions may touch to rounding. A NaN counts as an overlap.
+fn contact(metres: f64) -> Contact {
+    if metres > tolerance::TOUCH_M {
+        Contact::Apart
+    } else if metres >= -tolerance::TOUCH_M {
+        Contact::Touch
+    } else {
+        Contact::Overlap((!metres.is_nan()).then_some(-metres))
+    }
+}
+
+/// The depth of an overlap, behind what overlaps.
+fn by(depth: Option<f64>) -> String {
+    depth.map_or(String::new(), |depth| format!(" by {} m", tenths(depth)))
 }
 
 /// True for a target that is given by its sets, without a hull.
@@ -387,15 +411,13 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument, times: Times) ->
         let factor = t.time_factor(plan.own_ship.length_m);
         format!("within {:.0} s", factor * t.monitor.response())
     });
-    let past = "and before the target was past";
-    let what = match monitor.monitor.as_str() {
-        "S" => "did not keep the hulls apart".to_owned(),
-        "R1" => "held a collision course until the hulls met".to_owned(),
-        "R3" => format!("did not turn {turn} to starboard or halve its speed {time} {past}"),
-        "R4" => format!("did not turn {turn} to starboard {time} {past}"),
-        "R5" => format!("did not turn {turn} or halve its speed {time} {past}"),
-        "R6" => format!("did not hold its course{hold}"),
-        name => format!("violated {name}"),
+    let number = monitor.monitor.as_str();
+    let what = match MONITORS.iter().find(|known| known.number == number) {
+        Some(known) => (known.violated)
+            .replace("TURN", &turn)
+            .replace("HOLD", &hold)
+            .replace("TIME", &format!("{time} and before the target was past")),
+        None => format!("violated {number}"),
     };
     // avoids a negative zero; a violation is more than nothing, so that none reads 0
     let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
@@ -482,10 +504,10 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
             _ if sets == plan.targets.len() => "the hard sets",
             _ => "the hard sets and any hull that a target may have",
         };
-        let clearance = match clearance.total_cmp(&0.0) {
-            Ordering::Less => format!("overlaps {to}, by {} m", tenths(-clearance)),
-            Ordering::Equal => format!("touches {to}"),
-            Ordering::Greater => format!("{} m to {to}", tenths(clearance)),
+        let clearance = match contact(clearance) {
+            Contact::Overlap(depth) => format!("overlaps {to}{}", by(depth)),
+            Contact::Touch => format!("touches {to}"),
+            Contact::Apart => format!("{} m to {to}", tenths(clearance)),
         };
         let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
         let hold = cost.arrival_hold_s;
@@ -644,6 +666,35 @@ mod tests {
         assert!(said("R5", "deg", false, "mine").starts_with(
             "breaks overtaking (R5) at 40 s: did not turn far enough or halve its speed in time and before"
         ));
+    }
+
+    /// A plan may touch to rounding, and what is no number is never apart.
+    #[test]
+    fn a_distance_is_apart_a_touch_or_an_overlap() {
+        for (metres, hulls, set) in [
+            (1.5, "1.5 m hull to hull", "1.5 m to its set"),
+            (1e-9, "the hulls touch", "touches its set"),
+            (-0.0, "the hulls touch", "touches its set"),
+            (-1e-9, "the hulls touch", "touches its set"),
+            (-1.5, "the hulls overlap by 1.5 m", "1.5 m deep in its set"),
+            (f64::NAN, "the hulls overlap", "in its set"),
+        ] {
+            let words = [false, true].map(|is_set| distance_words(metres, is_set));
+            assert_eq!(words, [hulls, set], "{metres}");
+        }
+        let text = include_str!("../../scenarios/colregs/give-way.toml");
+        let mut plan = PlanDocument::of(&pipeline::run(Scenario::parse(text).expect("valid")));
+        for (metres, begins) in [
+            (-0.0, "touches any hull"),
+            (-1e-9, "touches any hull"),
+            (-1.5, "overlaps any hull that a target may have by 1.5 m;"),
+            (f64::NAN, "overlaps any hull that a target may have;"),
+        ] {
+            plan.cost.as_mut().expect("a plan").min_clearance_m = Some(metres);
+            let lines = plan_lines(&plan);
+            let line = lines.iter().find(|(name, _)| *name == "clearance");
+            assert!(line.expect("a line").1.starts_with(begins), "{line:?}");
+        }
     }
 
     #[test]

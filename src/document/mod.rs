@@ -28,8 +28,8 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 pub use assessment::*;
 pub use check::*;
 pub use comparison::*;
-pub(crate) use encounter::rules_in_words;
 pub use encounter::*;
+pub(crate) use encounter::{MONITORS, rules_in_words};
 #[cfg(feature = "recording")]
 pub(crate) use lines::escape_words;
 pub(crate) use lines::{

@@ -20,10 +20,13 @@ fn title(compared: &ScenarioComparisonDocument) -> &str {
 
 /// Formats the table of one scenario and the methods that do not apply.
 pub fn comparison_table(compared: &ScenarioComparisonDocument, display: Display) -> String {
-    let table = comparison_grid(&compared.entries).text(display);
+    let (table, columns) = comparison_grid(&compared.entries).text_and_columns(display);
     // remarks on a column that is dropped are none
     let dropped = [("[m²]", "J "), ("clearance", CLEARANCE)];
-    let dropped = dropped.iter().filter(|(column, _)| !table.contains(column));
+    let dropped = dropped.iter().filter(|(part, _)| {
+        let mut columns = columns.iter();
+        !columns.any(|column| column.contains(part))
+    });
     let dropped: Vec<&str> = dropped.map(|(_, remark)| *remark).collect();
     let remarks = remarks(compared).into_iter();
     let remarks = remarks.filter(|remark| !dropped.iter().any(|start| remark.starts_with(start)));

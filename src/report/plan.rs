@@ -7,8 +7,9 @@ use super::table::{
     Display, Grid, Styled, Tone, or_dash, painted, plain, verdict, verified, yes_or_no,
 };
 use crate::document::{
-    Departure, EncounterDocument, PlanDocument, PlannedLeg, SuiteRunDocument, TimingDocument,
-    breaks, in_brackets, longest, met, passing, plan_lines, rules_in_words, verdict_parts,
+    Departure, EncounterDocument, MONITORS, PlanDocument, PlannedLeg, SuiteRunDocument,
+    TimingDocument, breaks, in_brackets, longest, met, passing, plan_lines, rules_in_words,
+    verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -27,8 +28,9 @@ pub(super) const CLEARANCE: &str =
 /// Formats a table with one row per scenario, and explains the clearance and the monitors in it.
 pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
     let broken = runs.iter().filter_map(|run| breaks(&run.encounters));
-    let table = suite_grid(runs).text(display);
-    let clearance = table.contains("clearance").then(|| CLEARANCE.to_owned());
+    let (table, columns) = suite_grid(runs).text_and_columns(display);
+    let has_clearance = columns.iter().any(|name| name.starts_with("clearance"));
+    let clearance = has_clearance.then(|| CLEARANCE.to_owned());
     let keys = clearance.into_iter().chain(monitors_key(broken.flatten()));
     std::iter::once(table)
         .chain(keys)
@@ -126,21 +128,14 @@ pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
     }
 }
 
-/// What own ship does that breaks a compliance monitor.
-const MONITORS: [(&str, &str); 6] = [
-    ("S", "the hulls touch"),
-    ("R1", "holds a collision course until the hulls meet"),
-    ("R3", "in a crossing, alters too little or too late"),
-    ("R4", "head-on, turns to starboard too little or too late"),
-    ("R5", "overtaking, alters too little or too late"),
-    ("R6", "does not stand on"),
-];
-
 /// Explains the monitors among what is broken; `None` without one. Other names are rules.
 pub(super) fn monitors_key<'a>(broken: impl Iterator<Item = &'a str>) -> Option<String> {
     let broken: Vec<&str> = broken.collect();
-    let told = MONITORS.iter().filter(|(name, _)| broken.contains(name));
-    let told: Vec<String> = told.map(|(name, what)| format!("{name}: {what}")).collect();
+    let told = MONITORS
+        .iter()
+        .filter(|monitor| broken.contains(&monitor.number));
+    let told = told.map(|monitor| format!("{}: {}", monitor.number, monitor.breaks));
+    let told: Vec<String> = told.collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
 
@@ -298,6 +293,22 @@ mod tests {
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
         let both = suite_table(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
+    }
+
+    /// A name of a scenario is no column.
+    #[test]
+    fn a_remark_on_a_column_needs_the_column() {
+        let mut run = planned();
+        run.file = "clearance.toml".to_owned();
+        for (width, is_told) in [(None, true), (Some(40), true), (Some(81), false)] {
+            let display = Display {
+                colour: false,
+                width,
+            };
+            run.verdict = "a long outcome of many words which leaves no room for others".to_owned();
+            let table = suite_table(std::slice::from_ref(&run), display);
+            assert_eq!(table.contains(CLEARANCE), is_told, "{table}");
+        }
     }
 
     #[test]

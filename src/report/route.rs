@@ -231,7 +231,7 @@ fn geojson(legs: &[PlannedLeg], earth: &Georeference, present: Option<DateTime<U
 /// A waypoint of RTZ: where two lines meet, and the arc that rounds the corner.
 #[derive(Debug, Clone, PartialEq)]
 struct Waypoint {
-    /// The manoeuvre that begins here.
+    /// The manoeuvre of a leg, at the first waypoint of that leg.
     name: Option<String>,
     place: Vector,
     /// Metres; 0 where the course or the speed changes at once.
@@ -248,8 +248,15 @@ struct Waypoint {
 /// changes at once is a waypoint of its own. At least two waypoints, as RTZ requires.
 fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     let first = &legs[0].motion;
-    let at = |leg, place, radius, speed, time| Waypoint {
-        name: manoeuvre(leg),
+    let mut named = 0;
+    let mut at = |leg: usize, place, radius, speed, time| Waypoint {
+        name: match leg < named {
+            true => None,
+            false => {
+                named = leg + 1;
+                manoeuvre(legs.get(leg))
+            }
+        },
         place,
         radius,
         speed,
@@ -258,13 +265,7 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     };
     let moves = legs.iter().find(|leg| !leg.waits());
     let speed = moves.map_or(0.0, |leg| leg.motion.speed);
-    let mut all = vec![at(
-        legs.first(),
-        first.start.position,
-        0.0,
-        speed,
-        first.start_time,
-    )];
+    let mut all = vec![at(0, first.start.position, 0.0, speed, first.start_time)];
     for (index, leg) in legs.iter().enumerate() {
         let motion = &leg.motion;
         if leg.waits() {
@@ -275,8 +276,7 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         if motion.is_arc() {
             let corners = corners(motion);
             all.extend(
-                corners
-                    .map(|(place, radius, time)| at(Some(leg), place, radius, motion.speed, time)),
+                corners.map(|(place, radius, time)| at(index, place, radius, motion.speed, time)),
             );
         }
         // the tangents of an arc lead on
@@ -286,17 +286,12 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
         });
         if !leads_on {
             let end = motion.end().position;
-            all.push(at(
-                legs.get(index + 1),
-                end,
-                0.0,
-                motion.speed,
-                motion.end_time(),
-            ));
+            all.push(at(index + 1, end, 0.0, motion.speed, motion.end_time()));
         }
     }
     if let [only] = &all[..] {
         let end = Waypoint {
+            name: None,
             stay: 0.0,
             ..only.clone()
         };
@@ -307,9 +302,10 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
 
 /// What own ship begins to do on a leg, as in "turns for 'tanker', starboard 30°".
 fn manoeuvre(leg: Option<&PlannedLeg>) -> Option<String> {
-    let mut events = leg?.events.iter();
+    let leg = leg?;
+    let mut events = leg.events.iter();
     let event = events.find(|event| !event.starts_with(CLOSEST))?;
-    let turn = leg?.turn_words().filter(|turn| turn != "waits");
+    let turn = leg.turn_words().filter(|_| !leg.waits());
     Some(turn.map_or(event.clone(), |turn| format!("{event}, {turn}")))
 }
 
@@ -603,6 +599,14 @@ mod tests {
                 "{all:?}"
             );
         }
+        let leg = PlannedLeg {
+            motion: turn,
+            corner_deg: 0.0,
+            because_of: None,
+            events: vec!["turns for 'a'".to_owned()],
+        };
+        let named = waypoints(&[leg]).into_iter().map(|waypoint| waypoint.name);
+        assert_eq!(named.flatten().count(), 1);
         assert_eq!(time_of_day(3725.4), "01:02:05");
         assert_eq!(
             in_xml("<a & \"b\">\u{7}"),

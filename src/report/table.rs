@@ -100,18 +100,25 @@ impl Grid {
     /// drops others until it fits, and breaks all lines if it still does not. A narrow terminal
     /// shows a card per row instead.
     pub fn text(self, display: Display) -> String {
+        self.text_and_columns(display).0
+    }
+
+    /// [`Grid::text`], and the header of the columns that are left.
+    pub fn text_and_columns(self, display: Display) -> (String, Vec<&'static str>) {
         let width = display.width.unwrap_or(usize::MAX);
         if width < CARD_WIDTH && self.width(display) > width {
-            return self.brief().cards(display);
+            let grid = self.brief();
+            return (grid.cards(display), grid.header);
         }
         let mut grid = self;
         for name in DETAILS.into_iter().chain(FURTHER) {
             grid = match grid.fitted(width, display) {
-                Ok(fitted) => return fitted.table(display).trim_fmt(),
+                Ok(fitted) => return (fitted.table(display).trim_fmt(), fitted.header),
                 Err(wide) => wide.without(name),
             };
         }
-        wrapped(grid.table(display), display).trim_fmt()
+        let text = wrapped(grid.table(display), display).trim_fmt();
+        (text, grid.header)
     }
 
     fn width(&self, display: Display) -> usize {

@@ -132,7 +132,7 @@ fn margins(checked: &Verification, display: Display) -> String {
     let table = Grid::new(header, 1..6, rows).text(display);
     format!(
         "{table}\nmargin: own position to the set that the plan avoids\n{CLEARANCE}\n\
-         dCPA: hull to hull, as expected"
+         dCPA: as expected, own hull to hull, or own position to an explicit set"
     )
 }
 

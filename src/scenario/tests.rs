@@ -157,7 +157,7 @@ fn a_key_in_the_wrong_table_is_told_where_it_belongs() {
         first(format!("{text}{SHIP}")).found
     };
     let near = with("[mission]", "speeds_mps = [5]");
-    assert_eq!(near, "an unknown key, perhaps for 'leg_speeds_mps'");
+    assert_eq!(near, "an unknown key, perhaps for 'speed_mps'");
     let ship = with("title = \"least\"", "name = \"ship\"");
     assert_eq!(ship, "a key that belongs in 'targets'");
     // own ship and targets have one

@@ -16,6 +16,12 @@ use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 /// Degrees: a smaller departure from the desired course is none.
 pub(super) const LEAST_DEG: f64 = 5.0;
 
+/// Degrees: a departure goes on down to here, so that a course near [`LEAST_DEG`] is one departure.
+const LEAVES_DEG: f64 = 3.0;
+
+/// Fraction of the turning radius. Own ship is on its path where it is less far from it.
+const ON_PATH: f64 = 0.1;
+
 /// Fraction of the desired speed. A smaller departure from it is none.
 const SPEED: f64 = 0.02;
 
@@ -41,7 +47,12 @@ pub enum Departure {
         from_s: f64,
     },
     /// The longest wait, and the distance sailed before it.
-    Waits { for_s: f64, at_m: f64 },
+    Waits {
+        for_s: f64,
+        at_m: f64,
+        #[serde(default)]
+        from_s: f64,
+    },
     /// Speed farthest from the desired one, and since when it is lower or higher.
     Speed {
         slower: bool,
@@ -55,17 +66,18 @@ pub enum Departure {
 pub struct SailedManoeuvreDocument {
     #[serde(flatten)]
     pub departure: Departure,
-    /// When own ship begins to turn back to its path, or where it needs not, to the desired course;
-    /// null where it has not, and where only the speed departs.
+    /// When own ship begins to turn back to its path; null where it has not come back, and where
+    /// only the speed departs.
     pub returns_s: Option<f64>,
 }
 
 impl Departure {
-    /// When it begins, seconds; a wait has a place instead.
-    pub fn begins_s(&self) -> Option<f64> {
+    /// When it begins, seconds.
+    pub fn begins_s(&self) -> f64 {
         match *self {
-            Self::Course { from_s, .. } | Self::Speed { from_s, .. } => Some(from_s),
-            Self::Waits { .. } => None,
+            Self::Course { from_s, .. }
+            | Self::Speed { from_s, .. }
+            | Self::Waits { from_s, .. } => from_s,
         }
     }
 
@@ -149,7 +161,7 @@ pub(crate) fn manoeuvres(
         let turns = turns(samples, desired, radius).into_iter();
         let sailed = turns.map(|turn| SailedManoeuvreDocument {
             departure: turn.departure(),
-            returns_s: turn.returns.or(turn.resumes),
+            returns_s: turn.returns,
         });
         return sailed.collect();
     }
@@ -230,12 +242,20 @@ fn turns(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -
             turned = if is_between { 0.0 } else { least };
         }
         let degrees = deg_from_radians(turned.abs());
-        let side = Side::of_turn(turned).filter(|_| degrees >= LEAST_DEG);
-        if side != current.map(|(side, _)| side) {
+        let last = current.map(|(side, _)| side);
+        let turned_to = Side::of_turn(turned);
+        let goes_on = turned_to.is_some() && turned_to == last;
+        let least = if goes_on { LEAVES_DEG } else { LEAST_DEG };
+        let side = turned_to.filter(|_| degrees >= least);
+        let is_on_path = off.abs() <= ON_PATH * radius;
+        if side != last {
             let begin = |side| begin(&moving[..=at], side, radius);
-            let returns = off.abs() > 0.1 * radius && off * turned < 0.0;
+            let returns = side.is_some() && !is_on_path && off * turned < 0.0;
             match (current, turns.last_mut()) {
-                (Some((last, false)), Some(turn)) => turn.resumes = Some(begin(last.opposite())),
+                (Some((last, false)), Some(turn)) => {
+                    turn.resumes = Some(begin(last.opposite()));
+                    turn.returns = turn.resumes.filter(|_| returns);
+                }
                 (None, Some(turn)) if returns => turn.returns = turn.returns.or(side.map(begin)),
                 _ => {}
             }
@@ -252,6 +272,10 @@ fn turns(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -
         }
         if let (Some((_, false)), Some(turn)) = (current, turns.last_mut()) {
             turn.degrees = turn.degrees.max(degrees);
+        }
+        // a small departure needs no turn to the path
+        if let (None, true, Some(turn)) = (current, is_on_path, turns.last_mut()) {
+            turn.returns = turn.returns.or(turn.resumes);
         }
     }
     turns
@@ -272,7 +296,7 @@ fn begin(samples: &[&SampleDocument], side: Side, radius: f64) -> f64 {
 }
 
 fn wait(samples: &[SampleDocument]) -> Option<Departure> {
-    let mut longest: Option<(f64, f64)> = None;
+    let mut longest: Option<(f64, f64, f64)> = None;
     let (mut sailed, mut waited) = (0.0, 0.0);
     for pair in samples.windows(2) {
         let (here, next) = (&pair[0], &pair[1]);
@@ -282,12 +306,16 @@ fn wait(samples: &[SampleDocument]) -> Option<Departure> {
             waited = 0.0;
         } else {
             waited += lasts;
-            if longest.is_none_or(|(most, _)| waited > most) {
-                longest = Some((waited, sailed));
+            if longest.is_none_or(|(most, ..)| waited > most) {
+                longest = Some((waited, sailed, next.t_s - waited));
             }
         }
     }
-    longest.map(|(for_s, at_m)| Departure::Waits { for_s, at_m })
+    longest.map(|(for_s, at_m, from_s)| Departure::Waits {
+        for_s,
+        at_m,
+        from_s,
+    })
 }
 
 fn change(samples: &[SampleDocument], desired: &DesiredTrajectory) -> Option<Departure> {
@@ -396,7 +424,8 @@ mod tests {
         }
     }
 
-    /// The turn back to the path counts, not the one to the desired course before it.
+    /// The turn back to the path counts, not the one to the desired course before it. Beside the path
+    /// own ship has not come back.
     #[test]
     fn every_turn_away_has_its_turn_back() {
         let parts = [
@@ -414,12 +443,30 @@ mod tests {
         let sailed = sailed
             .iter()
             .map(|m| (m.departure.to_string(), m.returns_s));
-        let expected = [
-            ("30° from 10 s", Some(60.0)),
-            ("20° from 90 s", Some(100.0)),
-        ];
+        let expected = [("30° from 10 s", Some(60.0)), ("20° from 90 s", None)];
         let expected = expected.map(|(turn, returns)| (format!("starboard {turn}"), returns));
         assert_eq!(sailed.collect::<Vec<_>>(), expected);
+    }
+
+    /// A small departure needs no turn to the path; a course about 5° is one departure.
+    #[test]
+    fn a_departure_ends_on_the_path_and_well_below_its_least_course() {
+        let points = [(0.0, 0.0), (2000.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("a path");
+        let of = |parts: &[(u32, f64, f64)]| -> Vec<_> {
+            let all = manoeuvres(&sailed(parts), &desired, 100.0, false);
+            all.iter()
+                .map(|m| (m.departure.begins_s(), m.returns_s))
+                .collect()
+        };
+        let small = [(10, 90.0, 5.0), (10, 98.0, 5.0), (10, 90.0, 5.0)];
+        assert_eq!(of(&small), [(10.0, Some(20.0))]);
+        let near = [96.0, 94.5, 96.0, 94.5].map(|course| (20, course, 5.0));
+        assert_eq!(of(&near), [(0.0, None)]);
+        let across = [(10, 90.0, 5.0), (20, 120.0, 5.0), (20, 60.0, 5.0)];
+        assert_eq!(of(&across), [(10.0, Some(30.0))]);
+        let waits = [(100, 90.0, 5.0), (30, 90.0, 0.0), (9, 90.0, 5.0)];
+        assert_eq!(of(&waits), [(100.0, None)]);
     }
 
     /// 5° are reached two seconds after the turn has begun.
@@ -439,7 +486,7 @@ mod tests {
             let scenario = crate::scenario::Scenario::read(file.as_ref()).expect("valid");
             let plan = PlanDocument::of(&crate::pipeline::run(scenario));
             let departure = plan.departure.expect("a manoeuvre");
-            let from_s = departure.begins_s().expect("no wait");
+            let from_s = departure.begins_s();
             let begins_s = plan.manoeuvres[0].begins_s;
             assert!(
                 (from_s - begins_s).abs() < 1e-3,

@@ -195,12 +195,12 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
 fn manoeuvres(document: &SimulationDocument) -> impl Iterator<Item = Event> {
     let sailed = document.conduct.manoeuvres.iter();
     let events = sailed.flat_map(|manoeuvre| {
-        let begins = manoeuvre.departure.begins_s();
-        let begins = begins.map(|time| (time, manoeuvre.departure.brief()));
+        let departure = manoeuvre.departure;
+        let begins = (departure.begins_s(), departure.brief());
         let returns = manoeuvre
             .returns_s
             .map(|time| (time, "turns back".to_owned()));
-        begins.into_iter().chain(returns)
+        std::iter::once(begins).chain(returns)
     });
     events.map(|(time, text)| Event {
         time,

@@ -8,11 +8,14 @@ use crate::document::{
     finite, manoeuvres, sample, segment_document, state_document,
 };
 use crate::evaluation::{counted_error_of_segments, least_land_distance};
-use crate::frame::Vector;
+use crate::frame::{Vector, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
 use crate::scenario::VesselModel;
 use crate::trajectory::Segment;
+
+/// Metres. A shorter way has no course beyond rounding.
+const LEAST_WAY_M: f64 = 0.01;
 
 impl Simulation {
     /// The result so far.
@@ -86,7 +89,7 @@ impl Simulation {
                 turns: most(&|m| m.turns),
                 speed_changes: most(&|m| m.speed_changes),
                 manoeuvres: manoeuvres(
-                    &self.sailed_samples(),
+                    &sailed_samples(&self.sailed),
                     desired,
                     own.turning_radius,
                     self.scenario.planner.facts().follows_paths,
@@ -101,17 +104,6 @@ impl Simulation {
                 plan_s: self.plan_seconds.clone(),
             },
         }
-    }
-
-    /// The sailed motion at the start of each segment, and at every second of it.
-    fn sailed_samples(&self) -> Vec<SampleDocument> {
-        let times = self.sailed.iter().flat_map(|segment| {
-            let steps = segment.duration.ceil().max(1.0) as u32;
-            (0..steps).map(move |k| (segment, segment.start_time + f64::from(k)))
-        });
-        times
-            .map(|(segment, time)| sample(segment.pose_at(time), time, segment.speed))
-            .collect()
     }
 
     /// Own hull's least distance from the land of the map over the sailed motion.
@@ -165,6 +157,33 @@ impl Simulation {
     }
 }
 
+/// The sailed motion at the start of each segment, at every second of it, and at its end. A segment
+/// has the heading of own ship, which is not its course in a current or in a turn with a rudder.
+fn sailed_samples(sailed: &[Segment]) -> Vec<SampleDocument> {
+    let mut samples = Vec::new();
+    let mut leeway = 0.0;
+    for (index, segment) in sailed.iter().enumerate() {
+        if let Some(next) = sailed.get(index + 1) {
+            let way = next.start.position - segment.start.position;
+            let ahead = segment.end().position - segment.start.position;
+            if way.norm().min(ahead.norm()) > LEAST_WAY_M {
+                leeway = wrap(heading_of(way) - heading_of(ahead));
+            }
+        }
+        let mut add = |time: f64| {
+            let mut pose = segment.pose_at(time);
+            pose.heading += leeway;
+            samples.push(sample(pose, time, segment.speed));
+        };
+        let steps = segment.duration.ceil().max(1.0) as u32;
+        (0..steps).for_each(|k| add(segment.start_time + f64::from(k)));
+        if index + 1 == sailed.len() {
+            add(segment.end_time());
+        }
+    }
+    samples
+}
+
 fn simulated_targets(
     simulation: &Simulation,
     reports: &[ComplianceReport],
@@ -206,5 +225,83 @@ fn simulated(
             outline.vertices().iter().map(|p| [p.x, p.y]).collect()
         }),
         conduct: report.map(ConductDocument::of).unwrap_or_default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Departure;
+    use crate::frame::{Pose, Side};
+    use crate::scenario::Scenario;
+
+    /// Own ship heads 10° into the current and sails along its path.
+    #[test]
+    fn a_heading_into_the_current_is_no_manoeuvre() {
+        let steps = (0..100).map(f64::from);
+        let sailed: Vec<Segment> = steps
+            .map(|time| {
+                let start = Pose::new(Vector::new(5.0 * time, 0.0), -10_f64.to_radians());
+                Segment::new(start, time, 1.0, 5.0, 0.0)
+            })
+            .collect();
+        let samples = sailed_samples(&sailed);
+        assert_eq!(samples.len(), 101);
+        for sample in &samples {
+            assert!((sample.course_deg - 90.0).abs() < 1e-9, "{sample:?}");
+        }
+    }
+
+    /// A current and a rudder: the courses from place to place have the manoeuvres.
+    #[test]
+    fn sailed_manoeuvres_are_those_of_the_track() {
+        let file = "scenarios/closed-loop/overtaking-rudder.toml";
+        let scenario = Scenario::read(file.as_ref()).expect("valid");
+        let mut simulation = Simulation::new(scenario, false).expect("a closed loop");
+        while !simulation.finished() {
+            simulation.step();
+        }
+        let sailed = &simulation.sailed;
+        // degrees to port of the path, which leads east
+        let course = |from: f64, until: f64| {
+            let at = |time: f64| {
+                let after = sailed.partition_point(|s| s.start_time < time);
+                sailed[after.min(sailed.len() - 1)].start.position
+            };
+            heading_of(at(until) - at(from)).to_degrees()
+        };
+        let manoeuvres = simulation.record().conduct.manoeuvres;
+        let first = manoeuvres.first().expect("a manoeuvre");
+        let Departure::Course {
+            side,
+            turn_deg,
+            from_s,
+        } = first.departure
+        else {
+            panic!("{first:?}");
+        };
+        let returns_s = first.returns_s.expect("the way back");
+        assert_eq!(side, Side::Port);
+        let within = (0..).map(f64::from).take_while(|time| *time < returns_s);
+        let greatest = within
+            .map(|time| course(time, time + 2.0))
+            .fold(0.0, f64::max);
+        assert!((greatest - turn_deg).abs() < 1.0, "{greatest} {turn_deg}");
+        assert!(course(0.0, from_s.max(0.5)).abs() < 5.0, "{from_s}");
+        assert!(course(returns_s - 10.0, returns_s).abs() < 5.0);
+        assert!(course(returns_s + 5.0, returns_s + 15.0) < -10.0);
+        // the current sets a slow ship to port; later it is on its course
+        for later in &manoeuvres[1..] {
+            let from_s = later.departure.begins_s();
+            let mut times = (0..60).map(|k| from_s + f64::from(k));
+            let to_port = match later.departure {
+                Departure::Course {
+                    side: Side::Port, ..
+                } => 1.0,
+                _ => -1.0,
+            };
+            let is_seen = times.any(|time| to_port * course(time, time + 2.0) > 5.0);
+            assert!(is_seen, "{later:?}");
+        }
     }
 }

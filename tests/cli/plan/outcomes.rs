@@ -134,7 +134,7 @@ fn each_command_says_of_what_its_time_of_a_collision_is() {
     for (command, told) in [
         (
             "plan",
-            "on the desired trajectory the hulls overlap, deepest at 150 s",
+            "on the desired trajectory the hulls overlap by 21.0 m at 150 s",
         ),
         (
             "compare",
@@ -158,7 +158,7 @@ fn a_distance_to_a_set_is_no_distance_of_hulls() {
         .success()
         .stdout(contains("closest: 0.0010 m to its set at "))
         .stdout(contains(
-            "on the desired trajectory in its set, deepest at 50 s",
+            "on the desired trajectory 17.5 m deep in its set at 50 s",
         ))
         .stdout(contains("0.0010 m to the hard sets; after arrival"));
 }

@@ -88,7 +88,8 @@ fn a_plan_goes_on_from_the_previous_one() {
     let anew = json(&format!("plan {file} --json"));
     let segments = list(&anew["trajectory"]["segments"]).iter();
     let mut rates = segments.map(|s| number(&s["turn_rate_deg_per_s"]));
-    assert!(rates.find(|rate| *rate != 0.0) < Some(0.0), "to port");
+    let rate = rates.find(|rate| *rate != 0.0);
+    assert!(rate.is_some_and(|rate| rate < 0.0), "to port");
     assert_ne!(anew["encounters"][0]["violations"], Value::Array(vec![]));
     let verified = folder.write("second.json", second.to_string());
     searoom(&["verify", &verified]).success();
