@@ -691,7 +691,7 @@ mod tests {
             (f64::NAN, "overlaps any hull that a target may have;"),
         ] {
             plan.cost.as_mut().expect("a plan").min_clearance_m = Some(metres);
-            let lines = plan_lines(&plan);
+            let lines = plan_lines(&plan, Times::Seconds);
             let line = lines.iter().find(|(name, _)| *name == "clearance");
             assert!(line.expect("a line").1.starts_with(begins), "{line:?}");
         }
