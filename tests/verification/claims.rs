@@ -163,7 +163,6 @@ another planner's objective | /objective = "length-risk" | objective
 not safe | /safe = false | safe: the document says false, it is true
 nothing of its safety | /safe remove | safe: the document says nothing, it is true
 another word | /verdict = "solved, and clear of all" | verdict: the document says solved, and
-another relaxation | /relaxation = {"kind": "risk", "target": "target", "amount": 0.9} | relaxation
 "#;
 
 /// Compliance, requirements given up, and what is said of them.
@@ -188,7 +187,7 @@ fn every_claim_of_a_document_is_held() {
         r#"relaxed as solved | /outcome = "solved" | outcome
         relaxed as infeasible | /outcome = "infeasible" | outcome
         safe within a set | /safe = true | safe: the document says true, it is false
-        claimed from too early | /relaxation/until_s + -1; /relaxations/0/until_s + -1; /obstacles/0/valid_s/0 + -1 | set of
+        claimed from too early | /relaxations/0/until_s + -1; /obstacles/0/valid_s/0 + -1 | set of
         a set that has shrunk | /obstacles/0/initial_set/vertices_m/*/0 + 1 | the positions possible"#,
     );
     for file in ["harbour/ferry-crossing.toml", "forces/give-way.toml"] {
