@@ -198,7 +198,7 @@ impl Times {
         self.figure(time, decimals) + unit
     }
 
-    /// The same without its unit.
+    /// The time without its unit.
     pub fn figure(self, time: f64, decimals: usize) -> String {
         match self {
             Self::Seconds => format!("{time:.decimals$}"),

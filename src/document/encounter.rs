@@ -106,9 +106,9 @@ pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
 pub(crate) struct MonitorWords {
     pub(crate) number: &'static str,
     name: &'static str,
-    /// What own ship does that breaks it.
+    /// The fault of own ship, in the present tense.
     pub(crate) breaks: &'static str,
-    /// What own ship did not do, with TURN, HOLD and TIME in place of the limits.
+    /// The fault in the past tense, with TURN, HOLD and TIME in place of the limits.
     pub(super) violated: &'static str,
 }
 

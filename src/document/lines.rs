@@ -319,7 +319,7 @@ fn apart(
     parts.join("; ")
 }
 
-/// What a distance is from and to: own hull to a target's hull, or own position to a set, which has
+/// Ends of a distance: own hull to a target's hull, or own position to a set, which has
 /// no hull.
 pub(super) fn distance_words(metres: f64, is_set: bool) -> String {
     match (contact(metres), is_set) {

@@ -21,7 +21,7 @@ const MOST_LEGS: usize = 40;
 
 pub(super) const TIME_COLUMN: &str = "time";
 
-/// What the column "clearance" measures.
+/// Explains the column "clearance".
 pub(super) const CLEARANCE: &str =
     "clearance: own hull to any hull that a target may have, or own position to an explicit set";
 

@@ -300,7 +300,7 @@ fn waypoints(legs: &[PlannedLeg]) -> Vec<Waypoint> {
     all
 }
 
-/// What own ship begins to do on a leg, as in "turns for 'tanker', starboard 30°".
+/// Name of the manoeuvre that begins on a leg, such as "turns for 'tanker', starboard 30°".
 fn manoeuvre(leg: Option<&PlannedLeg>) -> Option<String> {
     let leg = leg?;
     let mut events = leg.events.iter();

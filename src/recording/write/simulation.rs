@@ -191,7 +191,7 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
     events
 }
 
-/// What own ship sailed: each manoeuvre, and the turn back from it.
+/// Events of the sailed manoeuvres: each one, and the turn back from it.
 fn manoeuvres(document: &SimulationDocument) -> impl Iterator<Item = Event> {
     let sailed = document.conduct.manoeuvres.iter();
     let events = sailed.flat_map(|manoeuvre| {

@@ -338,7 +338,7 @@ pub(super) struct Meeting {
     pub target: Moment,
     /// Metres, of which the least is marked most.
     pub apart: f64,
-    /// The same in words.
+    /// The distance in words.
     pub text: String,
 }
 
