@@ -49,11 +49,16 @@ pub(super) fn better_remainder(
     let broken = breaks(&plan);
     let keep = match attempt.planned.outcome.plan() {
         None => true,
-        Some(new) => match broken.cmp(&breaks(new)) {
-            Ordering::Less => true,
-            Ordering::Greater => false,
-            Ordering::Equal => settled || new.cost >= WORTH_A_CHANGE * plan.cost,
-        },
+        Some(new) => {
+            let kept_if_equal = settled || new.cost >= WORTH_A_CHANGE * plan.cost;
+            // the new plan need not be judged where it cannot break fewer rules
+            kept_if_equal && broken == 0
+                || match broken.cmp(&breaks(new)) {
+                    Ordering::Less => true,
+                    Ordering::Greater => false,
+                    Ordering::Equal => kept_if_equal,
+                }
+        }
     };
     let planned = Planned {
         // an escape is named where it is needed

@@ -6,7 +6,7 @@ use super::samples::{EncounterSample, EncounterSamples};
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, MayAct, Role, SteadyShip, Thresholds, role_within,
 };
-use crate::frame::{Pose, wrap};
+use crate::frame::wrap;
 
 /// Verdict of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,23 +89,14 @@ impl Trace<'_> {
     /// True if the role is the same after the time to react, with course and speed held.
     fn persists(&self, sample: &EncounterSample, role: Role) -> bool {
         let seconds = self.factor * self.t.monitor.react;
-        let on = |ship: &SteadyShip, speed: f64| {
-            let ship = SteadyShip { speed, ..*ship };
-            SteadyShip {
-                pose: Pose::new(
-                    ship.pose.position + ship.velocity() * seconds,
-                    ship.pose.heading,
-                ),
-                ..ship
-            }
-        };
-        let own = on(&sample.own, self.ordered_speed);
-        let target = on(&sample.target, sample.target.speed);
-        let then = EncounterSample {
-            own,
-            target,
-            ..*sample
-        };
+        let speed = self.ordered_speed;
+        let own = SteadyShip {
+            speed,
+            ..sample.own
+        }
+        .moved(seconds);
+        let target = sample.target.moved(seconds);
+        let then = sample.with_ships(own, target);
         then.ahead().time > 0.0 && role_within(&own, &target, &self.t.sectors) == Some(role)
     }
 

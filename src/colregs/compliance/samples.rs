@@ -27,6 +27,8 @@ pub struct EncounterSample {
     pub apart: f64,
     /// Seconds until the hulls meet if both hold course and speed; infinite if they never do.
     pub meets_in: f64,
+    /// Own velocity less the target's, m/s.
+    closing: Vector,
 }
 
 /// Closest approach of two ships that hold course and speed.
@@ -45,8 +47,21 @@ impl EncounterSample {
 
     /// This sample with own ship at another speed, m/s.
     pub fn at_speed(&self, speed: f64) -> Self {
-        let own = SteadyShip { speed, ..self.own };
-        Self { own, ..*self }
+        self.with_own(SteadyShip { speed, ..self.own })
+    }
+
+    fn with_own(&self, own: SteadyShip) -> Self {
+        self.with_ships(own, self.target)
+    }
+
+    /// This sample with both ships elsewhere.
+    pub(super) fn with_ships(&self, own: SteadyShip, target: SteadyShip) -> Self {
+        Self {
+            own,
+            target,
+            closing: own.velocity() - target.velocity(),
+            ..*self
+        }
     }
 
     /// True if own ship, on its first course and at its first speed again, would have the target
@@ -56,7 +71,7 @@ impl EncounterSample {
             Pose::new(self.own.pose.position, first.pose.heading),
             first.speed,
         );
-        Self { own, ..*self }.ahead().time <= 0.0
+        self.with_own(own).ahead().time <= 0.0
     }
 
     /// Metres between the centres.
@@ -66,8 +81,7 @@ impl EncounterSample {
 
     /// Rate at which the range grows, m/s; a NaN if the centres coincide.
     pub fn opening(&self) -> f64 {
-        let relative = self.target.velocity() - self.own.velocity();
-        self.offset().dot(&relative) / self.range()
+        -self.offset().dot(&self.closing) / self.range()
     }
 
     /// Bearing of the target from own ship, radians clockwise from ahead.
@@ -82,17 +96,16 @@ impl EncounterSample {
 
     /// Closest approach if both hold course and speed.
     pub fn ahead(&self) -> Ahead {
-        let relative = self.own.velocity() - self.target.velocity();
-        let square = relative.norm_squared();
+        let square = self.closing.norm_squared();
         if !(square > NO_RELATIVE_SPEED * NO_RELATIVE_SPEED) {
             return Ahead {
                 distance: self.range(),
                 time: 0.0,
             };
         }
-        let time = self.offset().dot(&relative) / square;
+        let time = self.offset().dot(&self.closing) / square;
         Ahead {
-            distance: (self.offset() - relative * time.max(0.0)).norm(),
+            distance: (self.offset() - self.closing * time.max(0.0)).norm(),
             time,
         }
     }
@@ -134,7 +147,7 @@ impl EncounterSamples {
         let own = OwnSamples::new(sampled(sailed), f64::INFINITY, own);
         let sample = |index: usize| {
             let there = state_at(target, own.ships[index].0)?;
-            Some(own.sample(index, &hull, there))
+            Some(own.sample(index, &hull, there, there.pose.ahead()))
         };
         Self {
             samples: (0..own.ships.len()).filter_map(sample).collect(),
@@ -186,6 +199,8 @@ impl EncounterSamples {
 #[derive(Debug, Clone)]
 pub(crate) struct OwnSamples {
     ships: Vec<(f64, SteadyShip)>,
+    /// Unit vector ahead of own ship at each sample.
+    ahead: Vec<Vector>,
     hull: Hull,
     safety_margin: f64,
     ordered_speed: f64,
@@ -218,6 +233,7 @@ impl OwnSamples {
 
     fn new(ships: Vec<(f64, SteadyShip)>, greatest_speed: f64, own: &OwnShip) -> Self {
         Self {
+            ahead: ships.iter().map(|(_, ship)| ship.pose.ahead()).collect(),
             ships,
             hull: own.hull,
             safety_margin: own.safety_margin,
@@ -248,23 +264,35 @@ impl OwnSamples {
         memory: Option<&TargetMemory>,
         far: f64,
     ) -> EncounterSamples {
-        let nominal = |time: f64| SteadyShip::on_track(target, time);
+        let now = SteadyShip::on_track(target, 0.0);
+        let (ahead, velocity) = (now.pose.ahead(), now.velocity());
+        let nominal = |time: f64| {
+            if target.route.is_empty() {
+                let place = now.pose.position + velocity * time;
+                let there = SteadyShip::new(Pose::new(place, now.pose.heading), now.speed);
+                return (there, ahead);
+            }
+            let there = SteadyShip::on_track(target, time);
+            (there, there.pose.ahead())
+        };
+        let at = |index: usize, (there, ahead)| self.sample(index, &target.hull, there, ahead);
         let near = || match memory {
             None if far.is_finite() && target.route.is_empty() => self.nearest(target),
             _ => None,
         };
         let samples = match near() {
             Some((index, apart)) if apart > far => {
-                vec![self.sample(index, &target.hull, nominal(self.ships[index].0))]
+                vec![at(index, nominal(self.ships[index].0))]
             }
             _ => {
                 let known = memory.and_then(TargetMemory::known_from).unwrap_or(0.0);
                 let known = (0..self.ships.len()).filter(|index| self.ships[*index].0 >= known);
                 known
                     .map(|index| {
-                        let past = memory.and_then(|m| m.at(self.ships[index].0));
-                        let there = past.unwrap_or_else(|| nominal(self.ships[index].0));
-                        self.sample(index, &target.hull, there)
+                        let time = self.ships[index].0;
+                        let past = memory.and_then(|memory| memory.at(time));
+                        let past = past.map(|there| (there, there.pose.ahead()));
+                        at(index, past.unwrap_or_else(|| nominal(time)))
                     })
                     .collect()
             }
@@ -279,11 +307,19 @@ impl OwnSamples {
         }
     }
 
-    fn sample(&self, index: usize, hull: &Hull, target: SteadyShip) -> EncounterSample {
-        let (time, own) = self.ships[index];
-        let between = Between::of(&self.hull, &own, hull, &target);
+    fn sample(
+        &self,
+        index: usize,
+        hull: &Hull,
+        target: SteadyShip,
+        target_ahead: Vector,
+    ) -> EncounterSample {
+        let ((time, own), ahead) = (self.ships[index], self.ahead[index]);
+        let between = Between {
+            offset: target.pose.position - own.pose.position,
+            halves: Between::halves(&self.hull, ahead, hull, target_ahead),
+        };
         let apart = between.distance();
-        let [(ahead, _), _, (target_ahead, _), _] = between.halves;
         let closing = ahead * own.speed - target_ahead * target.speed;
         // negated on purpose: a NaN is a meeting
         let meets_in = if !(apart > 0.0) {
@@ -297,6 +333,7 @@ impl OwnSamples {
             target,
             apart,
             meets_in,
+            closing,
         }
     }
 
@@ -366,18 +403,19 @@ struct Between {
 
 impl Between {
     fn of(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> Self {
-        let axes = |hull: &Hull, ship: &SteadyShip| {
-            let ahead = ship.pose.ahead();
-            [
-                (ahead, 0.5 * hull.length),
-                (to_port(ahead), 0.5 * hull.beam),
-            ]
-        };
-        let ([a1, a2], [b1, b2]) = (axes(own, a), axes(target, b));
         Self {
             offset: b.pose.position - a.pose.position,
-            halves: [a1, a2, b1, b2],
+            halves: Self::halves(own, a.pose.ahead(), target, b.pose.ahead()),
         }
+    }
+
+    fn halves(own: &Hull, a: Vector, target: &Hull, b: Vector) -> [(Vector, f64); 4] {
+        let axes = |hull: &Hull, ahead: Vector| {
+            let (long, wide) = (0.5 * hull.length, 0.5 * hull.beam);
+            [(ahead, long), (to_port(ahead), wide)]
+        };
+        let ([a1, a2], [b1, b2]) = (axes(own, a), axes(target, b));
+        [a1, a2, b1, b2]
     }
 
     /// Half-width of the sum along a normal.
@@ -418,13 +456,8 @@ impl Between {
         let theirs = corners(b).map(|corner| away(a, self.offset + corner));
         let ours = corners(a).map(|corner| away(b, corner - self.offset));
         let ways = theirs.into_iter().chain(ours);
-        ways.fold(f64::INFINITY, |least, way| {
-            // a square costs less than a root
-            if way.norm_squared() * (1.0 - tolerance::LIMIT) > least * least {
-                return least;
-            }
-            least.min(way.x.hypot(way.y))
-        })
+        let squares = ways.map(|way| way.norm_squared());
+        squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
     /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it
