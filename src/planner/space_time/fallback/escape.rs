@@ -50,6 +50,10 @@ const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 /// Exits from which plans are sought, least harm first, and as many of the soonest ones.
 const MAX_EXITS: usize = 4;
 
+/// Initial motions from which plans are sought. Where there is a plan, it is nearly always one from
+/// the first.
+const MAX_PLANS: usize = 12;
+
 /// Motions that are compared even after the deadline.
 const MIN_COMPARED: usize = 12;
 
@@ -61,7 +65,7 @@ const MIN_COMPARED: usize = 12;
 /// path is too long for the horizon or leads onto land. The caller determines from when on the
 /// motion is clear of which sets.
 ///
-/// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
+/// Cost: some milliseconds and up to a dozen plans. A few motions are compared even after the
 /// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
@@ -96,7 +100,7 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
     }
     let (leaving, exits) = leaving;
     let mut exit_motions = exit_motions(&exits);
-    for beginning in &exit_motions {
+    for beginning in exit_motions.iter().take(MAX_PLANS) {
         if clock.is_up() {
             break;
         }
