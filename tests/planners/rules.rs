@@ -103,3 +103,22 @@ fn a_ship_is_on_time_again_without_a_moment_at_another_speed() {
     let segments = plan.trajectory.segments();
     assert!(segments.iter().all(|s| s.duration >= 3.0), "{segments:?}");
 }
+
+/// A longer horizon offers more escapes, a turn back among them. Own ship does not hold on until
+/// that is the only one left.
+#[test]
+fn time_to_turn_back_makes_no_stand_on_ship_wait_for_it() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/faults/stand-on-turn-back.toml"
+    );
+    let cost = |horizon: f64| {
+        let mut scenario = Scenario::read(file.as_ref()).expect("valid");
+        scenario.horizon = horizon;
+        let run = pipeline::run(scenario);
+        assert!(run.relaxations.is_empty() && run.planned.escape.is_some());
+        run.planned.outcome.plan().expect("a plan").cost
+    };
+    let [short, long] = [2000.0, 4000.0].map(cost);
+    assert!(long < 1.001 * short, "{long} {short}");
+}

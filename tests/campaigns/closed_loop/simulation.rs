@@ -237,9 +237,13 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         s.conduct.cost_m2 / s.conduct.first_plan_cost_m2.unwrap_or(f64::NAN).max(1.0)
     };
     let costs = values(&cost);
-    let times: Vec<f64> = (all.iter())
-        .flat_map(|(_, s)| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3))
+    let later = |s: &SimulationDocument| s.timing.plan_s.iter().skip(1).map(|t| t * 1e3).collect();
+    let times: Vec<f64> = all
+        .iter()
+        .flat_map(|(_, s)| -> Vec<f64> { later(s) })
         .collect();
+    let slowest = |s: &SimulationDocument| later(s).into_iter().fold(0.0, f64::max);
+    let slowest = (all.iter()).max_by(|a, b| slowest(&a.1).total_cmp(&slowest(&b.1)));
     let speed_changes = values(&|s| s.conduct.speed_changes as f64);
     let bound = 100.0 * failure_bound(contacts, all.len());
     let cells = [
@@ -286,6 +290,7 @@ fn row(name: &str, all: &[(u64, SimulationDocument)], how: &How, report: &mut Re
         let breaks = sailed.conduct.breaks.iter().map(String::as_str);
         flags.chain(breaks).map(|word| (word, *seed))
     });
-    Report::print_seeds(name, named);
+    let slowest = slowest.map(|(seed, _)| ("slowest plan", *seed));
+    Report::print_seeds(name, named.chain(slowest));
     costs
 }

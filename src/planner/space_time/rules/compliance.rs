@@ -29,7 +29,7 @@ const NEAREST_S: f64 = 1.0;
 pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segment]) -> bool {
     problem.encountered.iter().all(|encountered| {
         let duties = encountered.role.duties();
-        if !keeps_off_bow(encountered, motion) {
+        if !keeps_off_bow_of(encountered, motion) {
             return false;
         }
         let nearest = Nearest::of(&problem.own.hull, encountered, motion);
@@ -80,9 +80,16 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
         .count()
 }
 
+/// True when a motion keeps off the bows of all targets. A motion that goes on from one that does
+/// not, does not either.
+pub(super) fn keeps_off_bows(problem: &Problem, motion: &[Segment]) -> bool {
+    let mut all = problem.encountered.iter();
+    all.all(|encountered| keeps_off_bow_of(encountered, motion))
+}
+
 /// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
 /// of the target, nor is slower than a target that it overtakes there.
-fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
+fn keeps_off_bow_of(encountered: &Encountered, motion: &[Segment]) -> bool {
     let room = encountered.bow_room();
     if room <= 0.0 {
         return true;
@@ -181,36 +188,42 @@ impl Nearest {
             own.half_diagonal() + encountered.hull.half_diagonal(),
             0.5 * (own.beam + encountered.hull.beam),
         );
-        let mut least = f64::INFINITY;
-        let mut nearest = Self {
-            time: 0.0,
-            drifts_to_port: false,
-        };
-        let near = motion
-            .iter()
-            .filter(|s| centres_on(s) <= centres + long - wide);
-        let samples = near.flat_map(|s| {
-            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
-            (0..=steps as usize).map(move |k| (s, s.start_time + s.duration * (k as f64 / steps)))
-        });
-        for (s, time) in samples {
-            if apart(s, time) > centres + long - wide {
+        let (mut least, mut nearest) = (f64::INFINITY, None);
+        let origin = |heading| Pose::new(Vector::zeros(), heading);
+        let hull = encountered.hull.polygon(&origin(ship.pose.heading));
+        let both = |heading| hull.minkowski_sum(&own.polygon(&origin(heading)).negated());
+        for s in motion {
+            if centres_on(s) > centres + long - wide {
                 continue;
             }
-            let (pose, target) = at(s, time);
-            let there = Pose::new(target, ship.pose.heading);
-            let both = encountered.hull.polygon(&there);
-            let both = both.minkowski_sum(&own.polygon(&pose).negated());
-            let hulls = both.signed_distance(Vector::zeros());
-            if hulls < least {
-                let relative = s.velocity_at(time) - ship.velocity();
-                least = hulls;
-                nearest = Self {
-                    time,
-                    drifts_to_port: cross(relative, pose.position - target) < 0.0,
+            // on a line the heading is that of its start
+            let on_line = (!s.is_arc()).then(|| both(s.start.heading));
+            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
+            for k in 0..=steps as usize {
+                let time = s.start_time + s.duration * (k as f64 / steps);
+                let (pose, target) = at(s, time);
+                let from_target = pose.position - target;
+                let apart = from_target.norm();
+                if apart > centres + long - wide || apart - long >= least {
+                    continue;
+                }
+                let hulls = match &on_line {
+                    Some(both) => both.signed_distance(from_target),
+                    None => both(pose.heading).signed_distance(from_target),
                 };
+                if hulls < least {
+                    let relative = s.velocity_at(time) - ship.velocity();
+                    least = hulls;
+                    nearest = Some(Self {
+                        time,
+                        drifts_to_port: cross(relative, from_target) < 0.0,
+                    });
+                }
             }
         }
-        nearest
+        nearest.unwrap_or(Self {
+            time: 0.0,
+            drifts_to_port: false,
+        })
     }
 }

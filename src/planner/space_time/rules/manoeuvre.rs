@@ -26,7 +26,7 @@ use crate::planner::space_time::land;
 use crate::planner::space_time::motion::until;
 use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::complies;
+use crate::planner::space_time::rules::compliance::{complies, keeps_off_bows};
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use crate::tolerance::{self, TOUCH_M};
@@ -81,6 +81,9 @@ const SPARE_S: f64 = 40.0;
 /// Seconds: more than the step of the judges' samples, so that one of them sees an alteration that
 /// is in time.
 const SAMPLE_S: f64 = 1.5;
+
+/// Ratio of the costs above which a stand-on ship acts earlier, where it may.
+const LATE_PRICE: f64 = 4.0;
 
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
@@ -180,7 +183,7 @@ pub(super) struct Manoeuvres<'s, 'a> {
     clock: Clock,
     /// True for a target that is not passed nearer than a length, Rule 8(d).
     keeps_a_length: fn(&Passing) -> bool,
-    /// True where turns are made at half speed or less too.
+    /// True where turns are made at half speed or less.
     slows_to_turn: bool,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     unit: f64,
@@ -251,7 +254,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.with_a_length_if_possible(|search| {
             let from = search.from;
             let latest = latest.max(from);
-            let times = LEAVE.map(|share| search.tidy_time(from + share * (latest - from)));
+            let mut times = LEAVE
+                .map(|share| search.tidy_time(from + share * (latest - from)))
+                .to_vec();
+            times.dedup();
             times.into_iter().fold(None, |best: Option<Found>, time| {
                 let below = best.as_ref().map_or(f64::INFINITY, |best| best.rank);
                 let found = search.cheaper(time, below);
@@ -291,7 +297,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.keeps_a_length = FROM_ALL;
         self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
-            let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
+            let late = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
+            // no navigator holds on until a turn of 180 degrees is the only way out
+            let hold = late.manoeuvre.leave - may;
+            let earlier = LEAVE.iter().filter(|_| hold > 0.0);
+            let found = earlier
+                .map(|share| search.tidy_time((may + share * hold).max(search.from)))
+                .find_map(|leave| search.cheaper(leave, late.rank / LATE_PRICE))
+                .unwrap_or(late);
             let leave = found.manoeuvre.leave;
             Some(search.improved(found, leave..=leave))
         })
@@ -458,8 +471,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let turns = TURNS.map(|turn| turn * APPARENT_TURN);
         let asides = ASIDE_S.map(|aside| aside * self.unit);
         let mut all: Vec<FirstAlteration> = Vec::new();
-        let turning = std::iter::once(ordered.normal).chain(faster);
-        for speed in turning.chain(slow.clone().filter(|_| self.slows_to_turn)) {
+        let speeds: Vec<f64> = match self.slows_to_turn {
+            // nothing else was clear
+            true => slow.clone().collect(),
+            false => std::iter::once(ordered.normal).chain(faster).collect(),
+        };
+        for speed in speeds {
             for side in duty.sides() {
                 if duty.stands_on && *side == Side::Port {
                     continue;
@@ -469,7 +486,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 }
             }
         }
-        all.extend(slow.map(|speed| FirstAlteration::Slow { speed }));
+        if !self.slows_to_turn {
+            all.extend(slow.map(|speed| FirstAlteration::Slow { speed }));
+        }
         all
     }
 
@@ -511,7 +530,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             // what follows can only add to the cost; without a limit this needs no sum
             let cheap = below.is_infinite()
                 || self.problem().error_of(&out.motion) * speed_price(&first) < below;
-            (cheap && self.is_clear(&out.motion[out.before..])).then_some(out)
+            let begun = out.motion.partition_point(|s| s.start_time < self.from);
+            (cheap
+                && self.is_clear(&out.motion[out.before..])
+                && keeps_off_bows(self.problem(), &out.motion[begun..]))
+            .then_some(out)
         })
     }
 
