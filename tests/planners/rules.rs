@@ -116,7 +116,10 @@ fn time_to_turn_back_makes_no_stand_on_ship_wait_for_it() {
         let mut scenario = Scenario::read(file.as_ref()).expect("valid");
         scenario.horizon = horizon;
         let run = pipeline::run(scenario);
-        assert!(run.relaxations.is_empty() && run.planned.escape.is_some());
+        assert!(run.relaxations.is_empty());
+        assert!(run.planned.escape.is_some());
+        let reports = run.judged_compliance();
+        assert!(reports.iter().flatten().all(|report| report.complies()));
         run.planned.outcome.plan().expect("a plan").cost
     };
     let [short, long] = [2000.0, 4000.0].map(cost);

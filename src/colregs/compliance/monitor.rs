@@ -3,9 +3,7 @@
 
 use super::role_intervals::RoleInterval;
 use super::samples::{EncounterSample, EncounterSamples};
-use crate::colregs::{
-    APPARENT_SPEED, APPARENT_TIME, MayAct, Role, SteadyShip, Thresholds, role_within,
-};
+use crate::colregs::{APPARENT_SPEED, APPARENT_TIME, MayAct, Role, Thresholds, role_within};
 use crate::frame::wrap;
 
 /// Verdict of a monitor.
@@ -89,12 +87,7 @@ impl Trace<'_> {
     /// True if the role is the same after the time to react, with course and speed held.
     fn persists(&self, sample: &EncounterSample, role: Role) -> bool {
         let seconds = self.factor * self.t.monitor.react;
-        let speed = self.ordered_speed;
-        let own = SteadyShip {
-            speed,
-            ..sample.own
-        }
-        .moved(seconds);
+        let own = sample.at_speed(self.ordered_speed).own.moved(seconds);
         let target = sample.target.moved(seconds);
         let then = sample.with_ships(own, target);
         then.ahead().time > 0.0 && role_within(&own, &target, &self.t.sectors) == Some(role)

@@ -54,7 +54,7 @@ impl EncounterSample {
         self.with_ships(own, self.target)
     }
 
-    /// This sample with both ships elsewhere.
+    /// This sample with both ships elsewhere. `apart` and `meets_in` stay as they are.
     pub(super) fn with_ships(&self, own: SteadyShip, target: SteadyShip) -> Self {
         Self {
             own,
@@ -264,6 +264,7 @@ impl OwnSamples {
         memory: Option<&TargetMemory>,
         far: f64,
     ) -> EncounterSamples {
+        // as `moved`, with the direction taken once
         let now = SteadyShip::on_track(target, 0.0);
         let (ahead, velocity) = (now.pose.ahead(), now.velocity());
         let nominal = |time: f64| {
@@ -315,10 +316,8 @@ impl OwnSamples {
         target_ahead: Vector,
     ) -> EncounterSample {
         let ((time, own), ahead) = (self.ships[index], self.ahead[index]);
-        let between = Between {
-            offset: target.pose.position - own.pose.position,
-            halves: Between::halves(&self.hull, ahead, hull, target_ahead),
-        };
+        let offset = target.pose.position - own.pose.position;
+        let between = Between::new(offset, (&self.hull, ahead), (hull, target_ahead));
         let apart = between.distance();
         let closing = ahead * own.speed - target_ahead * target.speed;
         // negated on purpose: a NaN is a meeting
@@ -350,8 +349,10 @@ impl OwnSamples {
         let offset = |index: usize| target.pose_at(self.ships[index].0).position - position(index);
         let apart = |index: usize| {
             let (time, own) = &self.ships[index];
-            let there = SteadyShip::on_track(target, *time);
-            Between::of(&self.hull, own, &target.hull, &there).distance()
+            let there = target.pose_at(*time);
+            let offset = there.position - own.pose.position;
+            let own = (&self.hull, self.ahead[index]);
+            Between::new(offset, own, (&target.hull, there.ahead())).distance()
         };
         let mut best = (0, apart(0));
         let mut open = vec![(0, self.ships.len() - 1)];
@@ -402,20 +403,17 @@ struct Between {
 }
 
 impl Between {
-    fn of(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> Self {
-        Self {
-            offset: b.pose.position - a.pose.position,
-            halves: Self::halves(own, a.pose.ahead(), target, b.pose.ahead()),
-        }
-    }
-
-    fn halves(own: &Hull, a: Vector, target: &Hull, b: Vector) -> [(Vector, f64); 4] {
-        let axes = |hull: &Hull, ahead: Vector| {
+    /// From the offset, and from both hulls with the directions ahead of them.
+    fn new(offset: Vector, own: (&Hull, Vector), target: (&Hull, Vector)) -> Self {
+        let axes = |(hull, ahead): (&Hull, Vector)| {
             let (long, wide) = (0.5 * hull.length, 0.5 * hull.beam);
             [(ahead, long), (to_port(ahead), wide)]
         };
-        let ([a1, a2], [b1, b2]) = (axes(own, a), axes(target, b));
-        [a1, a2, b1, b2]
+        let ([a1, a2], [b1, b2]) = (axes(own), axes(target));
+        Self {
+            offset,
+            halves: [a1, a2, b1, b2],
+        }
     }
 
     /// Half-width of the sum along a normal.
@@ -574,7 +572,8 @@ mod tests {
             let (own, other) = (hull(&mut rng), hull(&mut rng));
             let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
             let sum = (other.polygon(&b.pose)).minkowski_sum(&own.polygon(&a.pose).negated());
-            let between = Between::of(&own, &a, &other, &b);
+            let offset = b.pose.position - a.pose.position;
+            let between = Between::new(offset, (&own, a.pose.ahead()), (&other, b.pose.ahead()));
             let exact = sum.signed_distance(Vector::zeros());
             assert!((between.distance() - exact).abs() < 1e-9, "{exact}");
             met += usize::from(exact < 0.0);

@@ -47,11 +47,11 @@ const EXIT_HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 /// Seconds for which a turn is held where own ship is in no set and there is no plan.
 const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
-/// Exits from which plans are sought, least harm first, and as many of the soonest ones.
+/// Exits with the least harm, and as many of the soonest ones.
 const MAX_EXITS: usize = 4;
 
-/// Initial motions from which plans are sought. Where there is a plan, it is nearly always one from
-/// the first.
+/// Initial motions from which plans are sought: some exits, each held for some times. Where there is
+/// a plan, it nearly always follows the first motion.
 const MAX_PLANS: usize = 12;
 
 /// Motions that are compared even after the deadline.
@@ -281,8 +281,8 @@ fn exits(
     candidates(own, nominal_hulls, exits)
 }
 
-/// Exits from which plans are sought: the [`MAX_EXITS`] with the least harm, then the soonest, as
-/// there may be a plan from these alone. A slower exit counts as about as soon as the soonest only
+/// The [`MAX_EXITS`] exits with the least harm, then the soonest: there may be a plan, or a motion to
+/// the end, from these alone. A slower exit counts as about as soon as the soonest only
 /// where it comes hardly nearer to a nominal hull.
 fn candidates(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
     exits.sort_by(|a, b| a.harm.depth_cmp(&b.harm).then(a.out.total_cmp(&b.out)));

@@ -80,8 +80,8 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
         .count()
 }
 
-/// True when a motion keeps off the bows of all targets. A motion that goes on from one that does
-/// not, does not either.
+/// True when a motion keeps off the bows of all targets. Where its beginning does not, the whole
+/// does not (up to sampling).
 pub(super) fn keeps_off_bows(problem: &Problem, motion: &[Segment]) -> bool {
     let mut all = problem.encountered.iter();
     all.all(|encountered| keeps_off_bow_of(encountered, motion))
@@ -203,12 +203,13 @@ impl Nearest {
                 let time = s.start_time + s.duration * (k as f64 / steps);
                 let (pose, target) = at(s, time);
                 let from_target = pose.position - target;
-                let apart = from_target.norm();
-                if apart > centres + long - wide || apart - long >= least {
+                let range = from_target.norm();
+                // the hulls are no nearer than the range less `long`
+                if range > centres + long - wide || range - long >= least {
                     continue;
                 }
                 let hulls = match &on_line {
-                    Some(both) => both.signed_distance(from_target),
+                    Some(sum) => sum.signed_distance(from_target),
                     None => both(pose.heading).signed_distance(from_target),
                 };
                 if hulls < least {

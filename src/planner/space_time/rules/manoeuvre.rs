@@ -82,7 +82,8 @@ const SPARE_S: f64 = 40.0;
 /// is in time.
 const SAMPLE_S: f64 = 1.5;
 
-/// Ratio of the costs above which a stand-on ship acts earlier, where it may.
+/// Ratio of the cost of a late escape to that of an earlier manoeuvre above which a stand-on ship
+/// acts earlier, where it may.
 const LATE_PRICE: f64 = 4.0;
 
 /// Range in lengths within which a stand-on ship acts.
@@ -254,11 +255,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.with_a_length_if_possible(|search| {
             let from = search.from;
             let latest = latest.max(from);
-            let mut times = LEAVE
-                .map(|share| search.tidy_time(from + share * (latest - from)))
-                .to_vec();
-            times.dedup();
-            times.into_iter().fold(None, |best: Option<Found>, time| {
+            let times = search.departures(from, latest).into_iter();
+            times.fold(None, |best: Option<Found>, time| {
                 let below = best.as_ref().map_or(f64::INFINITY, |best| best.rank);
                 let found = search.cheaper(time, below);
                 let improved = found.map(|found| search.improved(found, from..=latest));
@@ -268,7 +266,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
-    /// there is an escape.
+    /// there is an escape that is not far dearer than to act earlier.
     pub(super) fn standing_on(&mut self, contact: f64) -> Option<Found> {
         if self.hurries() {
             return None;
@@ -294,20 +292,41 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
-        self.keeps_a_length = FROM_ALL;
-        self.with_a_length_if_possible(|search| {
+        let late = self.with_a_length_if_possible(|search| {
             let found = search.cheapest(leave);
-            let late = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
-            // no navigator holds on until a turn of 180 degrees is the only way out
-            let hold = late.manoeuvre.leave - may;
-            let earlier = LEAVE.iter().filter(|_| hold > 0.0);
-            let found = earlier
-                .map(|share| search.tidy_time((may + share * hold).max(search.from)))
-                .find_map(|leave| search.cheaper(leave, late.rank / LATE_PRICE))
-                .unwrap_or(late);
+            let found = found.or_else(|| search.cheapest(search.tidy_time(latest)))?;
+            let leave = found.manoeuvre.leave;
+            Some(search.improved(found, leave..=leave))
+        })?;
+        self.much_cheaper(&late, may).or(Some(late))
+    }
+
+    /// The latest manoeuvre of some between a time and a late one that costs far less than that.
+    fn much_cheaper(&mut self, late: &Found, may: f64) -> Option<Found> {
+        if !(late.manoeuvre.leave > may) {
+            return None;
+        }
+        let mut times = self.departures(may.max(self.from), late.manoeuvre.leave);
+        // `from` may be before it may act
+        times.retain(|time| *time < late.manoeuvre.leave && *time >= may - SAMPLE_S);
+        // what is sailed before both is no part of the price
+        let before = self
+            .problem()
+            .error_of(&until(self.nominal_motion, self.from));
+        let below = before + (late.rank - before) / LATE_PRICE;
+        self.with_a_length_if_possible(|search| {
+            let found = times.iter().find_map(|time| search.cheaper(*time, below))?;
             let leave = found.manoeuvre.leave;
             Some(search.improved(found, leave..=leave))
         })
+    }
+
+    /// Some times of departure until the latest one, the latest first.
+    fn departures(&self, from: f64, latest: f64) -> Vec<f64> {
+        let times = LEAVE.map(|share| self.tidy_time(from + share * (latest - from)));
+        let mut times = times.to_vec();
+        times.dedup();
+        times
     }
 
     /// True where own ship starts on the path and can keep the desired speed, but the nominal motion
@@ -520,8 +539,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         turns.collect()
     }
 
-    /// The motions until every target is passed that are clear so far, from a departure on, and
-    /// cheaper than a rank.
+    /// The motions until every target is passed that are clear so far, from a departure on, keep off
+    /// bows, and are cheaper than a rank.
     fn clear_outward_legs(&self, leave: f64, below: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
         let before = until(self.nominal_motion, leave);
         let alterations = self.alterations().into_iter();
@@ -530,10 +549,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             // what follows can only add to the cost; without a limit this needs no sum
             let cheap = below.is_infinite()
                 || self.problem().error_of(&out.motion) * speed_price(&first) < below;
-            let begun = out.motion.partition_point(|s| s.start_time < self.from);
             (cheap
                 && self.is_clear(&out.motion[out.before..])
-                && keeps_off_bows(self.problem(), &out.motion[begun..]))
+                && keeps_off_bows(self.problem(), self.to_judge(&out.motion)))
             .then_some(out)
         })
     }
@@ -859,10 +877,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         // the last segment may have become longer
         let rest = &motion[out.motion.len() - 1..];
         let (back, on_route) = rest.split_at(rest.partition_point(|s| s.start_time < joined));
-        let begun = motion.partition_point(|s| s.start_time < self.from);
         self.is_clear(back)
             && self.is_clear_to_the_end(on_route)
-            && complies(self.problem(), &motion[begun..], off_route)
+            && complies(self.problem(), self.to_judge(motion), off_route)
+    }
+
+    /// The part of a motion from which on it follows the route.
+    fn to_judge<'m>(&self, motion: &'m [Segment]) -> &'m [Segment] {
+        &motion[motion.partition_point(|s| s.start_time < self.from)..]
     }
 
     /// The targets that are not passed nearer than a length.
