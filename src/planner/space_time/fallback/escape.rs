@@ -47,12 +47,8 @@ const EXIT_HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 /// Seconds for which a turn is held where own ship is in no set and there is no plan.
 const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
-/// Exits with the least harm, and as many of the soonest ones.
+/// Exits from which plans are sought, least harm first, and as many of the soonest ones.
 const MAX_EXITS: usize = 4;
-
-/// Initial motions from which plans are sought: some exits, each held for some times. Where there is
-/// a plan, it nearly always follows the first motion.
-const MAX_PLANS: usize = 12;
 
 /// Motions that are compared even after the deadline.
 const MIN_COMPARED: usize = 12;
@@ -65,7 +61,7 @@ const MIN_COMPARED: usize = 12;
 /// path is too long for the horizon or leads onto land. The caller determines from when on the
 /// motion is clear of which sets.
 ///
-/// Cost: some milliseconds and up to a dozen plans. A few motions are compared even after the
+/// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
 /// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
@@ -100,7 +96,7 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
     }
     let (leaving, exits) = leaving;
     let mut exit_motions = exit_motions(&exits);
-    for beginning in exit_motions.iter().take(MAX_PLANS) {
+    for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
@@ -281,8 +277,8 @@ fn exits(
     candidates(own, nominal_hulls, exits)
 }
 
-/// The [`MAX_EXITS`] exits with the least harm, then the soonest: there may be a plan, or a motion to
-/// the end, from these alone. A slower exit counts as about as soon as the soonest only
+/// Exits from which plans are sought: the [`MAX_EXITS`] with the least harm, then the soonest, as
+/// there may be a plan from these alone. A slower exit counts as about as soon as the soonest only
 /// where it comes hardly nearer to a nominal hull.
 fn candidates(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>) -> Vec<Exit> {
     exits.sort_by(|a, b| a.harm.depth_cmp(&b.harm).then(a.out.total_cmp(&b.out)));

@@ -301,7 +301,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.much_cheaper(&late, may).or(Some(late))
     }
 
-    /// The latest manoeuvre of some between a time and a late one that costs far less than that.
+    /// The latest manoeuvre of some between a time and a late one that costs far less. It keeps off
+    /// the same targets by a length.
     fn much_cheaper(&mut self, late: &Found, may: f64) -> Option<Found> {
         if !(late.manoeuvre.leave > may) {
             return None;
@@ -314,11 +315,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             .problem()
             .error_of(&until(self.nominal_motion, self.from));
         let below = before + (late.rank - before) / LATE_PRICE;
-        self.with_a_length_if_possible(|search| {
-            let found = times.iter().find_map(|time| search.cheaper(*time, below))?;
-            let leave = found.manoeuvre.leave;
-            Some(search.improved(found, leave..=leave))
-        })
+        // for the late one alone nothing else was clear
+        self.slows_to_turn = false;
+        let found = times.iter().find_map(|time| self.cheaper(*time, below))?;
+        let leave = found.manoeuvre.leave;
+        Some(self.improved(found, leave..=leave))
     }
 
     /// Some times of departure until the latest one, the latest first.
