@@ -301,8 +301,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.much_cheaper(&late, may).or(Some(late))
     }
 
-    /// The latest manoeuvre of some between a time and a late one that costs far less. It keeps off
-    /// the same targets by a length.
+    /// An earlier manoeuvre that costs far less than a late one, begun when own ship may act or after:
+    /// the latest of five. It keeps a length off the same targets as the late one.
     fn much_cheaper(&mut self, late: &Found, may: f64) -> Option<Found> {
         if !(late.manoeuvre.leave > may) {
             return None;
@@ -540,8 +540,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         turns.collect()
     }
 
-    /// The motions until every target is passed that are clear so far, from a departure on, keep off
-    /// bows, and are cheaper than a rank.
+    /// The motions from a departure until every target is passed, those that are clear so far, keep
+    /// off the targets' bows, and are cheaper than a rank.
     fn clear_outward_legs(&self, leave: f64, below: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
         let before = until(self.nominal_motion, leave);
         let alterations = self.alterations().into_iter();
@@ -883,7 +883,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             && complies(self.problem(), self.to_judge(motion), off_route)
     }
 
-    /// The part of a motion from which on it follows the route.
+    /// The part of a motion that the rules judge: all but an approach to the route and manoeuvres
+    /// before it.
     fn to_judge<'m>(&self, motion: &'m [Segment]) -> &'m [Segment] {
         &motion[motion.partition_point(|s| s.start_time < self.from)..]
     }
