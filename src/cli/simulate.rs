@@ -14,6 +14,7 @@ use searoom::scenario::import::Imported;
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
+use super::check::short_horizon;
 use super::input::files::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
@@ -131,8 +132,9 @@ fn sail(
     output: &Output,
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
-    output.notes(None, &[(String::new(), made.notes)]);
     let mut scenario = made.scenario;
+    let notes = made.notes.into_iter().chain(short_horizon(&scenario));
+    output.notes(None, &[(String::new(), notes.collect())]);
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);

@@ -175,18 +175,22 @@ fn relaxed(
             tenths(*amount)
         ),
         "risk" => {
+            let ends = plan.cost.as_ref().map_or(f64::INFINITY, |c| c.duration_s);
             let until = relaxation.until_s.map_or(String::new(), |time| {
-                format!(
-                    "; the plan is clear of it only from {} on",
-                    times.at(time, 1)
-                )
+                if time >= ends {
+                    return "; nothing is claimed of it".to_owned();
+                }
+                let time = times.at(time, 1);
+                format!("; the plan is clear of it only from {time} on")
             });
             let text = format!("the set of '{target}', at a risk of up to {amount:.3}{until}");
             return ("enters", text);
         }
         "arrival" => {
             let left = significant(*amount);
-            format!("the arrival: {left} m are left at the horizon, '{target}' is in the way")
+            format!(
+                "the arrival: {left} m are left at the end of the plan, '{target}' is in the way"
+            )
         }
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
@@ -483,7 +487,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
             add("", format!("J is counted until {until}"));
         }
         None => {
-            add("delay", format!("does not arrive ({way} at the horizon)"));
+            add("delay", format!("does not arrive (ends after {way})"));
             let until = times.at(cost.space_time_error_until_s, 1);
             add("", format!("J is counted until {until}"));
         }

@@ -196,7 +196,7 @@ pub fn evaluate(request: &Request) -> Evaluation {
         duration: end - segments.first().map_or(f64::NAN, |s| s.start_time),
         length: or_nan(segments.iter().map(Segment::length).sum()),
         delay: match request.freedom {
-            Freedom::PathsToHorizon(_) => f64::NAN,
+            Freedom::PathsToHorizon(_) | Freedom::LimitsWithoutArrival => f64::NAN,
             Freedom::Limits | Freedom::Paths(_) | Freedom::Any => end - request.desired.duration(),
         },
         waypoint_distances: waypoint_distances(segments, request.desired),

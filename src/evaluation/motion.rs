@@ -46,7 +46,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         let step = (end.position - after.start.position).norm();
         joint("position", "m", step, tolerance::JOINT_M);
         // On paths, own ship turns on the spot at the corners of the path.
-        if let Freedom::Limits = request.freedom {
+        if let Freedom::Limits | Freedom::LimitsWithoutArrival = request.freedom {
             let turn = wrap(end.heading - after.start.heading).abs();
             joint("heading", "rad", turn, joint_rad);
         }
@@ -54,7 +54,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         joint("time", "s", pause, tolerance::TIME_S);
     }
     match request.freedom {
-        Freedom::Limits => limits(segments, own, &mut found),
+        Freedom::Limits | Freedom::LimitsWithoutArrival => limits(segments, own, &mut found),
         Freedom::Paths(paths) | Freedom::PathsToHorizon(paths) => {
             let arrives = matches!(request.freedom, Freedom::Paths(_));
             let along = along::check(segments, own, paths, arrives);
@@ -69,6 +69,10 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         found.limit("end", "s from the horizon", (end - horizon).abs(), allowed);
         return found.violations;
     }
+    found.limit("arrival time", "s", end, horizon + tolerance::TIME_S);
+    if let Freedom::LimitsWithoutArrival = request.freedom {
+        return found.violations;
+    }
     let short = (last.end().position - desired.end()).norm();
     let unit = "m from the last waypoint";
     found.limit("arrival", unit, short, tolerance::ARRIVAL_M);
@@ -79,7 +83,6 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
             "arrival: {sailed} m sailed, with the path still ahead"
         ));
     }
-    found.limit("arrival time", "s", end, horizon + tolerance::TIME_S);
     found.violations
 }
 

@@ -12,6 +12,8 @@ use crate::vessel::OwnShip;
 pub enum Freedom<'a> {
     /// Lines and arcs of at least own turning radius, at the speeds of own ship's finite set.
     Limits,
+    /// Like `Limits`, but the motion may end anywhere. For plans that do not arrive.
+    LimitsWithoutArrival,
     /// Motion along paths, the main one first, waypoints in metres. Any speed up to own ship's
     /// greatest is allowed, and turns on the spot where it departs along another leg.
     Paths(&'a [Vec<Vector>]),

@@ -44,7 +44,8 @@ fn judge_plan(
     let mut paths = vec![scenario.desired.waypoints()];
     paths.extend_from_slice(&scenario.alternatives);
     let freedom = match scenario.planner.facts().follows_paths {
-        false => Freedom::Limits,
+        false if arrives => Freedom::Limits,
+        false => Freedom::LimitsWithoutArrival,
         true if arrives => Freedom::Paths(&paths),
         true => Freedom::PathsToHorizon(&paths),
     };

@@ -191,7 +191,9 @@ pub fn run(scenario: Scenario) -> Run {
         &answer.released,
         not_arrived(&answer),
     );
-    if scenario.compliance == Compliance::Rules && answer.level > RelaxationLevel::Rules {
+    let is_by_rules = answer.level <= RelaxationLevel::Rules
+        || (answer.trajectory()).is_some_and(|plan| rules::breaks(&scenario, plan) == 0);
+    if scenario.compliance == Compliance::Rules && !is_by_rules {
         relaxations.extend(relaxed_rules(&scenario, &sets));
     }
     let evaluation = answer
@@ -230,7 +232,8 @@ fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
         Some(
             NoPlan::Barred { target, .. }
             | NoPlan::OutOfTime { target, .. }
-            | NoPlan::StartCovered { target, .. },
+            | NoPlan::StartCovered { target, .. }
+            | NoPlan::EndCovered { target, .. },
         ) => Some(target.as_str()),
         _ => None,
     };

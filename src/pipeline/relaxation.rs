@@ -11,7 +11,7 @@ use super::rules::{self, encountered, first_turn};
 use super::sets::TargetSets;
 use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
-use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem, SearchKind};
+use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
@@ -48,8 +48,8 @@ pub enum RelaxationLevel {
     Domains,
     /// Clear of the hard sets and of reduced ship domains.
     ReducedDomains,
-    /// Along paths: clear of the hard sets and of reduced domains until the horizon, without
-    /// arriving by then.
+    /// Clear of the hard sets and of reduced domains, without arriving. Along paths the motion ends
+    /// at the horizon; else before the sets that cover the last waypoint.
     Waiting,
     /// Clear of the level sets of the least risk for which a plan was found.
     Risk,
@@ -111,8 +111,13 @@ impl Attempt {
             return self.planned.outcome.plan().is_some();
         };
         let entered = |of: &Self| of.released.iter().flatten().count();
+        let level = |of: &Self, plan: &Plan| match plan.to_go > 0.0 {
+            true => of.level.max(RelaxationLevel::Waiting),
+            false => of.level,
+        };
         let reduced = |of: &Self| of.reductions.iter().copied().fold(0.0, f64::max);
-        let discrete = (self.level, entered(self)).cmp(&(other.level, entered(other)));
+        let discrete = (level(self, plan), entered(self));
+        let discrete = discrete.cmp(&(level(other, others), entered(other)));
         if discrete.is_ne() {
             return discrete.is_lt();
         }
@@ -147,7 +152,7 @@ impl Relaxer<'_> {
     /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
     /// without a plan says that the time ran out. The flag is true where ship domains are asked
     /// for. When all fail, [`Self::leaving_sets`] answers.
-    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 8] = [
+    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 9] = [
         Self::remainder_by_the_rules,
         Self::by_the_rules,
         Self::clear_of_domains,
@@ -155,6 +160,7 @@ impl Relaxer<'_> {
         Self::clear_of_hard_sets,
         Self::around_hard_sets,
         Self::waiting,
+        Self::short_of_end,
         Self::at_least_risk,
     ];
 
@@ -217,8 +223,17 @@ impl Relaxer<'_> {
         };
         let relaxed = self.relaxed(first, &why, with_domain);
         let relaxed = self.finished(with_domain, &relaxed).unwrap_or(relaxed);
-        let why = (relaxed.level > RelaxationLevel::Compliant).then_some(why);
-        Attempt { why, ..relaxed }
+        let arrives = relaxed
+            .planned
+            .outcome
+            .plan()
+            .is_none_or(|plan| plan.to_go == 0.0);
+        let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
+        let why = relaxed.why.clone().unwrap_or(why);
+        Attempt {
+            why: is_relaxed.then_some(why),
+            ..relaxed
+        }
     }
 
     /// The plan that satisfies the whole request. Where a risk is accepted, it is the cheaper one of
@@ -251,9 +266,12 @@ impl Relaxer<'_> {
         if !why.is_for_the_sets() {
             return first;
         }
-        let found = Self::ATTEMPTS
-            .iter()
-            .find_map(|plan| plan(self, with_domain));
+        let at_end = matches!(why, NoPlan::EndCovered { .. });
+        let at_end = at_end.then(|| self.without_domains_at_end(with_domain));
+        let found = at_end.flatten().or_else(|| {
+            let mut attempts = Self::ATTEMPTS.iter();
+            attempts.find_map(|plan| plan(self, with_domain))
+        });
         match found {
             Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
             Some(found) => self.late(with_domain, found),
@@ -319,6 +337,40 @@ impl Relaxer<'_> {
         found.planned = kept.planned;
         let retained = self.retained_along(found.trajectory()?, risk);
         Some((self.clear_of(&found, &retained, level), kept.broken))
+    }
+
+    /// [`RelaxationLevel::Rules`] or [`RelaxationLevel::ReducedDomains`]: a plan that is clear of
+    /// the full domains but of those that cover the last waypoint, which it retains as far as it
+    /// happens to; before it the remainder of the last plan, if that is clear of the hard sets.
+    fn without_domains_at_end(&self, with_domain: bool) -> Option<Attempt> {
+        if !with_domain {
+            return None;
+        }
+        let level = match self.are_rules_asked() {
+            true => RelaxationLevel::Rules,
+            false => RelaxationLevel::ReducedDomains,
+        };
+        if let Some((kept, broken)) = self.remainder_clear_of_hard_sets(with_domain, level)
+            && (broken == 0 || level > RelaxationLevel::Rules)
+        {
+            return Some(kept);
+        }
+        let risk = self.scenario.max_risk;
+        let mut scales = self.scales(1.0);
+        loop {
+            let found = self.attempt(level, &scales, risk);
+            let Outcome::Infeasible(NoPlan::EndCovered { target, .. }) = &found.planned.outcome
+            else {
+                let retained = self.retained_along(found.trajectory()?, risk);
+                return Some(self.clear_of(&found, &retained, level));
+            };
+            let is_over = |sets: &TargetSets| sets.hard.name() == target && sets.has_domain();
+            let over = self.sets.iter().position(is_over)?;
+            if scales[over] == 0.0 {
+                return None;
+            }
+            scales[over] = 0.0;
+        }
     }
 
     /// [`RelaxationLevel::Rules`]: a plan by the rules that is clear of the hard sets, and of the
@@ -427,6 +479,29 @@ impl Relaxer<'_> {
             }
             _ => Some(found),
         }
+    }
+
+    /// [`RelaxationLevel::Waiting`]: the answer for the path up to before the hard sets that cover
+    /// its end. Its level is that of the answer.
+    fn short_of_end(&self, _: bool) -> Option<Attempt> {
+        let hard = level_sets(&self.scaled(&self.scales(0.0)).0, self.scenario.max_risk);
+        let planner = self.scenario.planner;
+        let (desired, why) = planner.short_of_end(&self.problem(&hard))?;
+        let on_path = self.scenario.desired.nearest(desired.end(), 0.0, 0.0);
+        let left = self.scenario.desired.length() - on_path.distance + on_path.error.sqrt();
+        let short = Relaxer {
+            scenario: &Scenario {
+                desired,
+                ..self.scenario.clone()
+            },
+            ..*self
+        };
+        let mut found = short.answer_of_one_search();
+        if let Outcome::Solved(plan) | Outcome::Deadline(Some(plan)) = &mut found.planned.outcome {
+            plan.to_go += left;
+        }
+        found.why = Some(why);
+        (found.trajectory().is_some() && found.level < RelaxationLevel::Inside).then_some(found)
     }
 
     /// [`RelaxationLevel::Risk`]: the plan at the least risk for which one was found, by bisection

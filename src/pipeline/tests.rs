@@ -216,6 +216,36 @@ fn round_trips_are_sailed() {
     }
 }
 
+/// No plan comes to a waypoint beside a moored ship. It ends before that ship's set, by the rules
+/// toward another ship on the way.
+#[test]
+fn a_set_over_the_last_waypoint_costs_the_arrival_alone() {
+    for compliance in [Compliance::None, Compliance::Shape, Compliance::Rules] {
+        let run = run(Scenario {
+            compliance,
+            ..fault("moored-at-the-end.toml")
+        });
+        assert!(
+            run.safe() && !run.enters() && !run.arrives(),
+            "{compliance:?}"
+        );
+        assert!(!run.gives_up_rules(), "{compliance:?}");
+        let why = run.reason().expect("a reason");
+        assert!(why.starts_with("the last waypoint is inside sets"), "{why}");
+        let left = run.planned.outcome.plan().expect("a plan").to_go;
+        // hull and margin of the set, and a step
+        assert!((200.0..330.0).contains(&left), "{left} m");
+        let arrival = run.relaxations.iter().any(|r| {
+            matches!(r, Relaxation::Arrival { target, amount } if target == "moored" && *amount == left)
+        });
+        assert!(arrival, "{:?}", run.relaxations);
+        let evaluation = run.evaluation.expect("judged");
+        assert!(evaluation.verified() && evaluation.delay.is_nan());
+        let crossing = &evaluation.passages[1];
+        assert!(crossing.min_clearance > 150.0, "{}", crossing.min_clearance);
+    }
+}
+
 fn changes_of_speed(trajectory: &Trajectory) -> usize {
     let segments = trajectory.segments().windows(2);
     segments

@@ -1,8 +1,8 @@
 //! Interface between planners and the rest of the program: facts and requests.
 
-use super::{Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
+use super::{NoPlan, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
 use crate::obstacle::Obstacle;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::Hull;
 
 /// A planner of the registry [`PLANNERS`].
@@ -29,6 +29,12 @@ pub trait Planner: Sync {
     /// A plan by a wider search, without refinement: use it only where nothing else is found. Ten
     /// to several hundred milliseconds.
     fn wide_detour(&self, _problem: &Problem) -> Option<Plan> {
+        None
+    }
+
+    /// The desired trajectory up to before the sets that cover its end until the horizon; `None`
+    /// where none do. With the reason why there is no plan to the end.
+    fn short_of_end(&self, _problem: &Problem) -> Option<(DesiredTrajectory, NoPlan)> {
         None
     }
 

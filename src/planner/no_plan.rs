@@ -93,6 +93,16 @@ pub enum NoPlan {
         /// Horizon, seconds.
         horizon: f64,
     },
+    /// Sets cover the last waypoint from the earliest possible arrival to the horizon.
+    #[error(
+        "the last waypoint is inside sets at all times from {earliest:.1} s, when own ship can be there first, to the horizon; at the horizon it is in the set of '{target}'"
+    )]
+    EndCovered {
+        /// Name of the obstacle that covers it at the horizon.
+        target: String,
+        /// Earliest possible arrival, straight and at the greatest speed, seconds.
+        earliest: f64,
+    },
     /// No candidate is clear of every set.
     #[error(
         "no trajectory of the graph or its refinement is clear of every set and arrives before the horizon; held on the desired \
@@ -172,7 +182,8 @@ impl NoPlan {
     /// True when smaller sets might admit a plan.
     pub fn is_for_the_sets(&self) -> bool {
         match self {
-            Self::NoCandidate { .. }
+            Self::EndCovered { .. }
+            | Self::NoCandidate { .. }
             | Self::NoneComplies { .. }
             | Self::Barred { .. }
             | Self::OutOfTime { .. }

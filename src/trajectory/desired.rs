@@ -183,6 +183,20 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
+    /// This motion without its last `length` metres; `None` where nothing is left.
+    pub(crate) fn shortened(&self, length: f64) -> Option<Self> {
+        let end = self.length() - length;
+        let kept: Vec<&DesiredLeg> = (self.legs.iter())
+            .take_while(|leg| leg.start_distance < end)
+            .collect();
+        let last = kept.last()?;
+        let mut waypoints: Vec<Vector> = kept.iter().map(|leg| leg.start).collect();
+        let on_last = (end - last.start_distance).min(last.length);
+        waypoints.push(last.start + last.direction * on_last);
+        let speeds: Vec<f64> = kept.iter().map(|leg| leg.speed).collect();
+        Self::new(&waypoints, &speeds).ok()
+    }
+
     /// This motion, beginning at another place.
     pub(crate) fn from(&self, start: Vector) -> Self {
         let moved = start - self.legs[0].start;

@@ -4,9 +4,9 @@ use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::mismatch;
 use crate::document::{PhaseDocument, PlanDocument};
 use crate::evaluation::{
-    Evaluation, MovingSlabs, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
+    Evaluation, MovingSlabs, SpaceTimeSet, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
 };
-use crate::frame::Vector;
+use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexSet;
 use crate::target::{Motion, Target};
 use crate::tolerance;
@@ -169,22 +169,36 @@ fn shape_rounding(target: &Target, time: f64) -> f64 {
 }
 
 /// Checks the remaining distance of a plan that does not arrive. It is at least the straight
-/// distance; with a single path, it is the part of the path that was not covered.
+/// distance; along a single path, it is the part of the path that was not covered. Off paths a set
+/// is over the last waypoint at the horizon.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let mut relaxation = claim.file.relaxations.iter();
-    let said = relaxation.find(|r| r.kind == ARRIVAL)?.amount;
+    let given_up = relaxation.find(|r| r.kind == ARRIVAL)?;
+    let said = given_up.amount;
     let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
         return None;
     };
-    let end = segments.last()?.end().position;
-    let straight = (claim.desired.end() - end).norm();
+    let last = claim.desired.end();
+    let straight = (last - segments.last()?.end().position).norm();
     let unsailed = claim.desired.length() - evaluation.length;
-    let alone = claim.file.mission.alternatives.is_empty();
+    let alone = claim.paths.is_some() && claim.file.mission.alternatives.is_empty();
     let so = if alone { unsailed } else { straight };
     // Negated on purpose: a NaN is a mismatch.
     if !(said > 0.0 && (near(said, so) || !alone && said >= so)) {
         let so = format!("{so} m{}", if alone { "" } else { " at least" });
         return Some(mismatch("relaxation of arrival, amount", said, so));
+    }
+    let there = [Segment::straight(
+        Pose::new(last, 0.0),
+        claim.file.horizon_s,
+        0.0,
+        0.0,
+    )];
+    let mut sets = claim.sets.iter().filter(|s| s.name == given_up.target);
+    let covers = |set: &SpaceTimeSet| set.least_distance(&there).value <= tolerance::LENGTH_M;
+    if claim.paths.is_none() && !sets.any(covers) {
+        let so = "its set is not over the last waypoint at the horizon";
+        return Some(mismatch("relaxation of arrival", &given_up.target, so));
     }
     None
 }

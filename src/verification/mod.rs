@@ -202,6 +202,7 @@ fn request(claim: &Claim) -> Request<'_> {
         freedom: match &claim.paths {
             Some(paths) if claim.gives_up_arrival() => Freedom::PathsToHorizon(paths),
             Some(paths) => Freedom::Paths(paths),
+            None if claim.gives_up_arrival() => Freedom::LimitsWithoutArrival,
             None => Freedom::Limits,
         },
         desired: &claim.desired,

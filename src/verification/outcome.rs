@@ -81,7 +81,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         let asked = match relaxation.kind.as_str() {
             "compliance" => file.compliance == "rules",
             "domain" => file.compliance != "none",
-            ARRIVAL => file.planner == PATH_TIME,
+            ARRIVAL => !forces,
             _ => true,
         };
         if !asked {

@@ -14,7 +14,7 @@ use searoom::vessel::Hull;
 use crate::campaigns;
 use crate::campaigns::closed_loop::replanning;
 use crate::campaigns::closed_loop::simulation::{How, Seen, Ship, Truth, run, sail};
-use crate::campaigns::documents::scenario;
+use crate::campaigns::documents::{fault, scenario};
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
 use crate::campaigns::plans::harbour;
 
@@ -34,6 +34,23 @@ fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
     let mut scenario = campaigns::meeting(kind, seed, &Meeting::NEAR);
     how.equip(&mut scenario, seed);
     scenario
+}
+
+/// A ship is moored beside the last waypoint: own ship sails to before its set, and every plan on
+/// the way is safe.
+#[test]
+fn own_ship_stops_before_a_set_over_its_last_waypoint() {
+    let moored = Scenario::parse(&fault("moored-at-the-end.toml")).expect("a scenario");
+    let sailed = sail(moored);
+    assert!(sailed.safe && !sailed.arrived && !sailed.contact);
+    assert_eq!(sailed.conduct.unsafe_plans, 0);
+    let nearest = |name: &str| {
+        let target = sailed.targets.iter().find(|t| t.name == name);
+        target
+            .and_then(|t| t.least_clearance_m)
+            .expect("a distance")
+    };
+    assert!(nearest("crossing") > 150.0 && nearest("moored") > 150.0);
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Altered settings, sets and figures: every one is detected.
 
+use searoom::scenario::Scenario;
 use searoom::verification::verify;
 use serde_json::{Value, json};
 
 use crate::alter::{alter, assert_rejected, assert_word, give_up, list, rows};
-use crate::documents::{document, give_way_at_risk, inside, is_caught, scenario};
+use crate::documents::{document, fault, give_way_at_risk, inside, is_caught, scenario};
 
 /// Alterations that increase the danger.
 const SETTING: &str = r#"
@@ -94,6 +95,13 @@ const CANAL: &str = r#"
 off the path | /mission/waypoints/1/east_m + 0.5 | path
 a slower ship | /own_ship/speeds_mps/* * 0.5 | speed
 "#;
+/// Own ship stops before the set over its last waypoint.
+const SHORT_OF_END: &str = r#"
+another ship in the way | /relaxations/0/target = "crossing" | not over the last waypoint
+less left | /relaxations/0/amount = 100 | relaxation of arrival, amount
+no arrival given up | /relaxations/0 remove | arrival
+arrived | /cost/arrived = true | cost.arrived
+"#;
 
 #[test]
 fn every_altered_setting_is_caught() {
@@ -134,6 +142,8 @@ fn what_only_some_plans_have_is_held_too() {
     assert_rejected(&give_way_at_risk(0.4), RISK);
     assert_rejected(&document(scenario("harbour/munkholmen.toml")), LAND);
     assert_rejected(&document(scenario("harbour/canal-transit.toml")), CANAL);
+    let moored = Scenario::parse(&fault("moored-at-the-end.toml")).expect("a scenario");
+    assert_rejected(&document(moored), SHORT_OF_END);
     let forces = document(scenario("paper/figure_9.toml"));
     assert_rejected(&forces, FIGURE_9);
     let has_force = |s: &Value| s["surge_n"].is_number();

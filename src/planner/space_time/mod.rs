@@ -14,6 +14,7 @@
 
 mod bound;
 mod chain;
+mod covered_end;
 mod fallback;
 mod graph;
 mod land;
@@ -38,7 +39,8 @@ use super::{
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
+use covered_end::end_covered;
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
@@ -84,11 +86,18 @@ impl Planner for SpaceTimePlanner {
 
     fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
         let clock = Clock::new(problem.deadline);
-        let planned = plan_normalised(problem, clock, |problem, _, _| {
+        let planned = plan_normalised(problem, clock, |problem, proxies, _| {
+            if let Some(covered) = end_covered(problem, proxies) {
+                return Planned::of(Outcome::Infeasible(covered));
+            }
             let wide = hybrid_a_star::hybrid_a_star(problem, clock);
             Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
         });
         planned.outcome.into_plan()
+    }
+
+    fn short_of_end(&self, problem: &Problem) -> Option<(DesiredTrajectory, NoPlan)> {
+        covered_end::short_of_end(problem)
     }
 
     fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
@@ -200,6 +209,9 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: b
     if has_arrived(problem) {
         let plan = arrived_plan(problem);
         return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
+    }
+    if let Some(covered) = end_covered(problem, proxies) {
+        return refuse(covered);
     }
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);

@@ -185,6 +185,23 @@ impl<'a> Proxy<'a> {
         })
     }
 
+    /// The interval during which a position is inside, deeper than touching.
+    pub(crate) fn covers(&self, position: Vector, from: f64, to: f64) -> Option<Interval> {
+        let wait = Segment::straight(Pose::new(position, 0.0), from, to - from, 0.0);
+        let wait = match &self.window {
+            None => wait,
+            Some(window) => Self::during(window, &wait)?,
+        };
+        let inside = match self.ellipsoid {
+            Some(ellipsoid) => ellipsoid.line_contact(&wait),
+            None => contact::line_contact(self.body, &wait, TOUCH_M),
+        }?;
+        Some(Interval {
+            start: inside.start + self.start(),
+            end: inside.end + self.start(),
+        })
+    }
+
     /// Separation between a hull at a pose and the section along the axes of both, metres: negative
     /// in overlap, else a lower bound of the distance. `None` outside the time window.
     pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose, time: f64) -> Option<f64> {

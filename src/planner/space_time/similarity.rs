@@ -441,6 +441,10 @@ impl Similarity {
                 earliest: earliest * self.time,
                 horizon,
             },
+            NoPlan::EndCovered { target, earliest } => NoPlan::EndCovered {
+                target,
+                earliest: earliest * self.time,
+            },
             NoPlan::NoCandidate { target, time } => NoPlan::NoCandidate {
                 target,
                 time: time * self.time,

@@ -127,11 +127,7 @@ fn claim(model: &ViewModel) -> String {
         n if n == run.scenario.targets.len() => margin,
         _ => format!("{margin}except of targets whose sets are given, "),
     };
-    let end = if run.arrives() {
-        "arrival"
-    } else {
-        "the horizon"
-    };
+    let end = if run.arrives() { "arrival" } else { "its end" };
     format!(
         "**Claimed** until {end} at {}: own ship's centre stays out of all hard sets, \
          {hulls}wherever in its initial set a target starts and however its velocity varies within \

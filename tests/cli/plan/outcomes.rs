@@ -113,7 +113,7 @@ fn a_plan_that_does_not_arrive_says_so() {
     let along = "plan scenarios/colregs/overtaking.toml --planner path-time";
     run(along)
         .code(1)
-        .stdout(contains("does not arrive").and(contains("m are left at the horizon")))
+        .stdout(contains("does not arrive").and(contains("m are left at the end of the plan")))
         .stdout(contains("COLLIDES").not().and(contains("NOT SAFE").not()))
         .stdout(contains("J is counted until 300.0 s"));
     // a comparison counts it alike
