@@ -161,51 +161,48 @@ impl Nearest {
             let (pose, target) = at(s, time);
             (pose.position - target).norm()
         };
-        // a lower bound on each segment, exact on lines
+        let steps = |s: &Segment| (s.duration / NEAREST_S).ceil().max(1.0);
+        let sample = |s: &Segment, k: f64| s.start_time + s.duration * (k / steps(s));
+        // least range of a segment's samples: on a line of the one nearest to the closest approach,
+        // on an arc a lower bound
         let centres_on = |s: &Segment| {
-            let (from, to) = (apart(s, s.start_time), apart(s, s.end_time()));
             if s.is_arc() {
+                let (from, to) = (apart(s, s.start_time), apart(s, s.end_time()));
                 let closing = s.speed + ship.speed;
                 return 0.5 * (from + to - closing * s.duration);
             }
             let offset = s.start.position - ship.pose.position - ship.velocity() * s.start_time;
             let relative = s.velocity_at(s.start_time) - ship.velocity();
             let ahead = -offset.dot(&relative) / relative.norm_squared();
-            let within = ahead > 0.0 && ahead < s.duration;
-            let there = if within {
-                apart(s, s.start_time + ahead)
-            } else {
-                from
-            };
-            there.min(from).min(to)
+            // a NaN, without relative motion, is the first
+            let k = (ahead / s.duration * steps(s)).round().max(0.0);
+            apart(s, sample(s, k.min(steps(s))))
         };
         let ends = |s: &Segment| apart(s, s.start_time).min(apart(s, s.end_time()));
         let centres = (motion.iter())
             .map(|s| if s.is_arc() { ends(s) } else { centres_on(s) })
             .fold(f64::INFINITY, f64::min);
-        // hulls may be nearest where the centres are not
-        let (long, wide) = (
-            own.half_diagonal() + encountered.hull.half_diagonal(),
-            0.5 * (own.beam + encountered.hull.beam),
-        );
+        // hulls may be nearest where the centres are not: they are no nearer than the range less
+        // `long`, and no farther than the range less `wide`
+        let long = own.half_diagonal() + encountered.hull.half_diagonal();
+        let wide = [own, &encountered.hull].map(|hull| 0.5 * hull.length.min(hull.beam));
+        let most = centres + long - wide.iter().sum::<f64>();
         let (mut least, mut nearest) = (f64::INFINITY, None);
         let origin = |heading| Pose::new(Vector::zeros(), heading);
         let hull = encountered.hull.polygon(&origin(ship.pose.heading));
         let both = |heading| hull.minkowski_sum(&own.polygon(&origin(heading)).negated());
         for s in motion {
-            if centres_on(s) > centres + long - wide {
+            if centres_on(s) > most {
                 continue;
             }
             // on a line the heading is that of its start
             let on_line = (!s.is_arc()).then(|| both(s.start.heading));
-            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
-            for k in 0..=steps as usize {
-                let time = s.start_time + s.duration * (k as f64 / steps);
+            for k in 0..=steps(s) as usize {
+                let time = sample(s, k as f64);
                 let (pose, target) = at(s, time);
                 let from_target = pose.position - target;
                 let range = from_target.norm();
-                // the hulls are no nearer than the range less `long`
-                if range > centres + long - wide || range - long >= least {
+                if range > most || range - long >= least {
                     continue;
                 }
                 let hulls = match &on_line {
@@ -226,5 +223,76 @@ impl Nearest {
             time: 0.0,
             drifts_to_port: false,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::colregs::{Role, SteadyShip};
+    use crate::geometry::fixtures::random_vector;
+    use crate::trajectory::fixtures::chain;
+
+    /// Distance of the hulls, time and drift to port, every second of a motion.
+    fn every_sample(own: &Hull, e: &Encountered, motion: &[Segment]) -> Vec<(f64, f64, bool)> {
+        let samples = motion.iter().flat_map(|s| {
+            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
+            (0..=steps as usize).map(move |k| {
+                let time = s.start_time + s.duration * (k as f64 / steps);
+                let (pose, target) = (s.pose_at(time), e.ship.moved(time).pose);
+                let sum = (e.hull.polygon(&target)).minkowski_sum(&own.polygon(&pose).negated());
+                let relative = s.velocity_at(time) - e.ship.velocity();
+                let drift = cross(relative, pose.position - target.position) < 0.0;
+                (sum.signed_distance(Vector::zeros()), time, drift)
+            })
+        });
+        samples.collect()
+    }
+
+    fn one_of(rng: &mut ChaCha8Rng, values: &[f64]) -> f64 {
+        values[rng.random_range(0..values.len())]
+    }
+
+    /// Lines, circles and waits past targets that are crossed, followed or passed more than once.
+    #[test]
+    fn the_nearest_sample_is_that_of_all_samples() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for case in 0..1_000 {
+            let mut hull = || {
+                let length = one_of(&mut rng, &[1.0, 6.0, 30.0, 120.0]);
+                Hull::new(length, length * rng.random_range(0.1..3.0))
+            };
+            let (own, hull) = (hull(), hull());
+            let parts = (0..rng.random_range(1..7)).map(|_| {
+                let speed = one_of(&mut rng, &[0.0, 3.0, 5.0, 15.0]);
+                let turn = one_of(&mut rng, &[0.0, 0.06, -0.06]) * f64::from(speed > 0.0);
+                (rng.random_range(0.5..80.0), speed, turn)
+            });
+            let motion = chain(Pose::new(Vector::zeros(), 0.0), &parts.collect::<Vec<_>>());
+            let met = motion[rng.random_range(0..motion.len())];
+            let time = met.start_time + met.duration * rng.random_range(0.0..1.0);
+            let there = met.pose_at(time);
+            let heading = [there.heading, rng.random_range(-3.0..3.0)][case % 2];
+            let place = there.position + random_vector(&mut rng, [1.0, 20.0, 120.0][case % 3]);
+            let speed = one_of(&mut rng, &[0.0, 1.0, 5.0, 20.0]);
+            let ship = SteadyShip::new(Pose::new(place, heading), speed).moved(-time);
+            let encountered = Encountered {
+                role: Role::GiveWay,
+                ship,
+                hull,
+                own: ship,
+                risk_since: 0.0,
+                tcpa: 0.0,
+            };
+            let mut all = every_sample(&own, &encountered, &motion);
+            let least = all.iter().fold(f64::INFINITY, |least, s| least.min(s.0));
+            all.retain(|(distance, ..)| *distance <= least + 1e-9);
+            let found = Nearest::of(&own, &encountered, &motion);
+            let same = |s: &(_, f64, bool)| (s.1, s.2) == (found.time, found.drifts_to_port);
+            assert!(all.iter().any(same), "{case}: {found:?}, {all:?}");
+        }
     }
 }
