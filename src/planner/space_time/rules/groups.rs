@@ -4,9 +4,9 @@ use crate::colregs::{Duty, Encountered};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::broken_rules;
-use crate::planner::space_time::rules::manoeuvre::{Found, Manoeuvres};
+use crate::planner::space_time::rules::departure::can_hold_speed;
+use crate::planner::space_time::rules::manoeuvre::{Manoeuvre, Manoeuvres};
 use crate::planner::{Escape, PlannedManoeuvre, Problem, UnderWay};
-use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// Greatest ratio of J at which a grouping that breaks fewer rules replaces the best so far. J is
@@ -94,10 +94,6 @@ fn one_by_one(
     clock: Clock,
 ) -> Option<RulePlan> {
     let encountered = context.problem.encountered;
-    // a speed that is mixed from others is not held
-    let speed = context.problem.desired.legs()[0].speed;
-    let listed = |u: &f64| (u - speed).abs() <= tolerance::FIGURE * speed;
-    let holds = context.problem.own.speeds.iter().any(listed);
     let mut kept = RulePlan {
         motion: nominal_motion.to_vec(),
         escape: None,
@@ -136,7 +132,7 @@ fn one_by_one(
         };
         if step == 0 {
             let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-            let holds = holds && found.begun.is_none();
+            let holds = can_hold_speed(context.problem) && found.begun.is_none();
             kept.escape = (stands_on && holds).then(|| found.escape());
         }
         from = found.joined;
@@ -156,7 +152,7 @@ fn resolved(
     contact: f64,
     clock: Clock,
     under_way: Option<UnderWay>,
-) -> Option<Found> {
+) -> Option<Manoeuvre> {
     let problem = Problem {
         encountered: group,
         under_way,
