@@ -120,17 +120,32 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
         let value = Value::Table(table_of(document.get_ref(), &line));
         return Some(Node { value, line: None });
     };
-    let allowed = match first.message().contains("duplicate") {
-        true => "valid TOML",
-        false => "valid TOML; a bracket or a quote left open above also leads here",
-    };
     let line = start(&first).map(line);
-    let found = match line.and_then(|line| text.lines().nth(line - 1)) {
-        Some(there) => format!("{}, in {}", first.message(), abbreviated(there.trim())),
+    let there = line.and_then(|line| text.lines().nth(line - 1));
+    let there = there.map(str::trim);
+    let is_twice = first.message().contains("duplicate");
+    let allowed = match there {
+        Some(header) if is_twice && header.starts_with('[') => {
+            "valid TOML; where there may be several tables, each begins like [[targets]]"
+        }
+        _ if is_twice => "valid TOML; the key is given before",
+        Some(there) if has_decimal_comma(there) => "valid TOML; the decimal sign is a point",
+        _ => "valid TOML; a bracket or a quote left open above also leads here",
+    };
+    let found = match there {
+        Some(there) => format!("{}, in {}", first.message(), abbreviated(there)),
         None => first.message().to_owned(),
     };
     faults.note(Fault::new("", found, allowed).at_line(line));
     None
+}
+
+/// True for `key = 1,5`.
+fn has_decimal_comma(line: &str) -> bool {
+    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+    let value = line.split_once('=').map(|(_, value)| value.trim());
+    let parts = value.and_then(|value| value.trim_start_matches('-').split_once(','));
+    parts.is_some_and(|(whole, rest)| digits(whole) && !rest.is_empty() && digits(rest))
 }
 
 fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> BTreeMap<String, Node> {

@@ -42,7 +42,8 @@ pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     let header = "scenario, outcome, encounter, manoeuvre, passing, J\n[m²], delay\n[s], \
                   clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
     let rows = runs.iter().zip(row_names(runs));
-    Grid::new(header, 5..12, rows.map(|(run, name)| suite_row(run, name)))
+    let rows = rows.map(|(run, name)| suite_row(run, name));
+    Grid::new(header, 5..12, rows).breaking("breaks", 14)
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where

@@ -189,6 +189,22 @@ fn the_first_error_of_the_grammar_is_the_only_fault() {
         says(&said, "1 fault\n");
         says(&said, "left open above");
     }
+    for (old, new, hint) in [
+        (
+            "[[targets]]",
+            "[targets]\n[targets]",
+            "each begins like [[targets]]",
+        ),
+        (
+            "[[targets]]",
+            "[[targets]]\nname = \"a\"",
+            "the key is given before",
+        ),
+        ("title", "a = 11,0\ntitle", "the decimal sign is a point"),
+    ] {
+        let file = folder.write("hint.toml", HEAD_ON.replacen(old, new, 1));
+        says(&stderr(&searoom(&["check", &file]).code(2)), hint);
+    }
 }
 
 /// A replacement of the intervals of figure 9, and the message.
