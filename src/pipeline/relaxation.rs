@@ -13,7 +13,7 @@ use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Segment, Trajectory};
 
 /// Domain scale factor between the hard set, 0, and the full ship domain, 1.
 const HALF: f64 = 0.5;
@@ -362,7 +362,11 @@ impl Relaxer<'_> {
             let Outcome::Infeasible(NoPlan::EndCovered { target, .. }) = &found.planned.outcome
             else {
                 let retained = self.retained_along(found.trajectory()?, risk);
-                return Some(self.clear_of(&found, &retained, level));
+                let clear = self.clear_of(&found, &retained, level);
+                return Some(match level {
+                    RelaxationLevel::ReducedDomains => self.with_larger_domains(clear, &retained),
+                    _ => clear,
+                });
             };
             let is_over = |sets: &TargetSets| sets.hard.name() == target && sets.has_domain();
             let over = self.sets.iter().position(is_over)?;
@@ -482,26 +486,49 @@ impl Relaxer<'_> {
     }
 
     /// [`RelaxationLevel::Waiting`]: the answer for the path up to before the hard sets that cover
-    /// its end. Its level is that of the answer.
+    /// its end, within half of the time. Its level is that of the answer. Where there is none, and
+    /// the place is nearer than the turning radius or not ahead, the plan ends where own ship is.
     fn short_of_end(&self, _: bool) -> Option<Attempt> {
-        let hard = level_sets(&self.scaled(&self.scales(0.0)).0, self.scenario.max_risk);
-        let planner = self.scenario.planner;
-        let (desired, why) = planner.short_of_end(&self.problem(&hard))?;
-        let on_path = self.scenario.desired.nearest(desired.end(), 0.0, 0.0);
-        let left = self.scenario.desired.length() - on_path.distance + on_path.error.sqrt();
-        let short = Relaxer {
-            scenario: &Scenario {
-                desired,
-                ..self.scenario.clone()
-            },
-            ..*self
+        let risk = self.scenario.max_risk;
+        let (whole, reductions) = self.scaled(&self.scales(0.0));
+        let hard = level_sets(&whole, risk);
+        let problem = self.problem(&hard);
+        let (why, desired) = self.scenario.planner.short_of_end(&problem)?;
+        let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
+        let is_near = desired
+            .as_ref()
+            .is_none_or(|short| (short.end() - own.pose.position).norm() <= own.turning_radius);
+        let answer = desired.map(|desired| {
+            let short = Relaxer {
+                scenario: &Scenario {
+                    desired,
+                    deadline: self.scenario.deadline - 0.5 * self.time_left().as_secs_f64(),
+                    ..self.scenario.clone()
+                },
+                ..*self
+            };
+            short.answer_of_one_search()
+        });
+        let answer =
+            answer.filter(|a| a.trajectory().is_some() && a.level < RelaxationLevel::Inside);
+        let mut found = match answer {
+            Some(answer) => answer,
+            None if is_near => {
+                let ends = Segment::straight(own.pose, 0.0, 0.0, own.max_speed());
+                let plan = Plan::measured(&problem, vec![ends], None)?;
+                let planned = Planned::of(Outcome::Solved(plan));
+                let level = RelaxationLevel::ReducedDomains;
+                let found = Attempt::of(level, whole, reductions, hard, risk, planned);
+                let retained = self.retained_along(found.trajectory()?, risk);
+                self.clear_of(&found, &retained, level)
+            }
+            None => return None,
         };
-        let mut found = short.answer_of_one_search();
         if let Outcome::Solved(plan) | Outcome::Deadline(Some(plan)) = &mut found.planned.outcome {
-            plan.to_go += left;
+            plan.to_go = path.left_from(plan.trajectory.end().position);
         }
         found.why = Some(why);
-        (found.trajectory().is_some() && found.level < RelaxationLevel::Inside).then_some(found)
+        Some(found)
     }
 
     /// [`RelaxationLevel::Risk`]: the plan at the least risk for which one was found, by bisection

@@ -32,9 +32,9 @@ pub trait Planner: Sync {
         None
     }
 
-    /// The desired trajectory up to before the sets that cover its end until the horizon; `None`
-    /// where none do. With the reason why there is no plan to the end.
-    fn short_of_end(&self, _problem: &Problem) -> Option<(DesiredTrajectory, NoPlan)> {
+    /// The reason why there is no plan to the end, where sets cover it until the horizon, and the
+    /// desired trajectory up to before them, where some of that is ahead.
+    fn short_of_end(&self, _problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         None
     }
 

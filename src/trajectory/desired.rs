@@ -183,6 +183,12 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
+    /// Metres from a place to the nearest point of the path, and from there along it to its end.
+    pub(crate) fn left_from(&self, place: Vector) -> f64 {
+        let nearest = self.nearest(place, 0.0, 0.0);
+        self.length() - nearest.distance + nearest.error.sqrt()
+    }
+
     /// This motion without its last `length` metres; `None` where nothing is left.
     pub(crate) fn shortened(&self, length: f64) -> Option<Self> {
         let end = self.length() - length;

@@ -97,7 +97,8 @@ a slower ship | /own_ship/speeds_mps/* * 0.5 | speed
 "#;
 /// Own ship stops before the set over its last waypoint.
 const SHORT_OF_END: &str = r#"
-another ship in the way | /relaxations/0/target = "crossing" | not over the last waypoint
+another ship in the way | /relaxations/0/target = "crossing" | relaxation of arrival, target
+more left | /relaxations/0/amount = 5000 | relaxation of arrival, amount
 less left | /relaxations/0/amount = 100 | relaxation of arrival, amount
 no arrival given up | /relaxations/0 remove | arrival
 arrived | /cost/arrived = true | cost.arrived

@@ -14,6 +14,9 @@ use crate::trajectory::DesiredTrajectory;
 const STEP_LENGTHS: f64 = 0.5;
 const STEP_M: f64 = 10.0;
 
+/// Seconds for which sets leave the end uncovered: a manoeuvre on the way makes own ship late.
+const HOLD_S: f64 = 300.0;
+
 /// The reason where sets cover the last waypoint from the earliest possible arrival to the horizon:
 /// then no motion is clear of them. O(n log n).
 pub(crate) fn end_covered(problem: &Problem, proxies: &[Proxy]) -> Option<NoPlan> {
@@ -39,11 +42,11 @@ pub(crate) fn end_covered(problem: &Problem, proxies: &[Proxy]) -> Option<NoPlan
     Some(NoPlan::EndCovered { target, earliest })
 }
 
-/// The desired trajectory to the last place that the sets over its end leave uncovered: from own
-/// ship's scheduled time there to the horizon, or where there is none, at that time. Where the
-/// schedule is ahead of own ship, places on the way to it count, too. `None` where the end is not
-/// covered, or there is no such place ahead of own ship. With the reason of the end.
-pub(crate) fn short_of_end(problem: &Problem) -> Option<(DesiredTrajectory, NoPlan)> {
+/// The reason why there is no plan to the end, where sets cover it, and the desired trajectory to
+/// the last place that these sets leave uncovered for [`HOLD_S`] from the scheduled time there on;
+/// where there is none, at that time. Where the schedule is ahead of own ship, places on the way to
+/// it count, too. Without a trajectory where there is no such place ahead of own ship.
+pub(crate) fn short_of_end(problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let why = end_covered(problem, &proxies)?;
@@ -52,20 +55,19 @@ pub(crate) fn short_of_end(problem: &Problem) -> Option<(DesiredTrajectory, NoPl
     let is_over = |proxy: &&Proxy| over_end.iter().any(|(_, k)| *k == proxy.obstacle);
     let over_end: Vec<Proxy> = proxies.iter().filter(is_over).copied().collect();
     let step = (STEP_LENGTHS * own.hull.length).max(STEP_M);
-    let last_free = |way: &DesiredTrajectory, until: &dyn Fn(f64) -> f64| {
+    let last_free = |way: &DesiredTrajectory, hold: f64| {
         let here = way.nearest(own.pose.position, 0.0, 0.0).distance;
         let ahead = |short: &DesiredTrajectory| short.length() > here + tolerance::LENGTH_M;
         let mut ends = (1..).map_while(|k| way.shortened(step * f64::from(k)).filter(ahead));
         ends.find(|short| {
             let time = short.duration();
-            covering(&over_end, short.end(), time, until(time)).is_empty()
+            covering(&over_end, short.end(), time, time + hold).is_empty()
         })
     };
-    let short = [Some(desired.clone()), from_own_ship(problem)]
-        .iter()
-        .flatten()
-        .find_map(|way| last_free(way, &|_| horizon).or_else(|| last_free(way, &|time| time)))?;
-    Some((short, why))
+    let ways = [Some(desired.clone()), from_own_ship(problem)];
+    let mut ways = ways.iter().flatten();
+    let short = ways.find_map(|way| last_free(way, HOLD_S).or_else(|| last_free(way, 0.0)));
+    Some((why, short))
 }
 
 /// The desired trajectory after a straight leg from own ship to its start, where that is ahead.
@@ -135,7 +137,7 @@ mod tests {
             let free = (2500..=9000).any(|k| !sets.iter().any(|set| inside(set, end, at(k))));
             assert_eq!(found, !free, "case {case}");
             covered += usize::from(found);
-            let Some((cut, _)) = short_of_end(&problem) else {
+            let Some(cut) = short_of_end(&problem).and_then(|(_, short)| short) else {
                 continue;
             };
             assert!(found && cut.length() < desired.length());
@@ -164,7 +166,8 @@ mod tests {
         let sets = [set(points[2], 260.0, Vector::zeros(), 0.0)];
         let problem = Problem::new(&own, &desired, &sets, HORIZON_S);
         let step = (STEP_LENGTHS * own.hull.length).max(STEP_M);
-        let left = desired.length() - short_of_end(&problem).expect("a place").0.length();
+        let (_, short) = short_of_end(&problem).expect("a covered end");
+        let left = desired.length() - short.expect("a place").length();
         let around = (261.0 / step).ceil() * step;
         assert!(
             (left - around).abs() < 1e-9 || left < around && left > 260.0,

@@ -96,7 +96,7 @@ impl Planner for SpaceTimePlanner {
         planned.outcome.into_plan()
     }
 
-    fn short_of_end(&self, problem: &Problem) -> Option<(DesiredTrajectory, NoPlan)> {
+    fn short_of_end(&self, problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         covered_end::short_of_end(problem)
     }
 
@@ -210,9 +210,6 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: b
         let plan = arrived_plan(problem);
         return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
     }
-    if let Some(covered) = end_covered(problem, proxies) {
-        return refuse(covered);
-    }
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
@@ -224,6 +221,9 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: b
             earliest: arrival,
             horizon: problem.horizon,
         });
+    }
+    if let Some(covered) = end_covered(problem, proxies) {
+        return refuse(covered);
     }
     let blocks = land::proxies(problem);
     let context = Context::new(problem, &route, proxies, &blocks);

@@ -31,7 +31,7 @@ use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocumen
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
-use crate::planner::Minimises;
+use crate::planner::{Minimises, Plan};
 use crate::scenario::{
     Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings, VesselModel,
 };
@@ -46,6 +46,9 @@ const INSTANT: f64 = 1e-9;
 
 /// A step ends at the next event; one shorter than this fraction of it is joined to the one before.
 const SHORT_STEP: f64 = 1e-6;
+
+/// Seconds before the end of a plan that does not arrive at which another one is made at the latest.
+const BEFORE_END_S: f64 = 2.0;
 
 /// m/s. Added to the distance from a contact per second ahead.
 const CLOSING_SPEED: f64 = 1.0;
@@ -87,6 +90,8 @@ pub struct Simulation {
     /// Seconds since the scenario's time.
     time: f64,
     duration: f64,
+    /// When own ship comes to the end of a plan that ends where it is; infinite before.
+    ends: f64,
     own: Own,
     targets: Vec<Simulated>,
     /// The plan that own ship follows.
@@ -140,6 +145,12 @@ struct Active {
 impl Active {
     fn end(&self) -> f64 {
         self.start + self.trajectory.end_time()
+    }
+
+    /// False for a plan that ends before the mission's end.
+    fn arrives(&self) -> bool {
+        let cost = self.document.as_ref().map(|plan| plan.cost.as_ref());
+        cost.is_none_or(|cost| cost.is_some_and(|cost| cost.arrived))
     }
 }
 
@@ -220,6 +231,7 @@ impl Simulation {
             measured_delay,
             time: 0.0,
             duration,
+            ends: f64::INFINITY,
             pending: None,
             next_cycle: scenario.simulation.replan,
             sailed: Vec::new(),
@@ -328,7 +340,7 @@ impl Simulation {
 
     /// True at the end of the plan that own ship follows, and at the end of the simulation.
     pub fn finished(&self) -> bool {
-        let end = self.active.end().min(self.duration);
+        let end = self.active.end().min(self.duration).min(self.ends);
         // negated so that a NaN ends the simulation
         !(self.time < end - INSTANT)
     }
@@ -346,6 +358,7 @@ impl Simulation {
             self.next_cycle,
             self.active.end(),
             self.duration,
+            self.ends,
         ];
         let next = events.into_iter().fold(f64::INFINITY, f64::min) - self.time;
         let mut step = self.settings().step;
@@ -368,6 +381,11 @@ impl Simulation {
                 self.cycle(delay, reason);
             }
             self.activate();
+        }
+        // sets are smaller by then, so the next plan may go on from where this one ends
+        let before_end = self.active.end() - self.settings().delay - BEFORE_END_S;
+        if !self.active.arrives() && before_end > self.time + INSTANT {
+            self.next_cycle = self.next_cycle.min(before_end);
         }
     }
 
@@ -444,9 +462,13 @@ impl Simulation {
         } else if !replan.safe {
             self.alarm("unsafe plan", None);
         }
-        if replan.followed
-            && let Some(plan) = run.planned.outcome.plan()
-        {
+        let plan = run.planned.outcome.plan();
+        let plan = plan.filter(|_| replan.followed);
+        let ends = |plan: &Plan| plan.to_go > 0.0 && plan.trajectory.end_time() <= INSTANT;
+        if plan.is_some_and(ends) {
+            // where own ship is, and there the simulation ends, too
+            self.ends = self.time + delay;
+        } else if let Some(plan) = plan {
             let document = PlanDocument::of(&run);
             if self.keep_plans {
                 self.plans.push(document.clone());

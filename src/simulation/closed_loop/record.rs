@@ -55,10 +55,9 @@ impl Simulation {
         let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
         let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
         let ended = self.time >= self.active.end() - super::INSTANT;
-        let cost = self.active.document.as_ref();
-        let cost = cost.and_then(|plan| plan.cost.as_ref());
         let mut arrived = ended
-            && cost.is_some_and(|cost| cost.arrived)
+            && self.active.document.is_some()
+            && self.active.arrives()
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let mut cost_m2 = match arrived {
