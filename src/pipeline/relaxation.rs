@@ -487,7 +487,7 @@ impl Relaxer<'_> {
 
     /// [`RelaxationLevel::Waiting`]: the answer for the path up to before the hard sets that cover
     /// its end, within half of the time. Its level is that of the answer. Where there is none, and
-    /// the place is nearer than the turning radius or not ahead, the plan ends where own ship is.
+    /// the place is within the turning radius of own ship, the plan ends where own ship is.
     fn short_of_end(&self, _: bool) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.scaled(&self.scales(0.0));

@@ -45,7 +45,8 @@ pub(crate) fn end_covered(problem: &Problem, proxies: &[Proxy]) -> Option<NoPlan
 /// The reason why there is no plan to the end, where sets cover it, and the desired trajectory to
 /// the last place that these sets leave uncovered for [`HOLD_S`] from the scheduled time there on;
 /// where there is none, at that time. Where the schedule is ahead of own ship, places on the way to
-/// it count, too. Without a trajectory where there is no such place ahead of own ship.
+/// it count, too. Without a trajectory where own ship is at that place, or has passed it by less
+/// than its turning radius. `None` where the end is not covered, or there is no such place.
 pub(crate) fn short_of_end(problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -57,16 +58,19 @@ pub(crate) fn short_of_end(problem: &Problem) -> Option<(NoPlan, Option<DesiredT
     let step = (STEP_LENGTHS * own.hull.length).max(STEP_M);
     let last_free = |way: &DesiredTrajectory, hold: f64| {
         let here = way.nearest(own.pose.position, 0.0, 0.0).distance;
-        let ahead = |short: &DesiredTrajectory| short.length() > here + tolerance::LENGTH_M;
-        let mut ends = (1..).map_while(|k| way.shortened(step * f64::from(k)).filter(ahead));
-        ends.find(|short| {
+        let is_reached = |short: &DesiredTrajectory| short.length() <= here + tolerance::LENGTH_M;
+        let mut ends = (1..)
+            .map_while(|k| way.shortened(step * f64::from(k)))
+            .take_while(|short| short.length() > here - own.turning_radius);
+        let free = ends.find(|short| {
             let time = short.duration();
             covering(&over_end, short.end(), time, time + hold).is_empty()
-        })
+        });
+        free.map(|short| Some(short).filter(|short| !is_reached(short)))
     };
     let ways = [Some(desired.clone()), from_own_ship(problem)];
     let mut ways = ways.iter().flatten();
-    let short = ways.find_map(|way| last_free(way, HOLD_S).or_else(|| last_free(way, 0.0)));
+    let short = ways.find_map(|way| last_free(way, HOLD_S).or_else(|| last_free(way, 0.0)))?;
     Some((why, short))
 }
 
