@@ -32,6 +32,9 @@ pub struct SimulationDocument {
     pub arrived: bool,
     /// True where it was ended before the arrival and before its time.
     pub interrupted: bool,
+    /// True where it ended with a plan that ends before the last waypoint.
+    #[serde(default)]
+    pub ends_short: bool,
     pub duration_s: f64,
     pub targets: Vec<SimulatedTargetDocument>,
     /// Null without a map.

@@ -28,11 +28,11 @@ pub enum Relaxation {
         /// risk.
         until: Option<f64>,
     },
-    /// The plan does not arrive before the horizon.
+    /// The plan does not arrive.
     Arrival {
         /// Name of the target whose set blocks the way.
         target: String,
-        /// Remaining distance to the end at the horizon, metres.
+        /// Remaining distance to the last waypoint at its end, metres.
         amount: f64,
     },
     /// The plan breaks the rules.

@@ -13,7 +13,8 @@ use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
-use crate::trajectory::{Segment, Trajectory};
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 
 /// Domain scale factor between the hard set, 0, and the full ship domain, 1.
 const HALF: f64 = 0.5;
@@ -339,9 +340,9 @@ impl Relaxer<'_> {
         Some((self.clear_of(&found, &retained, level), kept.broken))
     }
 
-    /// [`RelaxationLevel::Rules`] or [`RelaxationLevel::ReducedDomains`]: a plan that is clear of
-    /// the full domains but of those that cover the last waypoint, which it retains as far as it
-    /// happens to; before it the remainder of the last plan, if that is clear of the hard sets.
+    /// [`RelaxationLevel::Rules`] or [`RelaxationLevel::ReducedDomains`]: the remainder of the last
+    /// plan, if that is clear of the hard sets; else a plan that is clear of all full domains except
+    /// those over the last waypoint, of which it retains what it can.
     fn without_domains_at_end(&self, with_domain: bool) -> Option<Attempt> {
         if !with_domain {
             return None;
@@ -485,9 +486,10 @@ impl Relaxer<'_> {
         }
     }
 
-    /// [`RelaxationLevel::Waiting`]: the answer for the path up to before the hard sets that cover
-    /// its end, within half of the time. Its level is that of the answer. Where there is none, and
-    /// the place is within the turning radius of own ship, the plan ends where own ship is.
+    /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
+    /// its end, or else where the last plan ends, each within half of the time. It keeps the level
+    /// of that answer. Without one the plan ends where own ship is, if the place is within its
+    /// turning radius.
     fn short_of_end(&self, _: bool) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.scaled(&self.scales(0.0));
@@ -495,10 +497,14 @@ impl Relaxer<'_> {
         let problem = self.problem(&hard);
         let (why, desired) = self.scenario.planner.short_of_end(&problem)?;
         let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
-        let is_near = desired
-            .as_ref()
-            .is_none_or(|short| (short.end() - own.pose.position).norm() <= own.turning_radius);
-        let answer = desired.map(|desired| {
+        let away = |short: &DesiredTrajectory| (short.end() - own.pose.position).norm();
+        let is_near = desired.as_ref().map_or(0.0, away) <= own.turning_radius;
+        let last = self.scenario.memory.remainder.last();
+        let left = last.map(|last| path.left_from(last.end().position));
+        let left = left.filter(|left| *left > tolerance::ARRIVAL_M);
+        let before = left.and_then(|left| path.shortened(left));
+        let mut late = false;
+        let answer = desired.into_iter().chain(before).find_map(|desired| {
             let short = Relaxer {
                 scenario: &Scenario {
                     desired,
@@ -507,15 +513,16 @@ impl Relaxer<'_> {
                 },
                 ..*self
             };
-            short.answer_of_one_search()
+            let answer = short.answer_of_one_search();
+            late |= matches!(answer.planned.outcome, Outcome::Deadline(_));
+            let keeps = answer.level < RelaxationLevel::Risk && answer.trajectory().is_some();
+            keeps.then_some(answer)
         });
-        let answer =
-            answer.filter(|a| a.trajectory().is_some() && a.level < RelaxationLevel::Inside);
         let mut found = match answer {
             Some(answer) => answer,
-            None if is_near => {
-                let ends = Segment::straight(own.pose, 0.0, 0.0, own.max_speed());
-                let plan = Plan::measured(&problem, vec![ends], None)?;
+            None if is_near && !late => {
+                let stop = Segment::straight(own.pose, 0.0, 0.0, own.max_speed());
+                let plan = Plan::measured(&problem, vec![stop], None)?;
                 let planned = Planned::of(Outcome::Solved(plan));
                 let level = RelaxationLevel::ReducedDomains;
                 let found = Attempt::of(level, whole, reductions, hard, risk, planned);

@@ -33,8 +33,8 @@ pub trait Planner: Sync {
     }
 
     /// The reason why there is no plan to the end, where sets cover it until the horizon, and the
-    /// desired trajectory up to before them; without it where own ship is there. `None` where the
-    /// end is not covered, or nothing before it is free.
+    /// mission cut before them; without one where nothing ahead of own ship is free. `None` where
+    /// the end is not covered.
     fn short_of_end(&self, _problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         None
     }

@@ -247,7 +247,8 @@ pub const AGAINST_THE_RULES: f64 = 0.05;
 /// A collision-free trajectory to the end of the desired path.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Motion from own ship's pose at t = 0 to the last waypoint, or to the horizon.
+    /// Motion from own ship's pose at t = 0 to the last waypoint, to before the sets over it, or to
+    /// the horizon.
     pub trajectory: Trajectory,
     /// Minimised quantity, in the objective's unit.
     pub cost: f64,
@@ -256,7 +257,7 @@ pub struct Plan {
     /// had no plan.
     pub graph_cost: Option<f64>,
     /// Remaining length of the shortest path to the last waypoint at the end, metres; 0 for a plan
-    /// that arrives. A plan that does not arrive extends to the horizon.
+    /// that arrives. Along paths a plan that does not arrive extends to the horizon.
     pub to_go: f64,
 }
 

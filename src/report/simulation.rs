@@ -114,6 +114,7 @@ pub(super) fn headline(simulation: &SimulationDocument, times: Times) -> String 
     let arrived = match (simulation.arrived, simulation.interrupted) {
         (true, _) => "arrived",
         (false, true) => "INTERRUPTED",
+        (false, false) if simulation.ends_short => "ended before the last waypoint",
         (false, false) => "not arrived",
     };
     format!(

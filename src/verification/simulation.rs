@@ -253,7 +253,9 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let ends = match document.interrupted {
         true => !document.arrived && end < settings.duration_s,
         false => {
-            document.arrived || is_off || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end)
+            document.arrived != document.ends_short
+                || is_off
+                || (end - settings.duration_s).abs() <= TIME_S * (1.0 + end)
         }
     };
     require(

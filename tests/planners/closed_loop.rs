@@ -9,6 +9,7 @@ use searoom::scenario::{
     Behaviour, Compliance, Fault, Land, NotReported, Scenario, SimulationSettings, VesselModel,
 };
 use searoom::simulation::Simulation;
+use searoom::verification::verify_simulations;
 use searoom::vessel::Hull;
 
 use crate::campaigns;
@@ -42,7 +43,10 @@ fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
 fn own_ship_stops_before_a_set_over_its_last_waypoint() {
     let moored = Scenario::parse(&fault("moored-at-the-end.toml")).expect("a scenario");
     let sailed = sail(moored);
-    assert!(sailed.safe && !sailed.arrived && !sailed.contact);
+    assert!(sailed.safe && sailed.ends_short && !sailed.arrived && !sailed.contact);
+    let text = serde_json::to_string(&sailed).expect("a document");
+    let checked = verify_simulations(&text).expect("a simulation");
+    assert!(checked[0].violations.is_empty(), "{checked:?}");
     assert_eq!(sailed.conduct.unsafe_plans, 0);
     let nearest = |name: &str| {
         let target = sailed.targets.iter().find(|t| t.name == name);

@@ -27,7 +27,7 @@ pub(crate) fn end_covered(problem: &Problem, proxies: &[Proxy]) -> Option<NoPlan
     inside.sort_by(|a, b| a.0.start.total_cmp(&b.0.start));
     let (mut until, mut last) = (earliest, None);
     for (interval, obstacle) in inside {
-        if interval.start > until {
+        if interval.start > until + tolerance::TIME_S {
             break;
         }
         if interval.end > until {
@@ -42,11 +42,12 @@ pub(crate) fn end_covered(problem: &Problem, proxies: &[Proxy]) -> Option<NoPlan
     Some(NoPlan::EndCovered { target, earliest })
 }
 
-/// The reason why there is no plan to the end, where sets cover it, and the desired trajectory to
-/// the last place that these sets leave uncovered for [`HOLD_S`] from the scheduled time there on;
-/// where there is none, at that time. Where the schedule is ahead of own ship, places on the way to
-/// it count, too. Without a trajectory where own ship is at that place, or has passed it by less
-/// than its turning radius. `None` where the end is not covered, or there is no such place.
+/// The reason why there is no plan to the end, where sets cover it, and the mission cut at the last
+/// place ahead that these sets leave free for [`HOLD_S`] from its scheduled time on; where there is
+/// none, at that time. Where the schedule is ahead of own ship, places on the way to it count, too.
+///
+/// Without a mission where no place ahead is free, and own ship is within its turning radius of the
+/// path. `None` where the end is not covered, or own ship is farther off.
 pub(crate) fn short_of_end(problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -56,22 +57,23 @@ pub(crate) fn short_of_end(problem: &Problem) -> Option<(NoPlan, Option<DesiredT
     let is_over = |proxy: &&Proxy| over_end.iter().any(|(_, k)| *k == proxy.obstacle);
     let over_end: Vec<Proxy> = proxies.iter().filter(is_over).copied().collect();
     let step = (STEP_LENGTHS * own.hull.length).max(STEP_M);
+    let on_path = |way: &DesiredTrajectory| way.nearest(own.pose.position, 0.0, 0.0);
     let last_free = |way: &DesiredTrajectory, hold: f64| {
-        let here = way.nearest(own.pose.position, 0.0, 0.0).distance;
-        let is_reached = |short: &DesiredTrajectory| short.length() <= here + tolerance::LENGTH_M;
+        let here = on_path(way).distance + tolerance::LENGTH_M;
         let mut ends = (1..)
             .map_while(|k| way.shortened(step * f64::from(k)))
-            .take_while(|short| short.length() > here - own.turning_radius);
-        let free = ends.find(|short| {
+            .take_while(|short| short.length() > here);
+        ends.find(|short| {
             let time = short.duration();
-            covering(&over_end, short.end(), time, time + hold).is_empty()
-        });
-        free.map(|short| Some(short).filter(|short| !is_reached(short)))
+            let until = (time + hold).min(horizon);
+            time <= horizon && covering(&over_end, short.end(), time, until).is_empty()
+        })
     };
-    let ways = [Some(desired.clone()), from_own_ship(problem)];
-    let mut ways = ways.iter().flatten();
-    let short = ways.find_map(|way| last_free(way, HOLD_S).or_else(|| last_free(way, 0.0)))?;
-    Some((why, short))
+    let candidates = [Some(desired.clone()), from_own_ship(problem)];
+    let mut candidates = candidates.iter().flatten();
+    let short = candidates.find_map(|way| last_free(way, HOLD_S).or_else(|| last_free(way, 0.0)));
+    let is_near = on_path(desired).error.sqrt() <= own.turning_radius;
+    (short.is_some() || is_near).then_some((why, short))
 }
 
 /// The desired trajectory after a straight leg from own ship to its start, where that is ahead.

@@ -47,7 +47,7 @@ const INSTANT: f64 = 1e-9;
 /// A step ends at the next event; one shorter than this fraction of it is joined to the one before.
 const SHORT_STEP: f64 = 1e-6;
 
-/// Seconds before the end of a plan that does not arrive at which another one is made at the latest.
+/// Seconds before the end of a plan that ends short at which another one takes effect at the latest.
 const BEFORE_END_S: f64 = 2.0;
 
 /// m/s. Added to the distance from a contact per second ahead.
@@ -90,8 +90,8 @@ pub struct Simulation {
     /// Seconds since the scenario's time.
     time: f64,
     duration: f64,
-    /// When own ship comes to the end of a plan that ends where it is; infinite before.
-    ends: f64,
+    /// When the last plan ends, where it ends at own ship; infinite otherwise.
+    stop_time: f64,
     own: Own,
     targets: Vec<Simulated>,
     /// The plan that own ship follows.
@@ -147,10 +147,13 @@ impl Active {
         self.start + self.trajectory.end_time()
     }
 
-    /// False for a plan that ends before the mission's end.
-    fn arrives(&self) -> bool {
-        let cost = self.document.as_ref().map(|plan| plan.cost.as_ref());
-        cost.is_none_or(|cost| cost.is_some_and(|cost| cost.arrived))
+    /// True for a plan that ends before the last waypoint, and before the horizon.
+    fn ends_short(&self) -> bool {
+        self.document.as_ref().is_some_and(|plan| {
+            let arrives = plan.cost.as_ref().is_some_and(|cost| cost.arrived);
+            let ends = self.trajectory.end_time() < plan.horizon_s - INSTANT;
+            plan.optimal_control.is_none() && !arrives && ends
+        })
     }
 }
 
@@ -231,7 +234,7 @@ impl Simulation {
             measured_delay,
             time: 0.0,
             duration,
-            ends: f64::INFINITY,
+            stop_time: f64::INFINITY,
             pending: None,
             next_cycle: scenario.simulation.replan,
             sailed: Vec::new(),
@@ -313,7 +316,7 @@ impl Simulation {
         let in_plan = self.time - plan.start;
         let now = self.own.pose(&plan.trajectory, in_plan);
         let planned = plan.trajectory.pose_at(in_plan);
-        let left = plan.end().min(self.duration) - self.time;
+        let left = plan.end().min(self.duration).min(self.stop_time) - self.time;
         let far = |apart: f64, ahead: f64| {
             (apart + CLOSING_SPEED * ahead) / (1.0 + ahead / DIFFUSION_TIME).sqrt()
         };
@@ -340,7 +343,7 @@ impl Simulation {
 
     /// True at the end of the plan that own ship follows, and at the end of the simulation.
     pub fn finished(&self) -> bool {
-        let end = self.active.end().min(self.duration).min(self.ends);
+        let end = self.active.end().min(self.duration).min(self.stop_time);
         // negated so that a NaN ends the simulation
         !(self.time < end - INSTANT)
     }
@@ -358,7 +361,7 @@ impl Simulation {
             self.next_cycle,
             self.active.end(),
             self.duration,
-            self.ends,
+            self.stop_time,
         ];
         let next = events.into_iter().fold(f64::INFINITY, f64::min) - self.time;
         let mut step = self.settings().step;
@@ -384,7 +387,7 @@ impl Simulation {
         }
         // sets are smaller by then, so the next plan may go on from where this one ends
         let before_end = self.active.end() - self.settings().delay - BEFORE_END_S;
-        if !self.active.arrives() && before_end > self.time + INSTANT {
+        if self.active.ends_short() && before_end > self.time + INSTANT {
             self.next_cycle = self.next_cycle.min(before_end);
         }
     }
@@ -464,10 +467,10 @@ impl Simulation {
         }
         let plan = run.planned.outcome.plan();
         let plan = plan.filter(|_| replan.followed);
-        let ends = |plan: &Plan| plan.to_go > 0.0 && plan.trajectory.end_time() <= INSTANT;
-        if plan.is_some_and(ends) {
-            // where own ship is, and there the simulation ends, too
-            self.ends = self.time + delay;
+        let is_stop = |plan: &Plan| plan.to_go > 0.0 && plan.trajectory.end_time() <= INSTANT;
+        self.stop_time = f64::INFINITY;
+        if plan.is_some_and(is_stop) {
+            self.stop_time = self.time + delay;
         } else if let Some(plan) = plan {
             let document = PlanDocument::of(&run);
             if self.keep_plans {

@@ -55,9 +55,10 @@ impl Simulation {
         let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
         let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
         let ended = self.time >= self.active.end() - super::INSTANT;
+        let cost = self.active.document.as_ref();
+        let cost = cost.and_then(|plan| plan.cost.as_ref());
         let mut arrived = ended
-            && self.active.document.is_some()
-            && self.active.arrives()
+            && cost.is_some_and(|cost| cost.arrived)
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let mut cost_m2 = match arrived {
@@ -79,6 +80,8 @@ impl Simulation {
             contact,
             arrived,
             interrupted: !self.finished(),
+            ends_short: self.finished()
+                && (self.stop_time.is_finite() || ended && self.active.ends_short()),
             duration_s: self.time,
             targets: match self.sailed.is_empty() {
                 true => Vec::new(),
