@@ -34,7 +34,7 @@ pub trait Planner: Sync {
 
     /// The reason why there is no plan to the end, where sets cover it until the horizon, and the
     /// mission cut before them; without one where nothing ahead of own ship is free. `None` where
-    /// the end is not covered.
+    /// the end is not covered, or own ship is far off its path.
     fn short_of_end(&self, _problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         None
     }
