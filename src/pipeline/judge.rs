@@ -5,6 +5,7 @@ use crate::evaluation::{
     Evaluation, Freedom, Request, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::planner::Plan;
 use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
@@ -22,7 +23,7 @@ pub(super) fn judge_answer(
 ) -> Evaluation {
     let (obstacles, released) = (&answer.obstacles, &answer.released);
     let plan = answer.planned.outcome.plan();
-    let arrives = plan.is_none_or(|plan| plan.to_go == 0.0);
+    let arrives = plan.is_none_or(Plan::arrives);
     judge_plan(
         scenario,
         obstacles,

@@ -29,7 +29,7 @@ use crate::evaluation::Evaluation;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::parallel;
-use crate::planner::{NoPlan, Outcome, Planned, Problem};
+use crate::planner::{NoPlan, Outcome, Plan, Planned, Problem};
 use crate::scenario::{Compliance, Scenario};
 
 /// A scenario with its plan and the evaluation of that plan.
@@ -103,7 +103,7 @@ impl Run {
     /// True where the plan ends at the last waypoint. Motions under forces end at the horizon.
     pub fn arrives(&self) -> bool {
         let plan = self.planned.outcome.plan();
-        self.planned.control.is_none() && plan.is_some_and(|plan| plan.to_go == 0.0)
+        self.planned.control.is_none() && plan.is_some_and(Plan::arrives)
     }
 
     /// Why there is no plan, or only an unfinished or relaxed one; `None` for a plan that satisfies
@@ -227,7 +227,11 @@ pub fn run(scenario: Scenario) -> Run {
 /// The arrival that a plan gives up, and the target that prevents it: one that blocks the way, or
 /// else one whose set is entered.
 fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
-    let to_go = answer.planned.outcome.plan()?.to_go;
+    let plan = answer
+        .planned
+        .outcome
+        .plan()
+        .filter(|plan| !plan.arrives())?;
     let barring = match answer.why.as_ref() {
         Some(
             NoPlan::Barred { target, .. }
@@ -244,9 +248,9 @@ fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
             .chain(answer.whole.iter().zip(&answer.released))
             .map(|(set, _)| set.name()),
     );
-    (to_go > 0.0).then(|| Relaxation::Arrival {
+    Some(Relaxation::Arrival {
         target: names.next().unwrap_or_default().to_owned(),
-        amount: to_go,
+        amount: plan.to_go,
     })
 }
 

@@ -14,7 +14,7 @@ use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
-use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Trajectory};
 
 /// Domain scale factor between the hard set, 0, and the full ship domain, 1.
 const HALF: f64 = 0.5;
@@ -112,9 +112,9 @@ impl Attempt {
             return self.planned.outcome.plan().is_some();
         };
         let entered = |of: &Self| of.released.iter().flatten().count();
-        let level = |of: &Self, plan: &Plan| match plan.to_go > 0.0 {
-            true => of.level.max(RelaxationLevel::Waiting),
-            false => of.level,
+        let level = |of: &Self, plan: &Plan| match plan.arrives() {
+            true => of.level,
+            false => of.level.max(RelaxationLevel::Waiting),
         };
         let reduced = |of: &Self| of.reductions.iter().copied().fold(0.0, f64::max);
         let discrete = (level(self, plan), entered(self));
@@ -224,11 +224,7 @@ impl Relaxer<'_> {
         };
         let relaxed = self.relaxed(first, &why, with_domain);
         let relaxed = self.finished(with_domain, &relaxed).unwrap_or(relaxed);
-        let arrives = relaxed
-            .planned
-            .outcome
-            .plan()
-            .is_none_or(|plan| plan.to_go == 0.0);
+        let arrives = relaxed.planned.outcome.plan().is_none_or(Plan::arrives);
         let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
         let why = relaxed.why.clone().unwrap_or(why);
         Attempt {
@@ -521,9 +517,7 @@ impl Relaxer<'_> {
         let mut found = match answer {
             Some(answer) => answer,
             None if is_near && !late => {
-                let stop = Segment::straight(own.pose, 0.0, 0.0, own.max_speed());
-                let plan = Plan::measured(&problem, vec![stop], None)?;
-                let planned = Planned::of(Outcome::Solved(plan));
+                let planned = Planned::of(Outcome::Solved(Plan::staying(&problem)?));
                 let level = RelaxationLevel::ReducedDomains;
                 let found = Attempt::of(level, whole, reductions, hard, risk, planned);
                 let retained = self.retained_along(found.trajectory()?, risk);

@@ -262,6 +262,17 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// True where it ends at the last waypoint. Motions under forces are never said not to.
+    pub fn arrives(&self) -> bool {
+        self.to_go == 0.0
+    }
+
+    /// Plan that ends where own ship is, after no time.
+    pub(crate) fn staying(problem: &Problem) -> Option<Self> {
+        let stay = Segment::straight(problem.own.pose, 0.0, 0.0, problem.own.max_speed());
+        Self::measured(problem, vec![stay], None)
+    }
+
     /// Plan that arrives, with its space-time error, which is integrated anew: searches use coarser
     /// quadrature. `None` for an invalid trajectory.
     pub fn measured(

@@ -57,6 +57,46 @@ fn own_ship_stops_before_a_set_over_its_last_waypoint() {
     assert!(nearest("crossing") > 150.0 && nearest("moored") > 150.0);
 }
 
+/// Four ships on a way of 1,620 s, with a horizon of 900 s: plans end on the way until the rest fits.
+#[test]
+fn a_mission_longer_than_its_horizon_is_sailed_in_parts() {
+    let scenario = Scenario::parse(&fault("longer-than-its-horizon.toml")).expect("a scenario");
+    let sailed = sail(scenario);
+    assert!(sailed.safe && sailed.arrived && !sailed.ends_short);
+    assert_eq!(sailed.conduct.without_plan, 0);
+    let text = serde_json::to_string(&sailed).expect("a document");
+    let checked = verify_simulations(&text).expect("a simulation");
+    assert!(checked[0].violations.is_empty(), "{checked:?}");
+    for target in &sailed.targets {
+        assert!(target.least_clearance_m > Some(150.0), "{}", target.name);
+    }
+}
+
+/// Seeds 3, 12, 24, 50 and 54 of overtaking need another place than the farthest one.
+#[test]
+fn a_short_horizon_takes_no_certificate_away() {
+    let kinds = EncounterKind::ALL.into_iter();
+    let hard = [3, 12, 24, 50, 54].map(|seed| (EncounterKind::Overtaking, seed));
+    for (kind, seed) in kinds
+        .flat_map(|kind| (0..4).map(move |seed| (kind, seed)))
+        .chain(hard)
+    {
+        let how = How {
+            truth: Truth::Extremes,
+            ..CONSTANT
+        };
+        let mut scenario = meeting(kind, seed, &how);
+        if seed % 2 == 0 {
+            scenario.compliance = Compliance::Shape;
+        }
+        let share = 0.35 + 0.05 * (seed % 6) as f64;
+        scenario.horizon = share * scenario.desired.duration();
+        let sailed = sail(scenario);
+        assert!(sailed.safe && sailed.arrived, "{kind:?} {seed}");
+        assert_eq!(sailed.conduct.without_plan, 0, "{kind:?} {seed}");
+    }
+}
+
 #[test]
 fn targets_within_their_sets_are_never_met_and_every_plan_has_a_successor() {
     for truth in [Truth::Random, Truth::Extremes, Truth::Pursuit] {

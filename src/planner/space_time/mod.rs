@@ -172,12 +172,6 @@ fn has_arrived(problem: &Problem) -> bool {
     at_end && !problem.desired.comes_by(here)
 }
 
-/// Plan of a ship that has arrived.
-fn arrived_plan(problem: &Problem) -> Option<Plan> {
-    let arrived_plan = Segment::straight(problem.own.pose, 0.0, 0.0, problem.own.max_speed());
-    Plan::measured(problem, vec![arrived_plan], None)
-}
-
 fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
     plan_with(problem, proxies, clock, true)
 }
@@ -207,7 +201,7 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: b
         return refuse(NoPlan::StartOnLand { depth });
     }
     if has_arrived(problem) {
-        let plan = arrived_plan(problem);
+        let plan = Plan::staying(problem);
         return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
     }
     let Some(route) = Route::new(problem, clock) else {

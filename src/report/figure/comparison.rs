@@ -304,7 +304,7 @@ fn pareto(scenario: &Scenario, curves: &[Curve], style: &Style) -> Panel {
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
     let run = entry.run.as_deref()?;
     let enters = run.enters();
-    let is_left = run.planned.outcome.plan().is_some_and(|p| p.to_go > 0.0);
+    let is_left = run.planned.outcome.plan().is_some_and(|p| !p.arrives());
     if enters || is_left || run.max_risk > entry.candidate.max_risk {
         return None;
     }

@@ -64,6 +64,7 @@ impl Simulation {
                 start: self.time,
                 trajectory,
                 document: None,
+                beyond: 0.0,
                 assumed: Vec::new(),
             };
         }

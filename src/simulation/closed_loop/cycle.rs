@@ -5,13 +5,14 @@ use crate::colregs::SteadyShip;
 use crate::document::{EstimateDocument, ReplanDocument, finite, position, relaxation};
 use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::pipeline::{self, Run};
+use crate::pipeline::{self, RelaxationLevel, Run};
 use crate::planner::WarmStart;
 use crate::planner::optimal_control::node;
 use crate::replanning::remember;
-use crate::scenario::Memory;
+use crate::scenario::{Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
-use crate::tolerance::TOUCH_M;
+use crate::tolerance::{self, TOUCH_M};
+use crate::trajectory::DesiredTrajectory;
 use crate::vessel::ForceVector;
 
 /// m/s and metres: rounding of a target's state.
@@ -21,9 +22,19 @@ const ROUNDING: f64 = 1e-6;
 /// of a metre has to lie at its end, not a metre before it.
 const LAST_STRETCH_M: f64 = 1e-3;
 
+/// Share of the horizon within which own ship is due where a plan ends. The rest is time to give
+/// way.
+const DUE_SHARE: f64 = 0.85;
+
+/// Time between two places where plans may end, as a share of the horizon. Plans end at the same
+/// place for that long, so one can go on from the other.
+const STEP_SHARE: f64 = 0.3;
+
 pub(super) struct Cycle {
     pub run: Run,
     pub replan: ReplanDocument,
+    /// Metres of the mission beyond the end of the plan.
+    pub beyond: f64,
 }
 
 impl Simulation {
@@ -97,7 +108,7 @@ impl Simulation {
                 }
             }
         }
-        let run = pipeline::run(scenario);
+        let (run, beyond) = self.run(&scenario);
         let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
         let plan = run.planned.outcome.plan();
         let replan = ReplanDocument {
@@ -120,8 +131,92 @@ impl Simulation {
             outside_places: run.scenario.memory.outside_places.clone(),
             estimates,
         };
-        Cycle { run, replan }
+        Cycle {
+            run,
+            replan,
+            beyond,
+        }
     }
+
+    /// Plans a mission up to where own ship is due in time, or farther if the present plan ends there,
+    /// and returns the metres beyond. Where this plan gives something up, nearer places are tried as
+    /// well, of which the next plan would not come too late.
+    fn run(&self, scenario: &Scenario) -> (Run, f64) {
+        let run_to = |beyond: f64| {
+            let mut scenario = scenario.clone();
+            scenario.desired = up_to(&scenario, beyond)?;
+            Some((pipeline::run(scenario), beyond))
+        };
+        if super::is_under_forces(scenario) {
+            return (pipeline::run(scenario.clone()), 0.0);
+        }
+        let slowest = self.scenario.desired.legs().iter().map(|leg| leg.speed);
+        let slowest = slowest.fold(f64::INFINITY, f64::min);
+        let step = STEP_SHARE * scenario.horizon * slowest;
+        let due = (beyond(scenario) / step).ceil() * step;
+        let present = self.active.beyond;
+        let Some((mut best, mut at)) = run_to(due.min(present)) else {
+            return (pipeline::run(scenario.clone()), 0.0);
+        };
+        let end = |run: &Run| {
+            let plan = run.planned.outcome.plan()?;
+            Some(plan.trajectory.end_time())
+        };
+        let gives_up = |run: &Run| (end(run).is_none(), run.level);
+        let next = self.settings().replan + super::BEFORE_END_S;
+        let nearest = if due > 0.0 { due + step } else { 0.0 };
+        for beyond in [due.max(present), nearest] {
+            if gives_up(&best) == (false, RelaxationLevel::Compliant) {
+                break;
+            }
+            let nearer = (beyond > at).then(|| run_to(beyond));
+            let Some((mut run, beyond)) = nearer.flatten() else {
+                continue;
+            };
+            let in_time = end(&best).is_none() || end(&run) > Some(next);
+            let plan_time = best.plan_time + run.plan_time;
+            if gives_up(&run) < gives_up(&best) && in_time {
+                std::mem::swap(&mut best, &mut run);
+                at = beyond;
+            }
+            best.plan_time = plan_time;
+        }
+        (best, at)
+    }
+}
+
+/// Metres at the end of a mission that own ship is not due to sail within [`DUE_SHARE`] of the
+/// horizon.
+fn beyond(scenario: &Scenario) -> f64 {
+    let (own, legs) = (&scenario.own_ship, scenario.desired.legs());
+    let fastest = own.max_speed();
+    let off = (scenario.desired.position_at(0.0) - own.pose.position).norm();
+    let mut time = DUE_SHARE * scenario.horizon - off / fastest;
+    let mut left = scenario.desired.length();
+    for leg in legs {
+        let speed = leg.speed.min(fastest);
+        let sailed = (time * speed).clamp(0.0, leg.length);
+        (time, left) = (time - leg.length / speed, left - sailed);
+    }
+    // a rounding is no way
+    match left > tolerance::ARRIVAL_M {
+        true => left,
+        false => 0.0,
+    }
+}
+
+/// The mission without its last metres, and without a last leg that is too short for own ship to turn
+/// onto; `None` where nothing is left.
+fn up_to(scenario: &Scenario, beyond: f64) -> Option<DesiredTrajectory> {
+    let desired = &scenario.desired;
+    if beyond == 0.0 {
+        return Some(desired.clone());
+    }
+    let short = desired.shortened(beyond)?;
+    let last = short.legs().last()?.length;
+    let is_short = last < 2.0 * scenario.own_ship.turning_radius;
+    let at_waypoint = is_short.then(|| short.shortened(last)).flatten();
+    Some(at_waypoint.unwrap_or(short))
 }
 
 impl Simulation {

@@ -137,6 +137,8 @@ struct Active {
     trajectory: Trajectory,
     /// `None` where own ship holds course and speed without a plan.
     document: Option<PlanDocument>,
+    /// Metres of the mission beyond the end of the plan, which is shorter than the horizon.
+    beyond: f64,
     /// The targets that the plan assumes at its start, in the scenario's order; `None` for explicit
     /// sets.
     assumed: Vec<Option<ShipTrack>>,
@@ -150,7 +152,7 @@ impl Active {
     /// True for a plan that ends before the last waypoint, and before the horizon.
     fn ends_short(&self) -> bool {
         self.document.as_ref().is_some_and(|plan| {
-            let arrives = plan.cost.as_ref().is_some_and(|cost| cost.arrived);
+            let arrives = self.beyond == 0.0 && plan.cost.as_ref().is_some_and(|cost| cost.arrived);
             let ends = self.trajectory.end_time() < plan.horizon_s - INSTANT;
             plan.optimal_control.is_none() && !arrives && ends
         })
@@ -167,14 +169,15 @@ impl Simulation {
         simulation.observe();
         simulation.cycle(0.0, "start".to_owned());
         simulation.activate();
-        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2;
+        let is_whole = simulation.active.beyond == 0.0;
+        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2.filter(|_| is_whole);
         Ok(simulation)
     }
 
     /// Before the first plan: own ship holds course and speed.
     fn begun(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let settings = &scenario.simulation;
-        let duration = settings.duration.unwrap_or(scenario.horizon);
+        let duration = duration(&scenario);
         let faults = faults(&scenario, duration);
         if !faults.is_empty() {
             return Err(faults);
@@ -228,6 +231,7 @@ impl Simulation {
                 start: 0.0,
                 trajectory: own.held(&scenario, duration),
                 document: None,
+                beyond: f64::INFINITY,
                 assumed: Vec::new(),
             },
             own,
@@ -251,8 +255,7 @@ impl Simulation {
 
     /// Every reason why a scenario cannot be sailed, as [`Self::new`] returns them.
     pub(crate) fn unfit(scenario: &Scenario) -> Vec<Fault> {
-        let duration = scenario.simulation.duration.unwrap_or(scenario.horizon);
-        faults(scenario, duration)
+        faults(scenario, duration(scenario))
     }
 
     /// Keeps the document of every plan from now on; the first plan is the one that is followed.
@@ -433,7 +436,11 @@ impl Simulation {
 
     /// Makes a plan that holds from `delay` seconds from now on.
     fn cycle(&mut self, delay: f64, reason: String) {
-        let Cycle { run, replan } = self.plan(delay, reason);
+        let Cycle {
+            run,
+            replan,
+            beyond,
+        } = self.plan(delay, reason);
         self.plan_seconds.push(run.plan_time.as_secs_f64());
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
             let next = run.planned.manoeuvres.first();
@@ -467,7 +474,7 @@ impl Simulation {
         }
         let plan = run.planned.outcome.plan();
         let plan = plan.filter(|_| replan.followed);
-        let is_stop = |plan: &Plan| plan.to_go > 0.0 && plan.trajectory.end_time() <= INSTANT;
+        let is_stop = |plan: &Plan| !plan.arrives() && plan.trajectory.end_time() <= INSTANT;
         self.stop_time = f64::INFINITY;
         if plan.is_some_and(is_stop) {
             self.stop_time = self.time + delay;
@@ -481,6 +488,7 @@ impl Simulation {
                 start: self.time + delay,
                 trajectory: plan.trajectory.clone(),
                 document: Some(document),
+                beyond,
                 assumed: targets.map(|target| target.ship().cloned()).collect(),
             });
         }
@@ -578,6 +586,14 @@ impl Simulated {
             self.track.update(&report);
         }
     }
+}
+
+/// End of the simulation, seconds, if own ship has not arrived before.
+fn duration(scenario: &Scenario) -> f64 {
+    let mission = scenario.desired.duration();
+    let is_short = mission > scenario.horizon && !is_under_forces(scenario);
+    let until = scenario.horizon + if is_short { mission } else { 0.0 };
+    scenario.simulation.duration.unwrap_or(until)
 }
 
 /// True where the plans are forces, which drive the planner's own model of the ship.

@@ -18,7 +18,7 @@ use crate::planner::space_time::motion::{part, pose_at, until};
 use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::{arrived_plan, has_arrived, plan};
+use crate::planner::space_time::{has_arrived, plan};
 use crate::planner::{NominalTarget, Plan, Problem};
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -66,7 +66,7 @@ const MIN_COMPARED: usize = 12;
 pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if has_arrived(problem) {
-        return arrived_plan(problem);
+        return Plan::staying(problem);
     }
     let pieces = parts_of(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
