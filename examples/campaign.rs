@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
-use campaigns::plans::{compliance, encounters, harbour, invariance, mutations, tidiness};
+use campaigns::plans::{asked, compliance, encounters, harbour, invariance, mutations, tidiness};
 use campaigns::{Report, dense_search, forces, path_time, wild};
 use clap::{Args, Parser, Subcommand};
 use searoom::scenario::Compliance;
@@ -130,6 +130,8 @@ enum Campaign {
         #[arg(long, default_value_t = 40)]
         starts: usize,
     },
+    /// Requests and stricter ones: domains, rules, ellipses, risk, margin
+    Asked(Scenes<200>),
     /// Scenes moved, turned, mirrored and scaled
     Invariance(Scenes<300>),
     /// Numbers of plan documents altered, each alone
@@ -242,6 +244,7 @@ fn run(campaign: Campaign) -> Report {
             report.missed.extend(forces::run_starts(starts).missed);
             report
         }
+        Campaign::Asked(scenes) => asked::run(scenes.of_each(1)),
         Campaign::Invariance(scenes) => invariance::run(scenes.of_each(1)),
         Campaign::Mutations { numbers } => mutations::run(numbers),
         Campaign::Wild {

@@ -326,7 +326,7 @@ pub struct Asked {
     /// Planner instead of the scenario's
     #[arg(long, value_name = "KIND", value_parser = words(planner_words()))]
     pub planner: Option<&'static dyn Planner>,
-    /// Search instead of the scenario's; thorough: with several targets slower, cheaper
+    /// Search instead of the scenario's; thorough: with several targets the best of many searches
     #[arg(long, value_name = "KIND", value_parser = words(SearchKind::WORDS))]
     pub search: Option<SearchKind>,
     /// Compliance instead of the scenario's: with hulls alone, ship domains, or domains and rules

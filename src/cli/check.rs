@@ -71,9 +71,9 @@ pub fn short_horizon(scenario: &Scenario) -> Option<String> {
     horizon_note(scenario, what)
 }
 
-/// A horizon before the end of the mission, where plan follows plan.
-pub fn plans_on_the_way(scenario: &Scenario) -> Option<String> {
-    horizon_note(scenario, "so plans end on the way until the rest fits")
+/// A horizon before the end of the mission, which is sailed in parts.
+pub fn sailed_in_parts(scenario: &Scenario) -> Option<String> {
+    horizon_note(scenario, "so it is sailed in parts")
 }
 
 fn horizon_note(scenario: &Scenario, what: &str) -> Option<String> {

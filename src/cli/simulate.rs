@@ -14,7 +14,7 @@ use searoom::scenario::import::Imported;
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::check::plans_on_the_way;
+use super::check::sailed_in_parts;
 use super::input::files::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
@@ -133,7 +133,7 @@ fn sail(
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
     let mut scenario = made.scenario;
-    let notes = made.notes.into_iter().chain(plans_on_the_way(&scenario));
+    let notes = made.notes.into_iter().chain(sailed_in_parts(&scenario));
     output.notes(None, &[(String::new(), notes.collect())]);
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);

@@ -173,8 +173,8 @@ pub struct SailedLandDocument {
 /// Own ship's conduct over the whole simulation.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SailedDocument {
-    /// Space-time error of the sailed motion and of the first plan; of the latter null where it ends on the
-    /// way.
+    /// Space-time error of the sailed motion and of the first plan; the latter is null where that plan
+    /// ends before the last waypoint.
     pub cost_m2: f64,
     pub first_plan_cost_m2: Option<f64>,
     /// Rules and monitors that the sailed motion breaks toward any target, each once.

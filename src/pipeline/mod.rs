@@ -10,6 +10,7 @@ mod remainder;
 mod risk;
 mod rules;
 mod sets;
+mod thorough;
 
 pub use judge::{judge, judge_free};
 pub use land::{land_obstacle, land_within_reach};

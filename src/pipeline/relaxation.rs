@@ -79,7 +79,7 @@ pub(super) struct Attempt {
 
 impl Attempt {
     /// An attempt that enters no set.
-    fn of(
+    pub(super) fn of(
         level: RelaxationLevel,
         whole: Vec<Obstacle>,
         reductions: Vec<f64>,
@@ -105,7 +105,7 @@ impl Attempt {
 
     /// True where this answer relaxes less than another, or as much at a lower cost. Compares
     /// level, number of entered sets, risk, largest reduction of a domain, and cost, in this order.
-    fn is_better_than(&self, other: &Self) -> bool {
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let (Some(plan), Some(others)) =
             (self.planned.outcome.plan(), other.planned.outcome.plan())
         else {
@@ -165,37 +165,29 @@ impl Relaxer<'_> {
         Self::at_least_risk,
     ];
 
-    /// The answer to the request. The thorough search compares its answer with that of A*: a
-    /// cheaper plan at one level may lead to more relaxation at another.
+    /// The answer to the request.
     pub fn answer(&self) -> Attempt {
-        let scenario = self.scenario;
-        if scenario.search != SearchKind::Thorough || scenario.targets.len() < 2 {
-            return self.answer_of_one_search();
+        let (search, planner) = (self.scenario.search, self.scenario.planner.facts());
+        let several = self.scenario.targets.len() > 1 && planner.searches.contains(&search);
+        match search {
+            SearchKind::Thorough if several => self.thorough_answer(),
+            _ => self.answer_of_one_search(),
         }
-        let quick = Relaxer {
-            scenario: &Scenario {
-                search: SearchKind::AStar,
-                ..scenario.clone()
-            },
+    }
+
+    /// For another scenario and its sets, in the same time.
+    pub(super) fn of<'b>(&'b self, scenario: &'b Scenario, sets: &'b [TargetSets]) -> Relaxer<'b> {
+        Relaxer {
+            scenario,
+            sets,
             ..*self
-        };
-        let quick = quick.answer_of_one_search();
-        if matches!(quick.planned.outcome, Outcome::Deadline(_)) {
-            return quick;
-        }
-        let thorough = self.answer_of_one_search();
-        match thorough.planned.outcome {
-            _ if !quick.is_better_than(&thorough) => thorough,
-            Outcome::Deadline(_) => out_of_time(quick),
-            Outcome::Solved(_) | Outcome::Infeasible(_) => quick,
         }
     }
 
     /// The answer of the first level that has one; without any, that of the first level.
-    fn answer_of_one_search(&self) -> Attempt {
+    pub(super) fn answer_of_one_search(&self) -> Attempt {
         let with_domain = self.scenario.compliance.shapes();
-        let scale = if with_domain { 1.0 } else { 0.0 };
-        let mut first = self.first(&self.scales(scale));
+        let mut first = self.first();
         let problem = self.problem(&first.obstacles);
         if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
             let none = first.planned.outcome.plan().is_none();
@@ -236,8 +228,9 @@ impl Relaxer<'_> {
     /// The plan that satisfies the whole request. Where a risk is accepted, it is the cheaper one of
     /// a plan around the smaller sets and of a plan that takes no risk: the search may miss the
     /// latter among the smaller sets.
-    fn first(&self, scales: &[f64]) -> Attempt {
+    pub(super) fn first(&self) -> Attempt {
         let (level, risk) = (RelaxationLevel::Compliant, self.scenario.max_risk);
+        let scales = &self.first_scales();
         let mut first = self.attempt(level, scales, risk);
         if risk == 0.0 || self.scenario.planner.facts().relaxes_domains_only {
             return first;
@@ -501,15 +494,12 @@ impl Relaxer<'_> {
         let before = left.and_then(|left| path.shortened(left));
         let mut late = false;
         let answer = desired.into_iter().chain(before).find_map(|desired| {
-            let short = Relaxer {
-                scenario: &Scenario {
-                    desired,
-                    deadline: self.scenario.deadline - 0.5 * self.time_left().as_secs_f64(),
-                    ..self.scenario.clone()
-                },
-                ..*self
+            let short = Scenario {
+                desired,
+                deadline: self.scenario.deadline - 0.5 * self.time_left().as_secs_f64(),
+                ..self.scenario.clone()
             };
-            let answer = short.answer_of_one_search();
+            let answer = self.of(&short, self.sets).answer_of_one_search();
             late |= matches!(answer.planned.outcome, Outcome::Deadline(_));
             let keeps = answer.level < RelaxationLevel::Risk && answer.trajectory().is_some();
             keeps.then_some(answer)
@@ -650,7 +640,7 @@ impl Relaxer<'_> {
         first
     }
 
-    fn time_left(&self) -> Duration {
+    pub(super) fn time_left(&self) -> Duration {
         super::deadline(self.scenario).saturating_sub(self.begun.elapsed())
     }
 
@@ -680,7 +670,7 @@ impl Relaxer<'_> {
 
     /// Plans against domains of these scale factors at a risk.
     fn attempt(&self, level: RelaxationLevel, scales: &[f64], risk: f64) -> Attempt {
-        let (whole, reductions) = self.scaled(scales);
+        let (whole, reductions) = self.asked(scales);
         let planner = self.scenario.planner;
         let obstacles = planner.outer_sets(level_sets(&whole, risk));
         let mut problem = self.problem(&obstacles);
@@ -703,11 +693,6 @@ impl Relaxer<'_> {
                 may_wait: level == RelaxationLevel::Waiting,
                 settings: &self.scenario.settings,
             })
-        };
-        // domains that nobody asked for are not given up
-        let reductions = match self.scenario.compliance.shapes() {
-            true => reductions,
-            false => self.scales(0.0),
         };
         Attempt::of(level, whole, reductions, obstacles, risk, planned)
     }
@@ -743,6 +728,26 @@ impl Relaxer<'_> {
         let all = self.sets.iter().zip(scales);
         let scaled = all.map(|(sets, scale)| sets.scaled(*scale));
         scaled.map(|s| (s.obstacle, s.reduction)).unzip()
+    }
+
+    /// [`Self::scaled`], without reductions of domains that nobody asked for: these are not given up.
+    fn asked(&self, scales: &[f64]) -> (Vec<Obstacle>, Vec<f64>) {
+        let (whole, reductions) = self.scaled(scales);
+        match self.scenario.compliance.shapes() {
+            true => (whole, reductions),
+            false => (whole, self.scales(0.0)),
+        }
+    }
+
+    /// The sets of the first level, and metres by which each ship domain is reduced.
+    pub(super) fn first_sets(&self) -> (Vec<Obstacle>, Vec<f64>) {
+        self.asked(&self.first_scales())
+    }
+
+    /// The full ship domains, where they are asked for.
+    fn first_scales(&self) -> Vec<f64> {
+        let with_domain = self.scenario.compliance.shapes();
+        self.scales(if with_domain { 1.0 } else { 0.0 })
     }
 
     /// The plan of an attempt, claimed to be clear of domains of these scale factors.
@@ -810,7 +815,7 @@ impl Relaxer<'_> {
 }
 
 /// Marks a plan as one that the deadline kept from being improved.
-fn out_of_time(mut attempt: Attempt) -> Attempt {
+pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
     attempt.planned.outcome = match attempt.planned.outcome {
         Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
         other => other,

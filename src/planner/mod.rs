@@ -95,8 +95,7 @@ pub enum SearchKind {
     AStar,
     /// Dijkstra's algorithm: best first by cost.
     Dijkstra,
-    /// A*, and among several targets larger budgets of the graph and of the conflict search. Two
-    /// or three times as slow.
+    /// The best of many searches among several targets, some with larger budgets. Ten times as slow.
     Thorough,
 }
 

@@ -193,7 +193,7 @@ impl DesiredTrajectory {
     pub(crate) fn shortened(&self, length: f64) -> Option<Self> {
         let end = self.length() - length;
         let kept: Vec<&DesiredLeg> = (self.legs.iter())
-            .take_while(|leg| leg.start_distance < end)
+            .take_while(|leg| leg.start_distance < end - tolerance::LENGTH_M)
             .collect();
         let last = kept.last()?;
         let mut waypoints: Vec<Vector> = kept.iter().map(|leg| leg.start).collect();

@@ -2,7 +2,9 @@
 
 use crate::campaigns::closed_loop::replanning::{self, Behaviour, How};
 use crate::campaigns::encounter_generator::Meeting;
-use crate::campaigns::plans::{compliance, encounters, harbour, invariance, mutations, tidiness};
+use crate::campaigns::plans::{
+    asked, compliance, encounters, harbour, invariance, mutations, tidiness,
+};
 use crate::campaigns::{dense_search, forces, path_time, wild};
 
 #[test]
@@ -73,6 +75,11 @@ fn no_random_start_finds_a_cheaper_plan_by_forces() {
 #[test]
 fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
     invariance::run(0..60).assert_met();
+}
+
+#[test]
+fn asking_for_less_makes_no_plan_dearer() {
+    asked::run(0..3).assert_met();
 }
 
 #[test]

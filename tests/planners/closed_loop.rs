@@ -72,6 +72,36 @@ fn a_mission_longer_than_its_horizon_is_sailed_in_parts() {
     }
 }
 
+/// Own ship may begin far behind its schedule or off its path, be slower than the mission, or turn
+/// wide at a corner of the path.
+#[test]
+fn own_ship_off_its_schedule_has_a_plan_in_every_cycle() {
+    for (what, east, time, speed, radius) in [
+        ("on its schedule", 0.0, 0.0, 5.0, 100.0),
+        ("behind its schedule", 0.0, 800.0, 5.0, 100.0),
+        ("off its path", 2500.0, 0.0, 5.0, 100.0),
+        ("slower than its mission", 0.0, 0.0, 8.0, 100.0),
+        ("with wide turns", 0.0, 0.0, 5.0, 700.0),
+    ] {
+        let scenario = Scenario::parse(&format!(
+            r#"title = "{what}"
+            horizon_s = 600
+            time_s = {time}
+            own_ship = {{ position = {{ east_m = {east}, north_m = 0 }}, course_deg = 0, speed_mps = 5,
+                length_m = 30, beam_m = 8, turning_radius_m = {radius}, speeds_mps = [2.5, 5] }}
+            mission = {{ start_s = 0, speed_mps = {speed}, waypoints = [
+                {{ east_m = 0, north_m = 0 }}, {{ east_m = 0, north_m = 4000 }},
+                {{ east_m = 2000, north_m = 8000 }}] }}
+            simulation = {{ duration_s = 4000 }}
+            targets = [{{ name = "head-on", position = {{ east_m = 0, north_m = 4000 }},
+                course_deg = 180, speed_mps = 5, length_m = 60, beam_m = 12 }}]"#
+        ));
+        let sailed = sail(scenario.expect("a scenario"));
+        assert_eq!(sailed.conduct.without_plan, 0, "{what}");
+        assert!(sailed.safe && sailed.arrived, "{what}");
+    }
+}
+
 /// Seeds 3, 12, 24, 50 and 54 of overtaking need another place than the farthest one.
 #[test]
 fn a_short_horizon_takes_no_certificate_away() {

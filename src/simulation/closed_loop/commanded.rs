@@ -64,7 +64,7 @@ impl Simulation {
                 start: self.time,
                 trajectory,
                 document: None,
-                beyond: 0.0,
+                left_out: f64::INFINITY,
                 assumed: Vec::new(),
             };
         }

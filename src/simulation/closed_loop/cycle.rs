@@ -6,8 +6,8 @@ use crate::document::{EstimateDocument, ReplanDocument, finite, position, relaxa
 use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, RelaxationLevel, Run};
-use crate::planner::WarmStart;
 use crate::planner::optimal_control::node;
+use crate::planner::{Plan, WarmStart};
 use crate::replanning::remember;
 use crate::scenario::{Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
@@ -24,17 +24,23 @@ const LAST_STRETCH_M: f64 = 1e-3;
 
 /// Share of the horizon within which own ship is due where a plan ends. The rest is time to give
 /// way.
-const DUE_SHARE: f64 = 0.85;
+pub(super) const DUE_SHARE: f64 = 0.85;
 
 /// Time between two places where plans may end, as a share of the horizon. Plans end at the same
 /// place for that long, so one can go on from the other.
 const STEP_SHARE: f64 = 0.3;
 
+/// Time to the end of a plan, as a share of the horizon, below which a place is too near to plan to.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Share of the weight of time with which the nearest place of a mission is sought.
+const NEAREST_TIME: f64 = 0.01;
+
 pub(super) struct Cycle {
     pub run: Run,
     pub replan: ReplanDocument,
-    /// Metres of the mission beyond the end of the plan.
-    pub beyond: f64,
+    /// Metres of the mission after the end of the plan.
+    pub left_out: f64,
 }
 
 impl Simulation {
@@ -108,7 +114,7 @@ impl Simulation {
                 }
             }
         }
-        let (run, beyond) = self.run(&scenario);
+        let (run, left_out) = self.run(&scenario);
         let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
         let plan = run.planned.outcome.plan();
         let replan = ReplanDocument {
@@ -134,89 +140,122 @@ impl Simulation {
         Cycle {
             run,
             replan,
-            beyond,
+            left_out,
         }
     }
 
-    /// Plans a mission up to where own ship is due in time, or farther if the present plan ends there,
-    /// and returns the metres beyond. Where this plan gives something up, nearer places are tried as
-    /// well, of which the next plan would not come too late.
+    /// Plans to where own ship is due within the horizon, or to the end of the present plan if that is
+    /// farther along the mission. Where that plan gives something up, the end of the present plan is
+    /// tried as well; where it takes a risk or does not get there, a place one step nearer. A nearer
+    /// plan must not end soon. Returns the metres of the mission that the plan leaves out, too.
     fn run(&self, scenario: &Scenario) -> (Run, f64) {
-        let run_to = |beyond: f64| {
-            let mut scenario = scenario.clone();
-            scenario.desired = up_to(&scenario, beyond)?;
-            Some((pipeline::run(scenario), beyond))
-        };
         if super::is_under_forces(scenario) {
             return (pipeline::run(scenario.clone()), 0.0);
         }
-        let slowest = self.scenario.desired.legs().iter().map(|leg| leg.speed);
-        let slowest = slowest.fold(f64::INFINITY, f64::min);
-        let step = STEP_SHARE * scenario.horizon * slowest;
-        let due = (beyond(scenario) / step).ceil() * step;
-        let present = self.active.beyond;
-        let Some((mut best, mut at)) = run_to(due.min(present)) else {
+        let step = self.step_between_ends();
+        let own_pace = self.at_own_pace(scenario);
+        let mut missions = [Some(&scenario.desired), own_pace.as_ref()]
+            .into_iter()
+            .flatten();
+        let due = missions.find_map(|mission| Some((mission, cut_due(scenario, mission, step)?)));
+        let (mission, due) = due.unwrap_or((&scenario.desired, 0.0));
+        let plan_without = |cut: f64, deadline: f64| {
+            let desired = match cut > 0.0 {
+                true => mission.shortened(cut)?,
+                false => mission.clone(),
+            };
+            let mut scenario = scenario.clone();
+            (scenario.desired, scenario.deadline) = (desired, deadline);
+            Some(pipeline::run(scenario))
+        };
+        let present = self.active.left_out;
+        let mut cut = due.min(present);
+        let Some(mut best) = plan_without(cut, scenario.deadline) else {
             return (pipeline::run(scenario.clone()), 0.0);
         };
-        let end = |run: &Run| {
-            let plan = run.planned.outcome.plan()?;
-            Some(plan.trajectory.end_time())
+        let gives_up = |run: &Run| match run.planned.outcome.plan() {
+            Some(plan) if plan.arrives() => (false, run.level),
+            plan => (plan.is_none(), run.level.max(RelaxationLevel::Waiting)),
         };
-        let gives_up = |run: &Run| (end(run).is_none(), run.level);
-        let next = self.settings().replan + super::BEFORE_END_S;
-        let nearest = if due > 0.0 { due + step } else { 0.0 };
-        for beyond in [due.max(present), nearest] {
-            if gives_up(&best) == (false, RelaxationLevel::Compliant) {
-                break;
-            }
-            let nearer = (beyond > at).then(|| run_to(beyond));
-            let Some((mut run, beyond)) = nearer.flatten() else {
+        let soon = self.settings().replan + super::BEFORE_END_S;
+        let soon = soon.max(LEAST_SHARE * scenario.horizon);
+        // a whole mission is not cut for the sake of its end
+        let nearer = if due > 0.0 { due + step } else { 0.0 };
+        for (another, unless) in [
+            (due.max(present), RelaxationLevel::Compliant),
+            (nearer, RelaxationLevel::ReducedDomains),
+        ] {
+            let time_left = scenario.deadline - best.plan_time.as_secs_f64();
+            let is_asked = another > cut && gives_up(&best) > (false, unless) && time_left > 0.0;
+            let Some(mut run) = is_asked.then(|| plan_without(another, time_left)).flatten() else {
                 continue;
             };
-            let in_time = end(&best).is_none() || end(&run) > Some(next);
             let plan_time = best.plan_time + run.plan_time;
-            if gives_up(&run) < gives_up(&best) && in_time {
+            let has_plan = best.planned.outcome.plan().is_some();
+            let lasts = |plan: &Plan| plan.trajectory.end_time() > soon;
+            let lasts = run.planned.outcome.plan().is_some_and(lasts);
+            if gives_up(&run) < gives_up(&best) && (lasts || !has_plan) {
                 std::mem::swap(&mut best, &mut run);
-                at = beyond;
+                cut = another;
             }
             best.plan_time = plan_time;
         }
-        (best, at)
+        let to_go = best.planned.outcome.plan().map_or(0.0, |plan| plan.to_go);
+        (best, cut + to_go)
+    }
+
+    /// Metres between two places where plans may end.
+    fn step_between_ends(&self) -> f64 {
+        let mission = &self.scenario.desired;
+        STEP_SHARE * self.scenario.horizon * mission.length() / mission.duration()
+    }
+
+    /// The mission from the place nearest to own ship on, as fast as own ship can; straight to that
+    /// place where it is far off. Of places at equal distances it is the one whose time is nearer.
+    fn at_own_pace(&self, scenario: &Scenario) -> Option<DesiredTrajectory> {
+        let (mission, own) = (&self.scenario.desired, &scenario.own_ship);
+        let time = scenario.time - self.scenario.time;
+        let nearest = mission.nearest(own.pose.position, time, NEAREST_TIME * scenario.time_weight);
+        let leg = mission.legs().get(nearest.leg)?;
+        let time = leg.start_time + (nearest.distance - leg.start_distance) / leg.speed;
+        let left = mission.remaining(time);
+        let mut waypoints = left.waypoints();
+        if (waypoints[0] - own.pose.position).norm() > 2.0 * own.turning_radius {
+            waypoints.insert(0, own.pose.position);
+        }
+        let speeds = vec![own.max_speed(); waypoints.len() - 1];
+        DesiredTrajectory::new(&waypoints, &speeds).ok()
     }
 }
 
-/// Metres at the end of a mission that own ship is not due to sail within [`DUE_SHARE`] of the
-/// horizon.
-fn beyond(scenario: &Scenario) -> f64 {
-    let (own, legs) = (&scenario.own_ship, scenario.desired.legs());
+/// Metres to leave out at the end of a mission, so that own ship is due at the rest's end within
+/// [`DUE_SHARE`] of the horizon: a multiple of `step`, or as little as possible where the place would
+/// be too near. `None` where every place is.
+fn cut_due(scenario: &Scenario, mission: &DesiredTrajectory, step: f64) -> Option<f64> {
+    let (own, horizon) = (&scenario.own_ship, scenario.horizon);
     let fastest = own.max_speed();
-    let off = (scenario.desired.position_at(0.0) - own.pose.position).norm();
-    let mut time = DUE_SHARE * scenario.horizon - off / fastest;
-    let mut left = scenario.desired.length();
-    for leg in legs {
+    let off = (mission.position_at(0.0) - own.pose.position).norm();
+    let mut time = DUE_SHARE * horizon - off / fastest;
+    let mut left = mission.length();
+    for leg in mission.legs() {
         let speed = leg.speed.min(fastest);
         let sailed = (time * speed).clamp(0.0, leg.length);
         (time, left) = (time - leg.length / speed, left - sailed);
     }
-    // a rounding is no way
-    match left > tolerance::ARRIVAL_M {
-        true => left,
-        false => 0.0,
+    // less is a rounding
+    if !(left > tolerance::ARRIVAL_M) {
+        return Some(0.0);
     }
-}
-
-/// The mission without its last metres, and without a last leg that is too short for own ship to turn
-/// onto; `None` where nothing is left.
-fn up_to(scenario: &Scenario, beyond: f64) -> Option<DesiredTrajectory> {
-    let desired = &scenario.desired;
-    if beyond == 0.0 {
-        return Some(desired.clone());
+    let is_far = |short: &DesiredTrajectory| short.duration() >= LEAST_SHARE * horizon;
+    let without = |cut: f64| Some((cut, mission.shortened(cut).filter(is_far)?));
+    let (cut, short) = without((left / step).ceil() * step).or_else(|| without(left))?;
+    // a last leg that is too short to turn onto
+    let last = short.legs().last().map_or(0.0, |leg| leg.length);
+    let is_short = last < 2.0 * own.turning_radius;
+    match short.shortened(last).filter(is_far) {
+        Some(_) if is_short => Some(cut + last),
+        _ => Some(cut),
     }
-    let short = desired.shortened(beyond)?;
-    let last = short.legs().last()?.length;
-    let is_short = last < 2.0 * scenario.own_ship.turning_radius;
-    let at_waypoint = is_short.then(|| short.shortened(last)).flatten();
-    Some(at_waypoint.unwrap_or(short))
 }
 
 impl Simulation {

@@ -137,8 +137,8 @@ struct Active {
     trajectory: Trajectory,
     /// `None` where own ship holds course and speed without a plan.
     document: Option<PlanDocument>,
-    /// Metres of the mission beyond the end of the plan, which is shorter than the horizon.
-    beyond: f64,
+    /// Metres of the mission after the end of the plan; infinite without a plan.
+    left_out: f64,
     /// The targets that the plan assumes at its start, in the scenario's order; `None` for explicit
     /// sets.
     assumed: Vec<Option<ShipTrack>>,
@@ -152,7 +152,8 @@ impl Active {
     /// True for a plan that ends before the last waypoint, and before the horizon.
     fn ends_short(&self) -> bool {
         self.document.as_ref().is_some_and(|plan| {
-            let arrives = self.beyond == 0.0 && plan.cost.as_ref().is_some_and(|cost| cost.arrived);
+            let arrives =
+                self.left_out == 0.0 && plan.cost.as_ref().is_some_and(|cost| cost.arrived);
             let ends = self.trajectory.end_time() < plan.horizon_s - INSTANT;
             plan.optimal_control.is_none() && !arrives && ends
         })
@@ -169,7 +170,7 @@ impl Simulation {
         simulation.observe();
         simulation.cycle(0.0, "start".to_owned());
         simulation.activate();
-        let is_whole = simulation.active.beyond == 0.0;
+        let is_whole = simulation.active.left_out == 0.0;
         simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2.filter(|_| is_whole);
         Ok(simulation)
     }
@@ -231,7 +232,7 @@ impl Simulation {
                 start: 0.0,
                 trajectory: own.held(&scenario, duration),
                 document: None,
-                beyond: f64::INFINITY,
+                left_out: f64::INFINITY,
                 assumed: Vec::new(),
             },
             own,
@@ -439,7 +440,7 @@ impl Simulation {
         let Cycle {
             run,
             replan,
-            beyond,
+            left_out,
         } = self.plan(delay, reason);
         self.plan_seconds.push(run.plan_time.as_secs_f64());
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
@@ -488,7 +489,7 @@ impl Simulation {
                 start: self.time + delay,
                 trajectory: plan.trajectory.clone(),
                 document: Some(document),
-                beyond,
+                left_out,
                 assumed: targets.map(|target| target.ship().cloned()).collect(),
             });
         }
@@ -591,7 +592,7 @@ impl Simulated {
 /// End of the simulation, seconds, if own ship has not arrived before.
 fn duration(scenario: &Scenario) -> f64 {
     let mission = scenario.desired.duration();
-    let is_short = mission > scenario.horizon && !is_under_forces(scenario);
+    let is_short = mission > cycle::DUE_SHARE * scenario.horizon && !is_under_forces(scenario);
     let until = scenario.horizon + if is_short { mission } else { 0.0 };
     scenario.simulation.duration.unwrap_or(until)
 }

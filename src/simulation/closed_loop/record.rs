@@ -59,7 +59,7 @@ impl Simulation {
         let cost = cost.and_then(|plan| plan.cost.as_ref());
         let mut arrived = ended
             && cost.is_some_and(|cost| cost.arrived)
-            && self.active.beyond == 0.0
+            && self.active.left_out == 0.0
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let mut cost_m2 = match arrived {

@@ -1,5 +1,6 @@
 //! Plans of single scenes, each planned once.
 
+pub mod asked;
 pub mod compliance;
 pub mod encounters;
 pub mod harbour;
