@@ -22,6 +22,9 @@ const HALF: f64 = 0.5;
 /// Scale factors of the level that keeps the rules, in the order in which they are tried.
 const SCALES_BY_THE_RULES: [f64; 2] = [HALF, 0.0];
 
+/// Scale factors of the level that reduces domains, in the order in which they are tried.
+const SCALES_OF_REDUCED_DOMAINS: [f64; 2] = [0.0, HALF];
+
 /// Scale factors tried when ship domains are not asked for and the hard sets alone gave no plan.
 const SCALES_ABOVE_HARD_SETS: [f64; 2] = [1.0, HALF];
 
@@ -392,14 +395,17 @@ impl Relaxer<'_> {
         (!found.is_infeasible()).then_some(found)
     }
 
-    /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets that retains as much of
-    /// each domain as was found.
+    /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets, or against halved domains,
+    /// that retains as much of each domain as was found.
     fn clear_of_hard_sets(&self, with_domain: bool) -> Option<Attempt> {
         if !self.has_domains() {
             return None;
         }
         if with_domain {
-            let found = self.found(0.0)?;
+            // a plan along paths for a larger set is also found for the smaller one
+            let tried = if self.follows_paths() { 1 } else { 2 };
+            let mut scales = SCALES_OF_REDUCED_DOMAINS.into_iter().take(tried);
+            let found = scales.find_map(|scale| self.found(scale))?;
             let Some(trajectory) = found.trajectory() else {
                 return Some(found);
             };
@@ -407,7 +413,6 @@ impl Relaxer<'_> {
             let clear = self.clear_of(&found, &retained, RelaxationLevel::ReducedDomains);
             return Some(self.with_larger_domains(clear, &retained));
         }
-        // a plan along paths for a larger set is also found for the smaller one
         if self.follows_paths() {
             return None;
         }

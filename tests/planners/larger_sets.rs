@@ -4,6 +4,8 @@
 use searoom::pipeline;
 use searoom::scenario::Scenario;
 
+use crate::campaigns::documents::fault;
+
 /// Cost of the plan, m², for a target at a place (metres), on a course (degrees) at a speed (m/s).
 fn cost([east, north, course, speed]: [f64; 4], margin: f64, spread: f64, deviation: f64) -> f64 {
     let scenario = Scenario::parse(&format!(
@@ -39,4 +41,12 @@ fn larger_sets_make_no_plan_cheaper() {
             assert!(small <= large * (1.0 + 1e-6), "{target:?}: {small} {large}");
         }
     }
+}
+
+/// No plan is found around the full domains, nor around the hard sets, but around halved domains.
+#[test]
+fn halved_domains_are_tried_before_a_risk_is_taken() {
+    let scenario = Scenario::parse(&fault("little-time-to-spare.toml")).expect("a scenario");
+    let run = pipeline::run(scenario);
+    assert!(run.safe(), "{:?}", run.relaxations);
 }
