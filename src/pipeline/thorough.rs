@@ -10,7 +10,7 @@ use crate::tolerance::TOUCH_M;
 
 impl Relaxer<'_> {
     /// The best of the answers of A* and of the search with larger budgets, and of the plans of all
-    /// searches for stricter requests: with ship domains, by the rules, around the ellipses of
+    /// searches for stricter requests: with ship domains, by the rules, around outer ellipses of
     /// polytopes. Such a plan is a candidate where it is clear of the sets of this request.
     ///
     /// The answers are compared whole: a cheaper plan at one level may lead to more relaxation at

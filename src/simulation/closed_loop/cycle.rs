@@ -22,15 +22,15 @@ const ROUNDING: f64 = 1e-6;
 /// of a metre has to lie at its end, not a metre before it.
 const LAST_STRETCH_M: f64 = 1e-3;
 
-/// Share of the horizon within which own ship is due where a plan ends. The rest is time to give
-/// way.
+/// Share of the horizon within which own ship is due at an intermediate end, where a plan ends before
+/// the last waypoint. The rest is time to give way.
 pub(super) const DUE_SHARE: f64 = 0.85;
 
-/// Time between two places where plans may end, as a share of the horizon. Plans end at the same
-/// place for that long, so one can go on from the other.
+/// Time between two intermediate ends, as a share of the horizon. For that long plans have the same
+/// end, so one can go on from the other.
 const STEP_SHARE: f64 = 0.3;
 
-/// Time to the end of a plan, as a share of the horizon, below which a place is too near to plan to.
+/// Time to an intermediate end, as a share of the horizon, below which it is too near to plan to.
 const LEAST_SHARE: f64 = 0.25;
 
 /// Share of the weight of time with which the nearest place of a mission is sought.
@@ -204,7 +204,7 @@ impl Simulation {
         (best, cut + to_go)
     }
 
-    /// Metres between two places where plans may end.
+    /// Metres between two intermediate ends.
     fn step_between_ends(&self) -> f64 {
         let mission = &self.scenario.desired;
         STEP_SHARE * self.scenario.horizon * mission.length() / mission.duration()
