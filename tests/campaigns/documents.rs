@@ -19,7 +19,20 @@ pub fn file(path: &str) -> PathBuf {
 }
 
 pub fn scenario(path: &str) -> Scenario {
-    Scenario::read(&file(path)).expect(path)
+    unhurried(Scenario::read(&file(path)).expect(path))
+}
+
+/// The scenario of a text without faults.
+pub fn parsed(text: &str) -> Scenario {
+    unhurried(Scenario::parse(text).expect("a scenario"))
+}
+
+/// The scenario with so much time that no result depends on the clock, on a machine that pauses too.
+pub fn unhurried(scenario: Scenario) -> Scenario {
+    Scenario {
+        deadline: 60.0,
+        ..scenario
+    }
 }
 
 /// A file of `tests/faults`.
@@ -42,8 +55,10 @@ pub fn text(title: &str, horizon: f64, waypoints: &[[f64; 2]], more: &str) -> St
 }
 
 pub fn document(scenario: Scenario) -> Value {
-    let run = pipeline::run(scenario);
-    assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));
+    let run = pipeline::run(unhurried(scenario));
+    let verified = run.evaluation.as_ref().is_some_and(|e| e.verified());
+    let (title, outcome) = (&run.scenario.title, &run.planned.outcome);
+    assert!(verified, "{title}: {outcome:?}, {:?}", run.evaluation);
     // serialise and parse, as for a file
     let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
     serde_json::from_str(&text).expect("JSON")
@@ -106,7 +121,7 @@ pub fn barred() -> Value {
         initial_set = { vertices_m = [[480.0, 60.0], [520.0, 60.0], [520.0, 70.0], [480.0, 70.0]] }
         velocity_set = { vertices_mps = [[0.0, 0.0], [0.1, -2.0], [-0.1, -2.0]] }
     "#;
-    document(Scenario::parse(text).expect("a scenario"))
+    document(parsed(text))
 }
 
 /// One document of each kind: space-time, land, slabs, ellipses, accepted risk, path-time, forces,

@@ -15,7 +15,7 @@ use searoom::vessel::Hull;
 use crate::campaigns;
 use crate::campaigns::closed_loop::replanning;
 use crate::campaigns::closed_loop::simulation::{How, Seen, Ship, Truth, run, sail};
-use crate::campaigns::documents::{fault, scenario};
+use crate::campaigns::documents::{fault, parsed, scenario};
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
 use crate::campaigns::plans::harbour;
 
@@ -41,7 +41,7 @@ fn meeting(kind: EncounterKind, seed: u64, how: &How) -> Scenario {
 /// the way is safe.
 #[test]
 fn own_ship_stops_before_a_set_over_its_last_waypoint() {
-    let moored = Scenario::parse(&fault("moored-at-the-end.toml")).expect("a scenario");
+    let moored = parsed(&fault("moored-at-the-end.toml"));
     let sailed = sail(moored);
     assert!(sailed.safe && sailed.ends_short && !sailed.arrived && !sailed.contact);
     let text = serde_json::to_string(&sailed).expect("a document");
@@ -60,7 +60,7 @@ fn own_ship_stops_before_a_set_over_its_last_waypoint() {
 /// Four ships on a way of 1,620 s, with a horizon of 900 s: plans end on the way until the rest fits.
 #[test]
 fn a_mission_longer_than_its_horizon_is_sailed_in_parts() {
-    let scenario = Scenario::parse(&fault("longer-than-its-horizon.toml")).expect("a scenario");
+    let scenario = parsed(&fault("longer-than-its-horizon.toml"));
     let sailed = sail(scenario);
     assert!(sailed.safe && sailed.arrived && !sailed.ends_short);
     assert_eq!(sailed.conduct.without_plan, 0);
@@ -83,7 +83,7 @@ fn own_ship_off_its_schedule_has_a_plan_in_every_cycle() {
         ("slower than its mission", 0.0, 0.0, 8.0, 100.0),
         ("with wide turns", 0.0, 0.0, 5.0, 700.0),
     ] {
-        let scenario = Scenario::parse(&format!(
+        let scenario = parsed(&format!(
             r#"title = "{what}"
             horizon_s = 600
             time_s = {time}
@@ -96,7 +96,7 @@ fn own_ship_off_its_schedule_has_a_plan_in_every_cycle() {
             targets = [{{ name = "head-on", position = {{ east_m = 0, north_m = 4000 }},
                 course_deg = 180, speed_mps = 5, length_m = 60, beam_m = 12 }}]"#
         ));
-        let sailed = sail(scenario.expect("a scenario"));
+        let sailed = sail(scenario);
         assert_eq!(sailed.conduct.without_plan, 0, "{what}");
         assert!(sailed.safe && sailed.arrived, "{what}");
     }
@@ -508,7 +508,7 @@ fn a_target_at_rest_cannot_plan() {
 #[test]
 fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
     let text = campaigns::documents::fault("rules-foreseen-role.toml");
-    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    let mut scenario = parsed(&text);
     scenario.simulation.duration = Some(800.0);
     let sailed = sail(scenario);
     let course = |time: u32| {

@@ -9,6 +9,7 @@ use searoom::scenario::{Compliance, Scenario};
 use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
 
 use crate::campaigns::behaviour::Signal;
+use crate::campaigns::documents::unhurried;
 use crate::campaigns::encounter_generator::{
     EncounterKind, Placement, random_encounter, random_traffic,
 };
@@ -140,7 +141,7 @@ fn costs_of(files: [&str; 2]) -> [f64; 2] {
     files.map(|file| {
         let path = format!("tests/faults/{file}.toml");
         let scenario = Scenario::read(std::path::Path::new(&path)).expect("reads");
-        moved::cost(scenario).expect("a plan")
+        moved::cost(unhurried(scenario)).expect("a plan")
     })
 }
 
@@ -160,7 +161,7 @@ fn the_same_scene_in_another_place_costs_the_same() {
 #[test]
 fn a_hair_beside_the_path_is_on_it() {
     let file = std::path::Path::new("tests/faults/offset-circle.toml");
-    let asked = Scenario::read(file).expect("reads");
+    let asked = unhurried(Scenario::read(file).expect("reads"));
     let hairs = (3..=12).map(|k| 10.0_f64.powi(-k)).chain([0.0]);
     let both = hairs.flat_map(|hair| [hair, -hair]);
     for hair in both {

@@ -9,7 +9,7 @@ use searoom::planner::DEFAULT_PLANNER;
 use searoom::planner::path_time::PathTimePlanner;
 use searoom::scenario::{Compliance, Scenario, ScenarioError};
 
-use crate::campaigns::documents::scenario;
+use crate::campaigns::documents::{scenario, unhurried};
 
 /// Scenario south-west of Munkholmen, in the middle of the fjord, in metres and on the map.
 const SCENARIO: &str = r#"
@@ -58,7 +58,7 @@ fn folder() -> tempfile::TempDir {
 fn read(folder: &Path, text: &str) -> Result<Scenario, ScenarioError> {
     let file = folder.join("scenario.toml");
     std::fs::write(&file, text).expect("written");
-    Scenario::read(&file)
+    Scenario::read(&file).map(unhurried)
 }
 
 /// Formats every fault as `path: found; allowed`.

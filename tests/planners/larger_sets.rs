@@ -2,25 +2,23 @@
 //! sets too, and the search for the smaller sets finds one that is as cheap.
 
 use searoom::pipeline;
-use searoom::scenario::Scenario;
 
-use crate::campaigns::documents::fault;
+use crate::campaigns::documents::{fault, parsed};
 
 /// Cost of the plan, m², for a target at a place (metres), on a course (degrees) at a speed (m/s).
 fn cost([east, north, course, speed]: [f64; 4], margin: f64, spread: f64, deviation: f64) -> f64 {
-    let scenario = Scenario::parse(&format!(
+    let scenario = parsed(&format!(
         r#"title = "larger sets"
         horizon_s = 1600
         own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5,
             length_m = 50, beam_m = 10, turning_radius_m = 150, speeds_mps = [2.5, 5, 6],
             safety_margin_m = {margin} }}
         mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 4000, north_m = 0 }}] }}
-        planner = {{ deadline_s = 60, compliance = "none" }}
+        planner = {{ compliance = "none" }}
         targets = [{{ name = "t", position = {{ east_m = {east}, north_m = {north} }},
             course_deg = {course}, speed_mps = {speed}, length_m = 80, beam_m = 14,
             position_std_m = {deviation}, speed_spread_mps = {spread} }}]"#
-    ))
-    .expect("a scenario");
+    ));
     let run = pipeline::run(scenario);
     assert!(run.evaluation.as_ref().is_some_and(|e| e.safe()));
     run.planned.outcome.plan().expect("a plan").cost
@@ -46,7 +44,7 @@ fn larger_sets_make_no_plan_cheaper() {
 /// No plan is found around the full domains, nor around the hard sets, but around halved domains.
 #[test]
 fn halved_domains_are_tried_before_a_risk_is_taken() {
-    let scenario = Scenario::parse(&fault("little-time-to-spare.toml")).expect("a scenario");
+    let scenario = parsed(&fault("little-time-to-spare.toml"));
     let run = pipeline::run(scenario);
     assert!(run.safe(), "{:?}", run.relaxations);
 }

@@ -4,6 +4,8 @@ use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Compliance, Scenario};
 
+use crate::campaigns::documents::parsed;
+
 /// Length of a leg in metres.
 const LEG: f64 = 500.0;
 
@@ -38,7 +40,7 @@ fn scenario(legs: usize) -> Scenario {
             north + side * 4.0 * time
         );
     }
-    Scenario::parse(&text).expect("valid")
+    parsed(&text)
 }
 
 /// Tests conflicts far apart. One manoeuvre around all of them would cost hundreds of times as
@@ -52,7 +54,7 @@ fn conflicts_that_are_far_apart_are_left_and_met_one_after_another() {
         .flat_map(|mode| [8, 20, 40].map(|legs| (mode, legs)));
     for ((compliance, most), legs) in cases {
         let mut scenario = scenario(legs);
-        (scenario.compliance, scenario.deadline) = (compliance, 60.0);
+        scenario.compliance = compliance;
         let run = pipeline::run(scenario);
         let outcome = &run.planned.outcome;
         assert!(matches!(outcome, Outcome::Solved(_)), "{legs}: {outcome:?}");
@@ -77,7 +79,7 @@ fn conflicts_that_are_far_apart_cost_what_each_costs_alone() {
         }
     };
     let mut all = scenario(20);
-    (all.compliance, all.deadline) = (Compliance::Shape, 60.0);
+    all.compliance = Compliance::Shape;
     let alone = (0..all.targets.len()).map(|index| {
         let mut one = all.clone();
         one.targets = vec![all.targets[index].clone()];

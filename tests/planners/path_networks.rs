@@ -6,12 +6,11 @@ use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Relaxation, RelaxationLevel, Run};
 use searoom::planner::path_time::PathTimePlanner;
 use searoom::planner::{Objective, Plan};
-use searoom::scenario::Scenario;
 use searoom::trajectory::Trajectory;
 use searoom::verification::verify;
 use serde_json::{Value, json};
 
-use crate::campaigns::documents::scenario;
+use crate::campaigns::documents::{parsed, scenario};
 
 fn document(run: &Run) -> Value {
     serde_json::to_value(PlanDocument::of(run)).expect("JSON")
@@ -28,7 +27,7 @@ fn faults(document: &Value) -> String {
 
 /// The run of a text, right by its own judgement and by that of its document where it has a plan.
 fn verified(text: &str) -> Run {
-    let mut scenario = Scenario::parse(text).expect("readable");
+    let mut scenario = parsed(text);
     scenario.planner = &PathTimePlanner;
     scenario.compliance = searoom::scenario::Compliance::Shape;
     let run = pipeline::run(scenario);

@@ -4,11 +4,12 @@ use searoom::colregs::Role;
 use searoom::pipeline::{self, Run};
 use searoom::scenario::Scenario;
 
+use crate::campaigns::documents::{parsed, unhurried};
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
 use crate::campaigns::meeting;
 
 fn run(text: &str) -> Run {
-    pipeline::run(Scenario::parse(text).expect("valid"))
+    pipeline::run(parsed(text))
 }
 
 #[test]
@@ -113,7 +114,7 @@ fn time_to_turn_back_makes_no_stand_on_ship_wait_for_it() {
         "/tests/faults/stand-on-turn-back.toml"
     );
     let cost = |horizon: f64| {
-        let mut scenario = Scenario::read(file.as_ref()).expect("valid");
+        let mut scenario = unhurried(Scenario::read(file.as_ref()).expect("valid"));
         scenario.horizon = horizon;
         let run = pipeline::run(scenario);
         assert!(run.relaxations.is_empty());
