@@ -4,7 +4,7 @@ use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Compliance, Scenario};
 
-use crate::campaigns::documents::parsed;
+use crate::campaigns::documents::{fault, parsed};
 
 /// Length of a leg in metres.
 const LEG: f64 = 500.0;
@@ -91,4 +91,17 @@ fn conflicts_that_are_far_apart_cost_what_each_costs_alone() {
         targets == 5 && together < 1.02 * sum,
         "{together} of {sum} m²"
     );
+}
+
+/// Past the first ship the cheapest way leads to where the others bar every way. Another way keeps
+/// all domains.
+#[test]
+fn an_earlier_conflict_is_passed_in_another_way_where_a_later_one_has_none() {
+    let mut scenario = parsed(&fault("passage-of-25-km.toml"));
+    scenario.compliance = Compliance::Shape;
+    let run = pipeline::run(scenario);
+    assert!(run.relaxations.is_empty(), "{:?}", run.relaxations);
+    assert!(run.safe());
+    let cost = run.planned.outcome.plan().expect("a plan").cost;
+    assert!(cost < 800_000.0, "{cost}");
 }

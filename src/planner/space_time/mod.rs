@@ -173,14 +173,27 @@ fn has_arrived(problem: &Problem) -> bool {
 }
 
 fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
-    plan_with(problem, proxies, clock, true)
+    plan_with(problem, proxies, clock, None)
 }
 
-fn plan_in_one_manoeuvre(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
-    plan_with(problem, proxies, clock, false)
+/// Clear motions to the last waypoint that leave the route once and pass the sets in different
+/// ways, the plan first.
+fn ways_in_one_manoeuvre(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Vec<Vec<Segment>> {
+    let mut others = Vec::new();
+    let planned = plan_with(problem, proxies, clock, Some(&mut others));
+    let plan = planned.outcome.into_plan();
+    let plan = plan.map(|plan| plan.trajectory.segments().to_vec());
+    plan.into_iter().chain(others).collect()
 }
 
-fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: bool) -> Planned {
+/// Plans one problem. With `others` it is planned in one manoeuvre alone, and the other ways go
+/// there.
+fn plan_with(
+    problem: &Problem,
+    proxies: &[Proxy],
+    clock: Clock,
+    others: Option<&mut Vec<Vec<Segment>>>,
+) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
     for proxy in proxies {
@@ -262,8 +275,7 @@ fn plan_with(problem: &Problem, proxies: &[Proxy], clock: Clock, sequentially: b
     }
     let targets = by_obstacle(proxies).count();
     let budget = SearchBudget::of(targets, problem.search);
-    let apart = sequentially && sequential::are_several(&conflicts);
-    let best = attempt(&context, budget, &nominal_motion, &conflicts, apart, clock);
+    let best = attempt(&context, budget, &nominal_motion, &conflicts, others, clock);
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
@@ -284,19 +296,20 @@ struct Attempt {
     explored: ExploredGraph,
 }
 
-/// Searches the graph, refines its plan and the manoeuvres around the conflicts of the nominal
-/// motion, and resolves conflicts that are far `apart` one after another.
+/// Searches the graph, and refines its plan and the manoeuvres around the conflicts of the nominal
+/// motion. Resolves conflicts that are far apart one after another, unless `others` are asked for.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,
     nominal_motion: &[Segment],
     conflicts: &[Conflict],
-    apart: bool,
+    others: Option<&mut Vec<Vec<Segment>>>,
     clock: Clock,
 ) -> Attempt {
     let mut graph = Graph::new(context, nominal_motion, clock);
     let mut search = Search::new(graph.root());
     let mut selection = Selection::new(*context, budget);
+    selection.others = others.is_some().then(Vec::new);
     let mut stages = budget.stages.iter();
     let mut expansions = 0;
     let mut timed_out = false;
@@ -325,9 +338,17 @@ fn attempt(
         }
     }
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
-    // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    if !timed_out && apart {
-        let motion = sequential::resolve_sequentially(context, nominal_motion, clock);
+    if let Some(others) = others {
+        *others = selection.others.take().unwrap_or_default();
+    } else if !timed_out && sequential::are_several(conflicts) {
+        // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
+        let motion = sequential::resolve_sequentially(
+            context,
+            nominal_motion,
+            selection.least_cost(),
+            budget,
+            clock,
+        );
         // without a motion, too, the time may have been up
         timed_out = clock.is_up();
         if let Some(motion) = motion {

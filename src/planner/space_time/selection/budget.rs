@@ -22,6 +22,9 @@ pub(crate) struct SearchBudget {
     pub insert_twice: bool,
     /// Largest number of nodes of the conflict search; 0 for no search among several targets.
     pub conflict_nodes: usize,
+    /// Where conflicts are resolved one after another, largest number of plans around single
+    /// conflicts: until the first motion is clear of all, and from there on.
+    pub conflict_plans: (usize, usize),
 }
 
 impl SearchBudget {
@@ -34,6 +37,7 @@ impl SearchBudget {
         leader_margin: 0.3,
         insert_twice: true,
         conflict_nodes: 0,
+        conflict_plans: (30, 3),
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
@@ -50,6 +54,7 @@ impl SearchBudget {
     pub(crate) const THOROUGH: Self = Self {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
         conflict_nodes: 256,
+        conflict_plans: (60, 10),
         ..Self::SEVERAL_TARGETS
     };
 

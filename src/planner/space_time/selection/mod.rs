@@ -67,6 +67,10 @@ const MAX_CONFLICTS: usize = 2;
 /// Relative cost difference below which two manoeuvres count as the same.
 const SAME_COST: f64 = 1e-3;
 
+/// Largest number of other ways past the sets, and the least ratio of the costs of two ways.
+const MAX_OTHERS: usize = 4;
+const OTHER_WAY: f64 = 1.02;
+
 /// Length above which lines are divided for the first and for the second insertion, metres.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
@@ -100,6 +104,8 @@ pub(crate) struct Selection<'a> {
     best: Option<Candidate>,
     graph_cost: Option<f64>,
     prices: Prices,
+    /// Clear motions that pass the sets in other ways than the cheapest, where they are asked for.
+    pub others: Option<Vec<Vec<Segment>>>,
 }
 
 impl<'a> Selection<'a> {
@@ -111,6 +117,7 @@ impl<'a> Selection<'a> {
             best: None,
             graph_cost: None,
             prices: Prices::of(context.problem, context.route),
+            others: None,
         }
     }
 
@@ -204,6 +211,9 @@ impl<'a> Selection<'a> {
         } else {
             let pruned = self.insert_and_prune(&mut running, clock);
             self.collect(pruned.iter().chain(ranked(&running)));
+        }
+        if self.others.is_some() {
+            self.others = Some(self.other_ways(&running));
         }
         clock.is_up()
     }
@@ -311,21 +321,48 @@ impl<'a> Selection<'a> {
         }
     }
 
+    /// Clear motions, each dearer than the one before by [`OTHER_WAY`].
+    fn other_ways(&self, running: &[Refinement]) -> Vec<Vec<Segment>> {
+        let mut dearest = self.least_cost();
+        let mut others = Vec::new();
+        for refinement in ranked(running) {
+            let Some(motion) = refinement.best_motion(&self.context) else {
+                break;
+            };
+            let rank = refinement.rank();
+            if others.len() < MAX_OTHERS && rank > OTHER_WAY * dearest && self.is_clear(&motion) {
+                dearest = rank;
+                others.push(motion);
+            }
+        }
+        others
+    }
+
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
         let cost = problem.error_to_end(&motion) * self.prices.factor(&motion);
-        let in_time = motion
-            .last()
-            .is_some_and(|s| s.end_time() <= problem.horizon);
-        let clear = in_time
-            && cost.is_finite()
-            && first_met(self.context.proxies, &motion).is_none()
-            && !land::meets(problem.land_obstacle, &motion);
+        let clear = cost.is_finite() && self.is_clear(&motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
         clear
+    }
+
+    fn is_clear(&self, motion: &[Segment]) -> bool {
+        let problem = self.context.problem;
+        let in_time = motion
+            .last()
+            .is_some_and(|s| s.end_time() <= problem.horizon);
+        in_time
+            && first_met(self.context.proxies, motion).is_none()
+            && !land::meets(problem.land_obstacle, motion)
+    }
+
+    /// Cost of the cheapest clear motion, with the price of its alterations, m²; infinite without
+    /// any.
+    pub(crate) fn least_cost(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
     }
 
     /// Cheapest clear motion.
