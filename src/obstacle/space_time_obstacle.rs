@@ -81,6 +81,13 @@ pub trait SpaceTimeObstacle {
     /// A segment or depth that is not finite is in contact at once. At depth 0 touching counts.
     fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64>;
 
+    /// True where a motion is at least `depth` metres inside at some time, as in
+    /// [`SpaceTimeObstacle::first_contact`].
+    fn is_entered(&self, motion: &[Segment], depth: f64) -> bool {
+        let mut segments = motion.iter();
+        segments.any(|segment| self.first_contact(segment, depth).is_some())
+    }
+
     /// `alpha*`: the least `alpha >= 0` for which the point is in `O_alpha`, paper eqs. (22)-(24).
     ///
     /// `O_alpha` is the set with velocities scaled by alpha about their centre. `alpha*` is at most

@@ -777,8 +777,7 @@ impl Relaxer<'_> {
             let clear = |scale: f64| {
                 let set = sets.scaled(scale).obstacle;
                 let set = if risk > 0.0 { set.at_risk(risk) } else { set };
-                let enters = |s| set.first_contact(s, crate::tolerance::TOUCH_M).is_some();
-                !trajectory.segments().iter().any(enters)
+                !set.is_entered(trajectory.segments(), crate::tolerance::TOUCH_M)
             };
             if !sets.has_domain() || clear(1.0) {
                 return 1.0;

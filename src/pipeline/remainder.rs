@@ -90,10 +90,7 @@ fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> 
     first.start_time = 0.0;
     let last = motion.last()?;
     let arrives = (last.end().position - problem.desired.end()).norm() <= tolerance::ARRIVAL_M;
-    let enters = |set: &Obstacle| {
-        let enters = |s: &Segment| set.first_contact(s, tolerance::TOUCH_M).is_some();
-        motion.iter().any(enters)
-    };
+    let enters = |set: &Obstacle| set.is_entered(&motion, tolerance::TOUCH_M);
     let land = |s: &Segment| problem.land_obstacle.meets(s, tolerance::TOUCH_M);
     let is_own = |s: &Segment| {
         let listed = |u: &f64| (u - s.speed).abs() <= tolerance::FIGURE * s.speed;

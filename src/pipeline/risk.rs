@@ -14,10 +14,7 @@ pub fn peak_risk(set: &Obstacle, trajectory: &Trajectory, accepted: f64) -> Peak
     if trajectory.steered().is_some() {
         return set.peak_risk_along(trajectory);
     }
-    let clear_of = |set: &Obstacle| {
-        let enters = |s| set.first_contact(s, tolerance::DEPTH_M).is_some();
-        !trajectory.segments().iter().any(enters)
-    };
+    let clear_of = |set: &Obstacle| !set.is_entered(trajectory.segments(), tolerance::DEPTH_M);
     if clear_of(set) {
         return PeakRisk {
             risk: 0.0,

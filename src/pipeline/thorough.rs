@@ -2,11 +2,15 @@
 
 use super::relaxation::{Attempt, RelaxationLevel, Relaxer, out_of_time};
 use super::sets;
-use crate::obstacle::{Obstacle, SpaceTimeObstacle, level_sets};
+use crate::obstacle::{SpaceTimeObstacle, level_sets};
 use crate::planner::{Outcome, Plan, Planned, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation};
 use crate::tolerance::TOUCH_M;
+
+/// Cost of a plan that no search can improve on, m²: it is on the desired trajectory to a
+/// millimetre.
+const NOTHING_M2: f64 = 1e-6;
 
 impl Relaxer<'_> {
     /// The best of the answers of A* and of the search with larger budgets, and of the plans of all
@@ -20,7 +24,9 @@ impl Relaxer<'_> {
         let is_late = |of: &Attempt| matches!(of.planned.outcome, Outcome::Deadline(_));
         let quick = with_search(self.scenario, SearchKind::AStar);
         let mut best = self.of(&quick, self.sets).answer_of_one_search();
-        if is_late(&best) {
+        let costs_nothing = |plan: &Plan| plan.cost < NOTHING_M2;
+        let is_free = best.planned.outcome.plan().is_some_and(costs_nothing);
+        if is_late(&best) || is_free && best.level == RelaxationLevel::Compliant {
             return best;
         }
         let larger = self.answer_of_one_search();
@@ -57,11 +63,8 @@ impl Relaxer<'_> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.first_sets();
         let obstacles = level_sets(&whole, risk);
-        let enters = |set: &Obstacle| {
-            let mut segments = plan.trajectory.segments().iter();
-            segments.any(|s| set.first_contact(s, TOUCH_M).is_some())
-        };
-        if obstacles.iter().any(enters) {
+        let motion = plan.trajectory.segments();
+        if obstacles.iter().any(|set| set.is_entered(motion, TOUCH_M)) {
             return None;
         }
         let planned = Planned {

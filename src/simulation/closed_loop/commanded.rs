@@ -105,10 +105,8 @@ impl Simulation {
             pipeline::land_obstacle(&self.scenario, map.map_or(&[], |map| map.pieces()))
         });
         let is_clear = |segments: &[Segment]| {
-            segments.iter().all(|segment| {
-                let enters = |set: &Obstacle| set.first_contact(segment, TOUCH_M).is_some();
-                !sets.iter().any(enters) && !land.meets(segment, TOUCH_M)
-            })
+            let enters = |set: &Obstacle| set.is_entered(segments, TOUCH_M);
+            !sets.iter().any(enters) && !segments.iter().any(|s| land.meets(s, TOUCH_M))
         };
         let in_plan = self.time - self.active.start;
         let present = self.active.trajectory.segments().iter();

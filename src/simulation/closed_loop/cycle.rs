@@ -292,10 +292,7 @@ fn seen(sets: &Uncertainty, center: Vector, delay: f64) -> Uncertainty {
 pub(super) fn remainder_is_lost(run: &Run) -> bool {
     let remainder = &run.scenario.memory.remainder;
     let mut hard = run.targets.iter().map(|target| &target.sets.hard);
-    hard.any(|set| {
-        let enters = |s| set.first_contact(s, TOUCH_M).is_some();
-        remainder.iter().any(enters)
-    })
+    hard.any(|set| set.is_entered(remainder, TOUCH_M))
 }
 
 /// True where the positions and the velocities that a plan assumes at its start hold the truth.
