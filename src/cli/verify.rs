@@ -4,7 +4,9 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use searoom::document::{PLAN_MEBIBYTES, VerificationDocument, VerifiedPlanDocument};
-use searoom::report::{Display, printable, simulation_verification_text, verification_text};
+use searoom::report::{
+    Display, printable, simulation_verification_text, verification_line, verification_text,
+};
 use searoom::scenario::import::{A_PLAN, Assumed, Contents};
 use searoom::verification::{
     SimulationVerification, Verification, is_simulation, verify as check, verify_simulations,
@@ -34,7 +36,8 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
             }
         };
         let name = files::name(&path).display().to_string();
-        let display = output.display;
+        // among several a line is enough for one that is all right
+        let display = alone.then_some(output.display);
         let reached = match guarded_within(args.budget_s, move || one(&path, in_folder, display)) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
@@ -100,7 +103,7 @@ enum Checked {
     Other(&'static str),
 }
 
-fn one(file: &Path, in_folder: bool, display: Display) -> anyhow::Result<Checked> {
+fn one(file: &Path, in_folder: bool, alone: Option<Display>) -> anyhow::Result<Checked> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         match recorded(file)? {
             Ok(text) => text,
@@ -114,7 +117,11 @@ fn one(file: &Path, in_folder: bool, display: Display) -> anyhow::Result<Checked
     let name = || files::name(file).display().to_string();
     let plan = |plan: &Verification| {
         let document = VerifiedPlanDocument::of(name(), plan);
-        (document, verification_text(plan, display))
+        let text = match alone {
+            None if plan.violations.is_empty() => verification_line(plan),
+            _ => verification_text(plan, alone.unwrap_or_default()),
+        };
+        (document, text)
     };
     let simulation = |sailed: &SimulationVerification| {
         let document = VerifiedPlanDocument::of_simulation(name(), sailed);

@@ -29,4 +29,4 @@ pub use plan::{
 pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_markdown, simulation_text, simulations_line};
 pub use table::Display;
-pub use verification::{simulation_verification_text, verification_text};
+pub use verification::{simulation_verification_text, verification_line, verification_text};

@@ -40,8 +40,13 @@ pub fn simulation_verification_text(checked: &SimulationVerification) -> String 
     lines.join("\n")
 }
 
-/// Formats the verdict, the least margin to every target with its time, and all violations.
-pub fn verification_text(checked: &Verification, display: Display) -> String {
+/// Formats the verdict and what was checked in one line.
+pub fn verification_line(checked: &Verification) -> String {
+    let said = std::iter::once(verdict_line(checked)).chain(extent(checked));
+    said.collect::<Vec<_>>().join("; ")
+}
+
+fn verdict_line(checked: &Verification) -> String {
     let verdict = match (&checked.evaluation, checked.violations.len()) {
         (None, _) => format!(
             "no plan in it (outcome {}): nothing to verify",
@@ -60,19 +65,30 @@ pub fn verification_text(checked: &Verification, display: Display) -> String {
         }
         (Some(_), n) => format!("REJECTED, {}", counted(n, "fault")),
     };
-    let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
-    lines.extend(fault_lines(&checked.violations));
-    let Some(evaluation) = &checked.evaluation else {
-        return lines.join("\n");
-    };
-    lines.push(format!(
+    format!("{}: {verdict}", printable(&checked.scenario))
+}
+
+/// How much was checked; `None` without a plan.
+fn extent(checked: &Verification) -> Option<String> {
+    let evaluation = checked.evaluation.as_ref()?;
+    Some(format!(
         "{} plan, {} until {} s; {}, {} of land",
         checked.planner,
         counted(checked.pieces, "piece"),
         tenths(evaluation.duration),
         counted(checked.sets, "set"),
         counted(checked.land, "piece"),
-    ));
+    ))
+}
+
+/// Formats the verdict, the least margin to every target with its time, and all violations.
+pub fn verification_text(checked: &Verification, display: Display) -> String {
+    let mut lines = vec![verdict_line(checked)];
+    lines.extend(fault_lines(&checked.violations));
+    let Some(evaluation) = &checked.evaluation else {
+        return lines.join("\n");
+    };
+    lines.extend(extent(checked));
     let mut entered: Vec<(&String, f64)> = (checked.targets.iter())
         .zip(checked.claimed_from.iter().copied())
         .filter(|(_, from)| *from > 0.0)

@@ -16,10 +16,16 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
     run(&format!("verify {}", four.join(" ")))
         .success()
         .stderr(is_empty())
-        .stdout(contains("Head-on: verified, safe").and(contains("margin")));
+        .stdout(contains(
+            "head-on.json: Head-on: verified, safe; space-time plan, 9 pieces until ",
+        ))
+        .stdout(contains("margin").not());
+    searoom(&["verify", &four[1]])
+        .success()
+        .stdout(contains("Head-on: verified, safe\n").and(contains("margin")));
     searoom(&["verify", &plans])
         .success()
-        .stdout(contains("4 documents: 4 verified, 4 safe"));
+        .stdout(contains("4 documents: 4 verified, 4 safe").and(contains("margin").not()));
     let empty = Folder::new();
     searoom(&["verify", text(empty.path())])
         .code(2)
