@@ -15,12 +15,12 @@ const DETAILS: [&str; 9] = [
 
 /// Columns that a table drops next, in this order.
 const FURTHER: [&str; 6] = [
-    "J",
     "passing",
     "encounter",
-    "clearance",
     "verified",
     "manoeuvre",
+    "J",
+    "clearance",
 ];
 
 /// Where a text is shown. The default is a file: no colour, and as wide as need be.
