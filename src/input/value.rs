@@ -140,12 +140,14 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
     None
 }
 
-/// True for `key = 1,5`.
+/// True for a line with `key = 1,5`, in an inline table too.
 fn has_decimal_comma(line: &str) -> bool {
-    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
-    let value = line.split_once('=').map(|(_, value)| value.trim());
-    let parts = value.and_then(|value| value.trim_start_matches('-').split_once(','));
-    parts.is_some_and(|(whole, rest)| digits(whole) && !rest.is_empty() && digits(rest))
+    line.split('=').skip(1).any(|value| {
+        let value = value.trim_start().trim_start_matches(['-', '+']);
+        let rest = value.trim_start_matches(|c: char| c.is_ascii_digit());
+        let decimals = rest.strip_prefix(',').unwrap_or_default();
+        rest.len() < value.len() && decimals.starts_with(|c: char| c.is_ascii_digit())
+    })
 }
 
 fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> BTreeMap<String, Node> {

@@ -201,6 +201,17 @@ fn the_first_error_of_the_grammar_is_the_only_fault() {
             "the key is given before",
         ),
         ("title", "a = 11,0\ntitle", "the decimal sign is a point"),
+        (
+            "title",
+            "a = -11,05 # m\ntitle",
+            "the decimal sign is a point",
+        ),
+        (
+            "title",
+            "a = { lat_deg = 58, lon_deg = 10,60 }\ntitle",
+            "the decimal sign is a point",
+        ),
+        ("title", "a = [10,60\ntitle", "left open above"),
     ] {
         let file = folder.write("hint.toml", HEAD_ON.replacen(old, new, 1));
         says(&stderr(&searoom(&["check", &file]).code(2)), hint);
