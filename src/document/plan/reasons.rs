@@ -2,6 +2,7 @@
 
 use super::legs::PlannedLeg;
 use super::{PlanDocument, departure};
+use crate::document::encounter::has_role;
 use crate::document::parts::{ObstacleDocument, PositionDocument};
 use crate::frame::{Pose, Vector, deg_from_radians, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, ConvexSet, Window};
@@ -195,7 +196,8 @@ impl PlanDocument {
         near.min_by(|a, b| a.off.total_cmp(&b.off))
     }
 
-    /// The target whose set a motion enters first, or [`LAND`].
+    /// The target whose set a motion enters first, or [`LAND`]. In a manoeuvre by the rules, which is
+    /// for the ships with a role, those without one come last.
     fn entered(&self, held: &[Segment]) -> Option<&str> {
         let ends = held
             .iter()
@@ -244,7 +246,18 @@ impl PlanDocument {
         let land = LandObstacle::around(&pieces, radius);
         let ashore = held.iter().find_map(|s| land.first_contact(s, DEPTH_M));
         let all = targets.chain(ashore.map(|time| (time, LAND)));
-        Some(all.min_by(|a, b| a.0.total_cmp(&b.0))?.1)
+        let begins = held[0].start_time;
+        let is_by_rules = (self.manoeuvres.iter())
+            .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
+        let without_role = |name: &str| {
+            let mut encounters = self.encounters.iter();
+            is_by_rules && encounters.any(|e| e.target == name && !has_role(&e.role))
+        };
+        let first = all.min_by(|a, b| {
+            let role = without_role(a.1).cmp(&without_role(b.1));
+            role.then(a.0.total_cmp(&b.0))
+        });
+        Some(first?.1)
     }
 }
 
@@ -406,6 +419,33 @@ mod tests {
             .collect();
         let expected = ["", "follows the mission", "", "turns for 'target'"];
         assert_eq!(events, expected, "{legs:?}");
+    }
+
+    /// Own ship would enter the set of 'slow' first, toward which it has no role.
+    #[test]
+    fn a_manoeuvre_by_the_rules_is_for_a_ship_with_a_role() {
+        let text = r#"title = "crossing"
+            horizon_s = 1500
+            own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 0, speed_kn = 12,
+                length_m = 70, beam_m = 12, turning_radius_m = 220, speeds_kn = [6, 9, 12] }
+            mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 0, north_m = 5566 }] }
+            targets = [{ name = "slow", position = { east_m = 256, north_m = 1113 }, course_deg = 0,
+                speed_kn = 5, length_m = 60, beam_m = 11, position_std_m = 10,
+                speed_spread_kn = 0.5, course_spread_deg = 5 },
+                { name = "crossing", position = { east_m = 3197, north_m = 2783 }, course_deg = 270,
+                speed_kn = 13, length_m = 120, beam_m = 20, position_std_m = 10,
+                speed_spread_kn = 0.5, course_spread_deg = 3 }]"#;
+        let plan = PlanDocument::of(&pipeline::run(Scenario::parse(text).expect("valid")));
+        let turn = &plan.legs()[1];
+        assert_eq!(turn.because_of.as_deref(), Some("crossing"), "{turn:?}");
+        let held = plan.going_on(
+            &turn.motion,
+            &Before {
+                heading: turn.motion.start.heading,
+                speed: turn.motion.speed,
+            },
+        );
+        assert_eq!(scanned(&plan, &held[0]).as_deref(), Some("slow"));
     }
 
     #[test]
