@@ -210,6 +210,8 @@ pub struct SimulateArgs {
     /// Scenario files, files of other formats, or folders of them; - is standard input
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
+    #[command(flatten)]
+    pub asked: Asked,
     /// Seed of the random numbers instead of the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
@@ -479,6 +481,20 @@ fn number(word: &str, allows: impl Fn(f64) -> bool, allowed: &str) -> Result<f64
 }
 
 impl Asked {
+    /// Replaces settings of the scenario; fails where the planner cannot use them.
+    pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
+        if let Some(planner) = self.planner {
+            scenario.set_planner(planner);
+        }
+        scenario.search = self.search.unwrap_or(scenario.search);
+        self.apply_rules(scenario);
+        let faults = scenario.unfit();
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(faults),
+        }
+    }
+
     /// Replaces compliance and thresholds.
     pub fn apply_rules(&self, scenario: &mut Scenario) {
         if let Some(compliance) = self.compliance {
@@ -527,22 +543,8 @@ impl Shared {
 
     /// Replaces settings of the scenario; fails where the planner cannot use them.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
-        if let Some(planner) = self.asked.planner {
-            scenario.set_planner(planner);
-        }
-        if let Some(search) = self.asked.search {
-            scenario.search = search;
-        }
-        self.asked.apply_rules(scenario);
-        if let Some(max_risk) = self.max_risk {
-            scenario.max_risk = max_risk;
-        }
-        let faults = scenario.unfit();
-        if faults.is_empty() {
-            Ok(())
-        } else {
-            Err(faults)
-        }
+        scenario.max_risk = self.max_risk.unwrap_or(scenario.max_risk);
+        self.asked.apply(scenario)
     }
 }
 

@@ -133,12 +133,13 @@ fn sail(
 ) -> anyhow::Result<(SimulationDocument, ExitStatus)> {
     let file = &scene.found.file;
     let mut scenario = made.scenario;
+    let refused = |faults| ScenarioError::faults(file, scene.located(faults));
+    args.asked.apply(&mut scenario).map_err(refused)?;
     let notes = made.notes.into_iter().chain(sailed_in_parts(&scenario));
     output.notes(None, &[(String::new(), notes.collect())]);
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);
-    let refused = |faults| ScenarioError::faults(file, scene.located(faults));
     let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
     if args.plans.is_some() || args.written.rrd.is_some() {
         simulation.keep_plans();
