@@ -67,23 +67,14 @@ fn wide_hulls(scenario: &Scenario) -> impl Iterator<Item = String> {
 
 /// A horizon before the end of the mission, where one plan has to arrive.
 pub fn short_horizon(scenario: &Scenario) -> Option<String> {
-    let what = "and a plan has to arrive by then; take more, with time to give way";
-    horizon_note(scenario, what)
-}
-
-/// A horizon before the end of the mission, which is sailed in parts.
-pub fn sailed_in_parts(scenario: &Scenario) -> Option<String> {
-    horizon_note(scenario, "so it is sailed in parts")
-}
-
-fn horizon_note(scenario: &Scenario, what: &str) -> Option<String> {
     let (horizon, duration) = (scenario.horizon, scenario.desired.duration());
     let arrives = !matches!(scenario.planner.facts().minimises, Minimises::Own(_));
     // less is a rounding of the file
     (arrives && horizon + 0.5 < duration).then(|| {
         format!(
             "horizon_s: {horizon} s are less than the {duration:.0} s of the mission at its \
-             speeds, {what}"
+             speeds, and a plan has to arrive by then; take more, with time to give way. \
+             `simulate` sails it in parts"
         )
     })
 }

@@ -9,12 +9,11 @@ use searoom::document::{
 };
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
-use searoom::scenario::ScenarioError;
 use searoom::scenario::import::Imported;
+use searoom::scenario::{Scenario, ScenarioError};
 use searoom::simulation::Simulation;
 
 use super::args::SimulateArgs;
-use super::check::sailed_in_parts;
 use super::input::files::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
@@ -61,10 +60,9 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 } else {
                     output.result(&format!("{}\n", simulation_text(&document, output.display)))
                 };
-                let reached = if document.safe {
-                    ExitStatus::Good
-                } else {
-                    ExitStatus::NoPlan
+                let reached = match document.safe && !document.ends_on_the_way() {
+                    true => ExitStatus::Good,
+                    false => ExitStatus::NoPlan,
                 };
                 documents.push(document);
                 all_written = all_written.max(written);
@@ -160,6 +158,17 @@ fn sail(
         report.add_simulation(&subject, &scenario, &document);
     }
     Ok((document, output.written(written)))
+}
+
+/// A note where plans lead to intermediate ends.
+fn sailed_in_parts(scenario: &Scenario) -> Option<String> {
+    let (horizon, duration) = (scenario.horizon, scenario.desired.duration());
+    Simulation::sails_in_parts(scenario).then(|| {
+        format!(
+            "horizon_s: {horizon} s are too few for the {duration:.0} s of the mission at its \
+             speeds, with time to give way, so it is sailed in parts"
+        )
+    })
 }
 
 fn write_plans(folder: &Path, stem: &str, simulation: &Simulation) -> anyhow::Result<()> {

@@ -160,6 +160,12 @@ pub(crate) fn rules_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> S
     broken.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
+/// The part of a headline that names what is broken; `None` where nothing is.
+pub(crate) fn breaks_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let words = rules_in_words(broken);
+    (!words.is_empty()).then(|| format!("breaks {words}"))
+}
+
 /// Own ship's role toward a target in the words of a chart: its roles along the motion, or the one
 /// on the desired trajectory in brackets. `None` without one.
 pub(crate) fn chart_role(along: &[RoleDocument], desired: &str) -> Option<String> {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument, MONITORS,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
-    conduct_breaks, has_role, rules_in_words,
+    breaks_in_words, conduct_breaks, has_role, rules_in_words,
 };
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
@@ -42,10 +42,7 @@ pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     if plan.trajectory.is_some() {
         all.push(facts(plan.verified, plan.is_safe()).to_owned());
     }
-    let broken = breaks(&plan.encounters).unwrap_or_default();
-    if !broken.is_empty() {
-        all.push(format!("breaks {}", rules_in_words(broken)));
-    }
+    all.extend(breaks(&plan.encounters).and_then(breaks_in_words));
     let skipped = plan.cost.as_ref().map(|cost| skipped(plan, cost));
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
         all.push(format!("skips {skipped}"));

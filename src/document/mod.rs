@@ -29,7 +29,7 @@ pub use assessment::*;
 pub use check::*;
 pub use comparison::*;
 pub use encounter::*;
-pub(crate) use encounter::{MONITORS, rules_in_words};
+pub(crate) use encounter::{MONITORS, breaks_in_words, rules_in_words};
 #[cfg(feature = "recording")]
 pub(crate) use lines::escape_words;
 pub(crate) use lines::{

@@ -44,6 +44,9 @@ pub struct MissionDocument {
     pub leg_speeds_mps: Vec<f64>,
     pub duration_s: f64,
     pub length_m: f64,
+    /// Metres that the closed loop leaves out after an intermediate end.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub left_out_m: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Vec<PositionDocument>>,
 }

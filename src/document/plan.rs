@@ -275,6 +275,7 @@ fn mission(run: &Run) -> MissionDocument {
         leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
         duration_s: desired.duration(),
         length_m: desired.length(),
+        left_out_m: 0.0,
         alternatives: (run.scenario.alternatives.iter())
             .map(|path| path.iter().copied().map(position).collect())
             .collect(),

@@ -50,6 +50,12 @@ pub struct SimulationDocument {
 }
 
 impl SimulationDocument {
+    /// True where it ended at an intermediate end, because no next plan was found.
+    pub fn ends_on_the_way(&self) -> bool {
+        let last = self.replans.iter().rfind(|replan| replan.followed);
+        self.ends_short && last.is_some_and(|replan| replan.left_out_m > 0.0)
+    }
+
     /// Own ship at a time in seconds; `None` where nothing was sailed. O(log segments).
     pub fn own_at(&self, time: f64) -> Option<SteadyShip> {
         let begun = self.sailed.partition_point(|s| s.start.t_s <= time);
@@ -204,6 +210,19 @@ pub struct AlarmDocument {
     pub t_s: f64,
     pub alarm: String,
     pub target: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl AlarmDocument {
+    /// The alarm with its target and its reason.
+    pub(crate) fn words(&self) -> String {
+        let part = |part: &Option<String>, before: &str| {
+            (part.as_ref()).map_or(String::new(), |part| format!("{before}{part}"))
+        };
+        let (target, reason) = (part(&self.target, ": "), part(&self.reason, "; "));
+        format!("{}{target}{reason}", self.alarm)
+    }
 }
 
 /// One cycle of planning.
@@ -219,6 +238,9 @@ pub struct ReplanDocument {
     /// False where the plan came too late or there is none: own ship keeps the plan before.
     pub followed: bool,
     pub keeps_plan: bool,
+    /// Metres of the mission after the intermediate end of the plan; 0 for a plan to the last waypoint.
+    #[serde(default)]
+    pub left_out_m: f64,
     pub cost_m2: Option<f64>,
     pub relaxations: Vec<String>,
     /// First turn of the manoeuvre that is under way or planned, positive to starboard.

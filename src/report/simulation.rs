@@ -1,11 +1,11 @@
 //! Text of a simulation.
 
 use super::plan::{monitors_key, rules_broken};
-use super::table::{Display, Grid, Tone, in_cell, or_dash, painted, plain, verdict};
+use super::table::{Display, Grid, Styled, Tone, in_cell, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
-    SimulationDocument, conduct_breaks, rules_in_words,
+    SimulationDocument, breaks_in_words, conduct_breaks, rules_in_words,
 };
 use crate::text::{Times, counted, tenths, to_side};
 
@@ -13,15 +13,9 @@ pub(super) const TIMES: &str = "Planning";
 
 /// Formats the headline, a table of the targets, own ship's conduct, the cycles and the alarms.
 pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> String {
-    let headline = headline(simulation, Times::Seconds);
-    let (title, rest) = headline.split_at(simulation.scenario.len() + 2);
-    let (outcome, end) = rest.rsplit_once("; ").unwrap_or((rest, ""));
-    let tone = match simulation.safe && !simulation.contact {
-        true => Tone::Good,
-        false => Tone::Bad,
-    };
-    let outcome = painted((outcome.to_owned(), tone), display);
-    let mut blocks = vec![format!("{title}{outcome}; {end}")];
+    let parts = headline_parts(simulation, Times::Seconds).into_iter();
+    let parts: Vec<String> = parts.map(|part| painted(part, display)).collect();
+    let mut blocks = vec![format!("{}: {}", simulation.scenario, parts.join("; "))];
     if !simulation.targets.is_empty() {
         blocks.push(targets_grid(&simulation.targets, Times::Seconds).text(display));
     }
@@ -46,13 +40,7 @@ pub fn simulation_text(simulation: &SimulationDocument, display: Display) -> Str
 /// Formats the same as markdown, with times as on a chart, for a pane that is narrower than the table in a
 /// terminal.
 pub fn simulation_markdown(simulation: &SimulationDocument) -> String {
-    let is_judged = simulation.targets.iter().any(|t| t.set_m.is_none());
-    let breaks = match &simulation.conduct.breaks[..] {
-        [] if !is_judged => String::new(),
-        [] => "; breaks no rule".to_owned(),
-        broken => format!("; breaks {}", in_words(broken)),
-    };
-    let headline = headline(simulation, Times::Clock) + &breaks;
+    let headline = headline(simulation, Times::Clock);
     let mut blocks = vec![format!("### {}", in_cell(&headline))];
     if !simulation.targets.is_empty() {
         blocks.push(targets_grid(&simulation.targets, Times::Clock).markdown());
@@ -89,8 +77,14 @@ pub fn simulations_line(simulations: &[SimulationDocument], failed: usize) -> St
     line
 }
 
-/// Formats whether ships met, and whether own ship arrived.
+/// Formats whether ships met, the rules that own ship broke, and whether it arrived.
 pub(super) fn headline(simulation: &SimulationDocument, times: Times) -> String {
+    let parts = headline_parts(simulation, times).into_iter();
+    let parts: Vec<String> = parts.map(|(text, _)| text).collect();
+    format!("{}: {}", simulation.scenario, parts.join("; "))
+}
+
+fn headline_parts(simulation: &SimulationDocument, times: Times) -> Vec<Styled> {
     let met = (simulation.targets.iter())
         .filter(|target| target.contact_t_s.is_some())
         .map(|target| target.name.as_str());
@@ -111,21 +105,24 @@ pub(super) fn headline(simulation: &SimulationDocument, times: Times) -> String 
         true => String::new(),
         false => format!(" ({})", broken.join(", ")),
     };
-    let arrived = match (simulation.arrived, simulation.interrupted) {
-        (true, _) => "arrived",
-        (false, true) => "INTERRUPTED",
-        (false, false) if simulation.ends_short => "ended before the last waypoint",
-        (false, false) => "not arrived",
+    let tone = match simulation.safe && !simulation.contact {
+        true => Tone::Good,
+        false => Tone::Bad,
     };
-    format!(
-        "{}: {outcome}{broken}; {arrived} after {}",
-        simulation.scenario,
-        times.at(simulation.duration_s, 0)
-    )
-}
-
-fn in_words(broken: &[String]) -> String {
-    rules_in_words(broken.iter().map(String::as_str))
+    let breaks = breaks_in_words(simulation.conduct.breaks.iter().map(String::as_str));
+    let (arrived, arrival_tone) = match (simulation.arrived, simulation.interrupted) {
+        (true, _) => ("arrived", Tone::Plain),
+        (false, true) => ("INTERRUPTED", Tone::Plain),
+        (false, false) if simulation.ends_on_the_way() => ("NO NEXT PLAN, ended", Tone::Bad),
+        (false, false) if simulation.ends_short => ("ended before the last waypoint", Tone::Plain),
+        (false, false) => ("not arrived", Tone::Plain),
+    };
+    let end = format!("{arrived} after {}", times.at(simulation.duration_s, 0));
+    let breaks = breaks.map(|breaks| (breaks, Tone::Bad));
+    std::iter::once((outcome + &broken, tone))
+        .chain(breaks)
+        .chain([(end, arrival_tone)])
+        .collect()
 }
 
 /// Own ship's manoeuvres, and when it turns back.
@@ -190,10 +187,6 @@ pub(super) fn conduct_lines(
         .map_or(String::new(), |first| {
             format!(", {:.2} of the first plan's", sailed.cost_m2 / first)
         });
-    let breaks = match sailed.breaks.is_empty() {
-        true => "nothing".to_owned(),
-        false => in_words(&sailed.breaks),
-    };
     let plans = simulation.replans.len();
     let kept = simulation.replans.iter().filter(|r| r.keeps_plan).count();
     let land = simulation.land.as_ref().map(|land| {
@@ -212,8 +205,7 @@ pub(super) fn conduct_lines(
         (
             "Sailed",
             format!(
-                "J {:.0} m²{share}; toward one target, until it is nearest, at most {} and {} of \
-                 speed; breaks {breaks}",
+                "J {:.0} m²{share}; toward one target, until it is nearest, at most {} and {} of speed",
                 sailed.cost_m2,
                 counted(sailed.turns, "turn"),
                 counted(sailed.speed_changes, "change")
@@ -355,11 +347,7 @@ const LISTED: usize = 12;
 pub(super) fn alarm_lines(simulation: &SimulationDocument, times: Times) -> Vec<String> {
     let alarms = &simulation.alarms;
     let mut lines: Vec<String> = (alarms.iter().take(LISTED))
-        .map(|alarm| {
-            let target = alarm.target.as_ref();
-            let target = target.map_or(String::new(), |target| format!(": {target}"));
-            format!("{}: {}{target}", times.at(alarm.t_s, 0), alarm.alarm)
-        })
+        .map(|alarm| format!("{}: {}", times.at(alarm.t_s, 0), alarm.words()))
         .collect();
     if alarms.len() > LISTED {
         lines.push(format!("and {} more", alarms.len() - LISTED));
@@ -383,7 +371,7 @@ mod tests {
         let document = simulation.record();
         let markdown = simulation_markdown(&document);
         let title = headline(&document, Times::Clock);
-        let headline = format!("### {title}; breaks no rule\n\n| target | ");
+        let headline = format!("### {title}\n\n| target | ");
         assert!(markdown.starts_with(&headline), "{markdown}");
         let named = conduct_lines(&document, Times::Clock);
         let text = simulation_text(&document, Display::default());

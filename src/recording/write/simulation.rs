@@ -220,15 +220,9 @@ fn alarms(document: &SimulationDocument) -> impl Iterator<Item = Event> {
             .is_none_or(|last| alarm.t_s - last.t_s > goes_on)
     };
     let begun = document.alarms.iter().enumerate().filter(begins);
-    begun.map(|(_, alarm)| {
-        let target = alarm
-            .target
-            .as_ref()
-            .map_or(String::new(), |name| format!(": {name}"));
-        Event {
-            time: alarm.t_s,
-            level: TextLogLevel::WARN,
-            text: format!("alarm: {}{target}", alarm.alarm),
-        }
+    begun.map(|(_, alarm)| Event {
+        time: alarm.t_s,
+        level: TextLogLevel::WARN,
+        text: format!("alarm: {}", alarm.words()),
     })
 }

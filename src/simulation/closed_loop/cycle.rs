@@ -11,6 +11,7 @@ use crate::planner::{Plan, WarmStart};
 use crate::replanning::remember;
 use crate::scenario::{Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
+use crate::text::tenths;
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::ForceVector;
@@ -39,7 +40,7 @@ const NEAREST_TIME: f64 = 0.01;
 pub(super) struct Cycle {
     pub run: Run,
     pub replan: ReplanDocument,
-    /// Metres of the mission after the end of the plan.
+    /// Metres of the mission after the end of the plan, which may be before the intermediate end.
     pub left_out: f64,
 }
 
@@ -100,7 +101,8 @@ impl Simulation {
         } else if let Some(previous) = &self.active.document {
             // the last plan is own ship's, so only a ship far off it is refused
             if remember(previous, &mut scenario).is_err() {
-                self.alarm("far off the plan", None);
+                let reason = format!("{} m", tenths(off_plan_m));
+                self.alarm("far off the plan", None, Some(reason));
             }
             for (target, simulated) in scenario.targets.iter_mut().zip(&self.targets) {
                 if let (Motion::Ship(ship), true) =
@@ -114,7 +116,7 @@ impl Simulation {
                 }
             }
         }
-        let (run, left_out) = self.run(&scenario);
+        let (run, left_out_m) = self.run(&scenario);
         let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
         let plan = run.planned.outcome.plan();
         let replan = ReplanDocument {
@@ -125,6 +127,7 @@ impl Simulation {
             safe: run.safe(),
             followed: plan.is_some() && !late,
             keeps_plan: run.planned.is_remainder,
+            left_out_m,
             cost_m2: plan.and_then(|plan| {
                 // the stage cost of forces has another unit
                 let evaluation = run.evaluation.as_ref().filter(|_| forced.is_some());
@@ -137,17 +140,18 @@ impl Simulation {
             outside_places: run.scenario.memory.outside_places.clone(),
             estimates,
         };
+        let to_go = plan.map_or(0.0, |plan| plan.to_go);
         Cycle {
             run,
             replan,
-            left_out,
+            left_out: left_out_m + to_go,
         }
     }
 
     /// Plans to where own ship is due within the horizon, or to the end of the present plan if that is
     /// farther along the mission. Where that plan gives something up, the end of the present plan is
     /// tried as well; where it takes a risk or does not get there, a place one step nearer. A nearer
-    /// plan must not end soon. Returns the metres of the mission that the plan leaves out, too.
+    /// plan must not end soon. Returns the metres of the mission after the place, too.
     fn run(&self, scenario: &Scenario) -> (Run, f64) {
         if super::is_under_forces(scenario) {
             return (pipeline::run(scenario.clone()), 0.0);
@@ -200,8 +204,7 @@ impl Simulation {
             }
             best.plan_time = plan_time;
         }
-        let to_go = best.planned.outcome.plan().map_or(0.0, |plan| plan.to_go);
-        (best, cut + to_go)
+        (best, cut)
     }
 
     /// Metres between two intermediate ends.

@@ -31,12 +31,13 @@ use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocumen
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
+use crate::pipeline::Relaxation;
 use crate::planner::{Minimises, Plan};
 use crate::scenario::{
     Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings, VesselModel,
 };
 use crate::target::{Motion, ShipTrack, Uncertainty};
-use crate::text::rounded;
+use crate::text::{rounded, tenths};
 use crate::tolerance::ELLIPSE_SIDES;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
@@ -259,6 +260,12 @@ impl Simulation {
         faults(scenario, duration(scenario))
     }
 
+    /// True where the mission is too long for the horizon, so that plans lead to intermediate ends.
+    pub fn sails_in_parts(scenario: &Scenario) -> bool {
+        scenario.desired.duration() > cycle::DUE_SHARE * scenario.horizon
+            && !is_under_forces(scenario)
+    }
+
     /// Keeps the document of every plan from now on; the first plan is the one that is followed.
     pub fn keep_plans(&mut self) {
         self.keep_plans = true;
@@ -427,6 +434,7 @@ impl Simulation {
                     t_s: self.time,
                     alarm: "stale".to_owned(),
                     target: Some(target.name.clone()),
+                    reason: None,
                 });
             }
             let is_reported = exact || target.track.has_report();
@@ -459,19 +467,30 @@ impl Simulation {
             target.outside_sets += usize::from(left);
         }
         for name in &replan.outside_velocities {
-            self.alarm("another velocity than assumed", Some(name));
+            self.alarm("another velocity than assumed", Some(name), None);
         }
         for name in &replan.outside_places {
-            self.alarm("at another place than assumed", Some(name));
+            self.alarm("at another place than assumed", Some(name), None);
         }
         self.conduct.without_plan += usize::from(replan.cost_m2.is_none());
         self.conduct.unsafe_plans += usize::from(replan.cost_m2.is_some() && !replan.safe);
+        let reason = run.reason();
         if replan.cost_m2.is_none() {
-            self.alarm("no plan", None);
+            self.alarm("no plan", None, reason);
         } else if !replan.followed {
-            self.alarm("plan too late", None);
+            self.alarm("plan too late", None, None);
         } else if !replan.safe {
-            self.alarm("unsafe plan", None);
+            let why = reason.map_or(String::new(), |reason| format!(", {reason}"));
+            let why = format!("{}{why}", replan.verdict);
+            // the one whose set is entered at the greatest risk
+            let entered = run
+                .relaxations
+                .iter()
+                .find_map(|relaxation| match relaxation {
+                    Relaxation::Risk { target, .. } => Some(target.as_str()),
+                    _ => None,
+                });
+            self.alarm("unsafe plan", entered, Some(why));
         }
         let plan = run.planned.outcome.plan();
         let plan = plan.filter(|_| replan.followed);
@@ -480,7 +499,8 @@ impl Simulation {
         if plan.is_some_and(is_stop) {
             self.stop_time = self.time + delay;
         } else if let Some(plan) = plan {
-            let document = PlanDocument::of(&run);
+            let mut document = PlanDocument::of(&run);
+            document.mission.left_out_m = replan.left_out_m;
             if self.keep_plans {
                 self.plans.push(document.clone());
             }
@@ -496,11 +516,12 @@ impl Simulation {
         self.replans.push(replan);
     }
 
-    fn alarm(&mut self, alarm: &str, target: Option<&str>) {
+    fn alarm(&mut self, alarm: &str, target: Option<&str>, reason: Option<String>) {
         self.alarms.push(AlarmDocument {
             t_s: self.time,
             alarm: alarm.to_owned(),
             target: target.map(str::to_owned),
+            reason,
         });
     }
 
@@ -520,7 +541,7 @@ impl Simulation {
             }
         }
         for name in outside {
-            self.alarm("outside the set of the plan", Some(&name));
+            self.alarm("outside the set of the plan", Some(&name), None);
         }
         self.active = plan;
     }
@@ -553,7 +574,8 @@ impl Simulation {
         let off = self.off_plan();
         let most = self.tracking_margin();
         if off > most && self.conduct.largest_off_plan_m <= most {
-            self.alarm("beyond the tracking margin", None);
+            let reason = format!("{} m off the plan", tenths(off));
+            self.alarm("beyond the tracking margin", None, Some(reason));
         }
         if off > self.conduct.largest_off_plan_m {
             self.conduct.largest_off_plan_m = off;
@@ -591,10 +613,12 @@ impl Simulated {
 
 /// End of the simulation, seconds, if own ship has not arrived before.
 fn duration(scenario: &Scenario) -> f64 {
-    let mission = scenario.desired.duration();
-    let is_short = mission > cycle::DUE_SHARE * scenario.horizon && !is_under_forces(scenario);
-    let until = scenario.horizon + if is_short { mission } else { 0.0 };
-    scenario.simulation.duration.unwrap_or(until)
+    let parts = match Simulation::sails_in_parts(scenario) {
+        true => scenario.desired.duration(),
+        false => 0.0,
+    };
+    let settings = &scenario.simulation;
+    settings.duration.unwrap_or(scenario.horizon + parts)
 }
 
 /// True where the plans are forces, which drive the planner's own model of the ship.

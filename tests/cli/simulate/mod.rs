@@ -46,6 +46,84 @@ fn a_contact_ends_with_status_1_and_is_named() {
     assert!(target["least_clearance_m"].as_f64() < Some(0.0));
 }
 
+/// Own ship cannot pass the coaster within a horizon of two minutes, and waits behind it until a plan
+/// ends at an intermediate end. With another horizon one plan enters a set.
+#[test]
+fn a_mission_in_parts_that_is_not_finished_is_no_success() {
+    let folder = Folder::new();
+    let parts = std::fs::read_to_string("tests/faults/longer-than-its-horizon.toml");
+    let parts = parts.expect("a scenario");
+    let within = |horizon: u32| {
+        let with = parts.replace("horizon_s = 900.0", &format!("horizon_s = {horizon}"));
+        folder.write("parts.toml", with)
+    };
+    let file = within(120);
+    let ended = searoom(&["simulate", &file]).code(1);
+    says(&stderr(&ended), "so it is sailed in parts");
+    let first = stdout(&ended).lines().next().map(str::to_owned);
+    let first = first.expect("a line");
+    says(
+        &first,
+        "no contact, every plan safe; breaks overtaking (R5); NO NEXT PLAN, ended after ",
+    );
+    // a set over the last waypoint is no failure
+    let moored = stdout(&run("simulate tests/faults/moored-at-the-end.toml").success());
+    says(&moored, "ended before the last waypoint after ");
+    let ended = stdout(&searoom(&["simulate", &within(200)]).code(1));
+    says(
+        &ended,
+        "alarm at 480 s: unsafe plan: coaster ahead; at risk 0.67, the last waypoint is inside sets",
+    );
+}
+
+/// A mission of 300 s with a horizon of 340 s.
+#[test]
+fn plans_say_what_they_leave_out_of_the_mission() {
+    let folder = Folder::new();
+    let near = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 340.0");
+    let file = folder.write("near.toml", near);
+    run(&format!("check {file}")).success().stderr("");
+    let sailed = run(&format!("simulate {file} --json --plans {folder}/plans")).success();
+    let note = "horizon_s: 340 s are too few for the 300 s of the mission";
+    says(&stderr(&sailed), note);
+    let sailed = document(&sailed);
+    let left_out: Vec<f64> = list(&sailed["replans"])
+        .iter()
+        .map(|plan| number(&plan["left_out_m"]))
+        .collect();
+    assert!(
+        left_out[0] > 100.0 && left_out.ends_with(&[0.0]),
+        "{left_out:?}"
+    );
+    for (name, metres) in folder.names("plans").iter().zip(left_out) {
+        let plan = std::fs::read_to_string(folder.at(&format!("plans/{name}")));
+        let plan: serde_json::Value = serde_json::from_str(&plan.expect("a plan")).expect("JSON");
+        let said = plan["mission"]["left_out_m"].as_f64();
+        assert_eq!(said.unwrap_or_default(), metres, "{name}");
+    }
+    let whole = stderr(&run(&format!("simulate {HEAD_ON_FILE}")));
+    assert_eq!(whole, "");
+}
+
+#[test]
+fn settings_of_the_command_line_replace_those_of_the_file() {
+    run(&format!(
+        "simulate {HEAD_ON_FILE} --search dijkstra --duration-s 20"
+    ))
+    .success();
+    let refused = run(&format!("simulate {HEAD_ON_FILE} --planner path-time")).code(2);
+    says(
+        &stderr(&refused),
+        "the closed loop goes on from their plans alone",
+    );
+    let file = "scenarios/closed-loop/head-on-radar.toml";
+    let sail = |words: &str| {
+        let sailed = json(&format!("simulate {file} --json --duration-s 20 {words}"));
+        sailed["replans"][0]["cost_m2"].clone()
+    };
+    assert_ne!(sail("--compliance none"), sail(""));
+}
+
 #[test]
 fn the_same_run_gives_the_same_document_and_another_seed_another() {
     let folder = Folder::new();
