@@ -68,13 +68,17 @@ fn wide_hulls(scenario: &Scenario) -> impl Iterator<Item = String> {
 /// A horizon before the end of the mission, where one plan has to arrive.
 pub fn short_horizon(scenario: &Scenario) -> Option<String> {
     let (horizon, duration) = (scenario.horizon, scenario.desired.duration());
-    let arrives = !matches!(scenario.planner.facts().minimises, Minimises::Own(_));
+    let facts = scenario.planner.facts();
+    let arrives = !matches!(facts.minimises, Minimises::Own(_));
+    let in_parts = match facts.follows_paths {
+        true => "",
+        false => ". `simulate` sails it in parts",
+    };
     // less is a rounding of the file
     (arrives && horizon + 0.5 < duration).then(|| {
         format!(
             "horizon_s: {horizon} s are less than the {duration:.0} s of the mission at its \
-             speeds, and a plan has to arrive by then; take more, with time to give way. \
-             `simulate` sails it in parts"
+             speeds, and a plan has to arrive by then; take more, with time to give way{in_parts}"
         )
     })
 }

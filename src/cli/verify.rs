@@ -37,8 +37,9 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
         };
         let name = files::name(&path).display().to_string();
         // among several a line is enough for one that is all right
-        let display = alone.then_some(output.display);
-        let reached = match guarded_within(args.budget_s, move || one(&path, in_folder, display)) {
+        let display = output.display;
+        let checked = move || one(&path, in_folder, alone, display);
+        let reached = match guarded_within(args.budget_s, checked) {
             None => {
                 let budget = args.budget_s.as_secs_f64();
                 let error = format!("{name}: not proven within the budget of {budget} s");
@@ -103,7 +104,7 @@ enum Checked {
     Other(&'static str),
 }
 
-fn one(file: &Path, in_folder: bool, alone: Option<Display>) -> anyhow::Result<Checked> {
+fn one(file: &Path, in_folder: bool, is_alone: bool, display: Display) -> anyhow::Result<Checked> {
     let text = if file.extension().is_some_and(|ending| ending == "rrd") {
         match recorded(file)? {
             Ok(text) => text,
@@ -117,9 +118,9 @@ fn one(file: &Path, in_folder: bool, alone: Option<Display>) -> anyhow::Result<C
     let name = || files::name(file).display().to_string();
     let plan = |plan: &Verification| {
         let document = VerifiedPlanDocument::of(name(), plan);
-        let text = match alone {
-            None if plan.violations.is_empty() => verification_line(plan),
-            _ => verification_text(plan, alone.unwrap_or_default()),
+        let text = match is_alone {
+            false if plan.violations.is_empty() && plan.safe() => verification_line(plan),
+            _ => verification_text(plan, display),
         };
         (document, text)
     };

@@ -8,8 +8,7 @@ use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation};
 use crate::tolerance::TOUCH_M;
 
-/// Cost of a plan that no search can improve on, m²: it is on the desired trajectory to a
-/// millimetre.
+/// Cost of a plan that no search can improve on, m²: its error is a millimetre in the mean square.
 const NOTHING_M2: f64 = 1e-6;
 
 impl Relaxer<'_> {

@@ -57,6 +57,17 @@ fn own_ship_stops_before_a_set_over_its_last_waypoint() {
     assert!(nearest("crossing") > 150.0 && nearest("moored") > 150.0);
 }
 
+/// A steered ship is off its plan, and the last plan ends where it is: nothing is sailed along it.
+#[test]
+fn a_plan_that_ends_at_once_is_not_sailed() {
+    let sailed = sail(parsed(&fault("steered-to-a-covered-end.toml")));
+    assert!(sailed.ends_short);
+    assert!(sailed.sailed.iter().all(|segment| segment.duration_s > 0.0));
+    let text = serde_json::to_string(&sailed).expect("a document");
+    let checked = verify_simulations(&text).expect("a simulation");
+    assert!(checked[0].violations.is_empty(), "{checked:?}");
+}
+
 /// Four ships on a way of 1,620 s, with a horizon of 900 s: plans end on the way until the rest fits.
 #[test]
 fn a_mission_longer_than_its_horizon_is_sailed_in_parts() {

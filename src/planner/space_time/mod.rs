@@ -342,13 +342,8 @@ fn attempt(
         *others = selection.others.take().unwrap_or_default();
     } else if !timed_out && sequential::are_several(conflicts) {
         // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-        let motion = sequential::resolve_sequentially(
-            context,
-            nominal_motion,
-            selection.least_cost(),
-            budget,
-            clock,
-        );
+        let motion =
+            sequential::resolve_sequentially(context, nominal_motion, &selection, budget, clock);
         // without a motion, too, the time may have been up
         timed_out = clock.is_up();
         if let Some(motion) = motion {

@@ -365,6 +365,10 @@ impl Simulation {
             return;
         }
         self.observe_and_plan();
+        // the new plan may end where own ship is
+        if self.finished() {
+            return;
+        }
         let events = [
             self.pending
                 .as_ref()

@@ -95,7 +95,9 @@ fn plans_say_what_they_leave_out_of_the_mission() {
         left_out[0] > 100.0 && left_out.ends_with(&[0.0]),
         "{left_out:?}"
     );
-    for (name, metres) in folder.names("plans").iter().zip(left_out) {
+    let plans = folder.names("plans");
+    assert_eq!(plans.len(), left_out.len());
+    for (name, metres) in plans.iter().zip(left_out) {
         let plan = std::fs::read_to_string(folder.at(&format!("plans/{name}")));
         let plan: serde_json::Value = serde_json::from_str(&plan.expect("a plan")).expect("JSON");
         let said = plan["mission"]["left_out_m"].as_f64();

@@ -4,6 +4,8 @@
 //! later ones and ends back on the route. The next conflict is resolved from there. Where that
 //! fails, the earlier ones are passed in another way (depth-first branch and bound).
 
+use std::collections::VecDeque;
+
 use crate::obstacle::Obstacle;
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
@@ -13,6 +15,7 @@ use crate::planner::space_time::proxy::{Proxy, first_contact, within_reach};
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::Conflict;
+use crate::planner::space_time::selection::{Selection, is_same_way};
 use crate::planner::space_time::ways_in_one_manoeuvre;
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
@@ -33,28 +36,32 @@ pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
     ends.is_some_and(|(first, last)| last.from > first.from + APART_S)
 }
 
-/// Motion to the last waypoint that is clear of every set before `until`.
+/// Motion to the last waypoint whose conflicts before `resolved_until` are resolved.
 struct Node {
     motion: Vec<Segment>,
     cost: f64,
-    until: f64,
+    resolved_until: f64,
 }
 
-/// The cheapest motion found to the last waypoint that is clear of every proxy and of land, and
-/// costs less than `least` (m²), from a nominal one that is not clear. `None` where none is found.
+/// The cheapest motion found to the last waypoint that is clear of every proxy and of land, from a
+/// nominal one that is not clear. It is cheaper than the `selection`'s candidate. `None` where none
+/// is found.
 pub(crate) fn resolve_sequentially(
     context: &Context,
     nominal_motion: &[Segment],
-    mut least: f64,
+    selection: &Selection,
     budget: &SearchBudget,
     clock: Clock,
 ) -> Option<Vec<Segment>> {
-    let (mut left, then) = budget.conflict_plans;
+    let mut least = selection.least_cost();
+    let (mut dead_ends, mut more) = (budget.dead_ends, usize::MAX);
+    // half of the time is left to others after a dead end
+    let reserve = clock.left() / 2;
     let mut best = None;
     let mut open = vec![Node {
         motion: nominal_motion.to_vec(),
         cost: 0.0,
-        until: f64::NEG_INFINITY,
+        resolved_until: f64::NEG_INFINITY,
     }];
     while let Some(node) = open.pop() {
         // negated on purpose: a NaN is too dear
@@ -63,53 +70,73 @@ pub(crate) fn resolve_sequentially(
         }
         let Some(contact) = context.first_conflict(&node.motion) else {
             if best.is_none() {
-                left = then;
+                more = budget.more_conflicts;
             }
             least = node.cost;
             best = Some(node.motion);
             continue;
         };
-        // negated on purpose: a NaN is no progress
-        if left == 0 || clock.is_up() || !(contact > node.until) {
+        let is_late = dead_ends < budget.dead_ends && clock.left() < reserve;
+        if dead_ends == 0 || more == 0 || is_late || clock.is_up() {
             continue;
         }
-        left -= 1;
-        let mut children = children(context, &node, contact, clock);
-        // the cheapest is taken first
-        children.sort_by(|a, b| b.cost.total_cmp(&a.cost));
+        more -= 1;
+        // negated on purpose: a NaN is no progress
+        let goes_on = contact > node.resolved_until;
+        let mut children = match goes_on {
+            true => children(context, &node, contact, selection, clock),
+            false => Vec::new(),
+        };
+        dead_ends -= usize::from(children.is_empty());
+        // the first is taken next
+        children.reverse();
         open.extend(children);
     }
     best
 }
 
-/// A motion for each way past the first sets that the node's motion meets, at `contact`.
-fn children(context: &Context, node: &Node, contact: f64, clock: Clock) -> Vec<Node> {
+/// A motion for each way past the first sets that the node's motion meets, at `contact`: first the
+/// plan around all of them, then the others, the cheapest first.
+fn children(
+    context: &Context,
+    node: &Node,
+    contact: f64,
+    selection: &Selection,
+    clock: Clock,
+) -> Vec<Node> {
     let leaves = (contact - LEAD_S).max(0.0);
-    let is_first = node.until == f64::NEG_INFINITY;
+    let begins = node.resolved_until == f64::NEG_INFINITY;
     let problem = Problem {
-        first_turn: context.problem.first_turn.filter(|_| is_first),
+        first_turn: context.problem.first_turn.filter(|_| begins),
         encountered: &[],
         under_way: None,
         ..*context.problem
     };
     let (proxies, motion) = (context.proxies, &node.motion);
-    ways_from(&problem, proxies, motion, leaves, contact, clock)
-        .into_iter()
-        .map(|rest| {
-            let mut motion = motion_until(motion, leaves);
-            motion.extend(rest);
-            Node {
-                cost: problem.error_to_end(&motion),
+    let ways = ways_from(&problem, proxies, motion, leaves, contact, clock);
+    let mut children: Vec<Node> = Vec::new();
+    for rest in ways {
+        let mut motion = motion_until(motion, leaves);
+        motion.extend(rest);
+        let cost = selection.cost_of(&motion);
+        let is_same = |other: &Node| is_same_way((&other.motion, other.cost), (&motion, cost));
+        if !children.iter().any(is_same) {
+            children.push(Node {
                 motion,
-                until: contact,
-            }
-        })
-        .collect()
+                cost,
+                resolved_until: contact,
+            });
+        }
+    }
+    if let [_, others @ ..] = &mut children[..] {
+        others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
+    children
 }
 
 /// Ways from `leaves` on around the first set that the motion meets at `contact`, clear of all sets
-/// until [`CLEAR_S`] later. Each set that the cheapest way meets until then is added, and the ways
-/// are planned again.
+/// until [`CLEAR_S`] later. Each set that the plan meets until then is added, and planned again. The
+/// last plan is the first of the ways.
 fn ways_from(
     problem: &Problem,
     proxies: &[Proxy],
@@ -117,9 +144,10 @@ fn ways_from(
     leaves: f64,
     contact: f64,
     clock: Clock,
-) -> Vec<Vec<Segment>> {
+) -> VecDeque<Vec<Segment>> {
+    let mut clear = VecDeque::new();
     let Some(pose) = pose_at(motion, leaves) else {
-        return Vec::new();
+        return clear;
     };
     let own = OwnShip {
         pose,
@@ -130,7 +158,6 @@ fn ways_from(
         let soon = motion_until(motion, contact + CLEAR_S);
         first_contact(proxies, &soon).map(|(obstacle, _)| obstacle)
     };
-    let mut clear = Vec::new();
     // none is met where the contact is with land
     let mut around: Vec<usize> = first_set_met(motion).into_iter().collect();
     loop {
@@ -145,28 +172,28 @@ fn ways_from(
         };
         let pieces = pieces(stage.obstacles, stage.horizon);
         let near = within_reach(&stage, &pieces);
-        let mut met = None;
         let ways = ways_in_one_manoeuvre(&stage, &near, clock);
-        for (rank, way) in ways.iter().enumerate() {
-            let rest: Vec<Segment> = way.iter().map(|s| later(s, leaves)).collect();
-            let other = first_set_met(&rest);
-            if other.is_none() {
-                clear.push(rest);
-            } else if rank == 0 {
-                met = other;
+        let mut ways = ways.into_iter().map(|way| later(&way, leaves));
+        let Some(plan) = ways.next() else {
+            return clear;
+        };
+        clear.extend(ways.filter(|way| first_set_met(way).is_none()));
+        match first_set_met(&plan) {
+            None => {
+                clear.push_front(plan);
+                return clear;
             }
-        }
-        match met {
-            // else planned around, and met all the same: rounding of its sets at `leaves`
             Some(other) if !around.contains(&other) => around.push(other),
-            _ => return clear,
+            // planned around, and met all the same: rounding of its sets at `leaves`
+            Some(_) => return clear,
         }
     }
 }
 
-fn later(s: &Segment, seconds: f64) -> Segment {
-    Segment {
+fn later(motion: &[Segment], seconds: f64) -> Vec<Segment> {
+    let later = |s: &Segment| Segment {
         start_time: s.start_time + seconds,
         ..*s
-    }
+    };
+    motion.iter().map(later).collect()
 }

@@ -22,9 +22,11 @@ pub(crate) struct SearchBudget {
     pub insert_twice: bool,
     /// Largest number of nodes of the conflict search; 0 for no search among several targets.
     pub conflict_nodes: usize,
-    /// Where conflicts are resolved one after another, largest number of plans around single
-    /// conflicts: until the first motion is clear of all, and from there on.
-    pub conflict_plans: (usize, usize),
+    /// Where conflicts are resolved one after another: largest number of motions that have no way
+    /// past their next conflict.
+    pub dead_ends: usize,
+    /// Largest number of conflicts that are resolved once a motion is clear of all, for a cheaper one.
+    pub more_conflicts: usize,
 }
 
 impl SearchBudget {
@@ -37,7 +39,8 @@ impl SearchBudget {
         leader_margin: 0.3,
         insert_twice: true,
         conflict_nodes: 0,
-        conflict_plans: (30, 3),
+        dead_ends: 3,
+        more_conflicts: 3,
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
@@ -54,7 +57,8 @@ impl SearchBudget {
     pub(crate) const THOROUGH: Self = Self {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
         conflict_nodes: 256,
-        conflict_plans: (60, 10),
+        dead_ends: 4,
+        more_conflicts: 4,
         ..Self::SEVERAL_TARGETS
     };
 

@@ -67,9 +67,11 @@ const MAX_CONFLICTS: usize = 2;
 /// Relative cost difference below which two manoeuvres count as the same.
 const SAME_COST: f64 = 1e-3;
 
-/// Largest number of other ways past the sets, and the least ratio of the costs of two ways.
-const MAX_OTHERS: usize = 4;
-const OTHER_WAY: f64 = 1.02;
+/// Largest number of ways past the sets, where others than the cheapest are asked for.
+const MOST_WAYS: usize = 5;
+
+/// Relative cost difference below which two motions with the same first turn are the same way.
+const SAME_WAY: f64 = 0.02;
 
 /// Length above which lines are divided for the first and for the second insertion, metres.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
@@ -321,27 +323,30 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Clear motions, each dearer than the one before by [`OTHER_WAY`].
+    /// The cheapest clear motions of other ways than that of the best candidate.
     fn other_ways(&self, running: &[Refinement]) -> Vec<Vec<Segment>> {
-        let mut dearest = self.least_cost();
-        let mut others = Vec::new();
+        let best = self.best.iter();
+        let mut ways: Vec<_> = best.map(|b| (b.motion.clone(), b.cost)).collect();
         for refinement in ranked(running) {
             let Some(motion) = refinement.best_motion(&self.context) else {
                 break;
             };
-            let rank = refinement.rank();
-            if others.len() < MAX_OTHERS && rank > OTHER_WAY * dearest && self.is_clear(&motion) {
-                dearest = rank;
-                others.push(motion);
+            let cost = self.cost_of(&motion);
+            let is_same = |(other, of): &(Vec<_>, f64)| is_same_way((other, *of), (&motion, cost));
+            if !ways.iter().any(is_same) && self.is_clear(&motion) {
+                ways.push((motion, cost));
+            }
+            if ways.len() == MOST_WAYS {
+                break;
             }
         }
-        others
+        let others = ways.into_iter().skip(1);
+        others.map(|(motion, _)| motion).collect()
     }
 
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
-        let problem = self.context.problem;
-        let cost = problem.error_to_end(&motion) * self.prices.factor(&motion);
+        let cost = self.cost_of(&motion);
         let clear = cost.is_finite() && self.is_clear(&motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
@@ -359,8 +364,12 @@ impl<'a> Selection<'a> {
             && !land::meets(problem.land_obstacle, motion)
     }
 
-    /// Cost of the cheapest clear motion, with the price of its alterations, m²; infinite without
-    /// any.
+    /// Cost of a motion with the price of its alterations, m².
+    pub(crate) fn cost_of(&self, motion: &[Segment]) -> f64 {
+        self.context.problem.error_to_end(motion) * self.prices.factor(motion)
+    }
+
+    /// [`Self::cost_of`] the best candidate; infinite without any.
     pub(crate) fn least_cost(&self) -> f64 {
         self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
     }
@@ -370,6 +379,12 @@ impl<'a> Selection<'a> {
         let best = self.best?;
         Plan::measured(self.context.problem, best.motion, self.graph_cost)
     }
+}
+
+/// True where two motions, with their costs, cost alike and turn to the same side first.
+pub(crate) fn is_same_way(one: (&[Segment], f64), other: (&[Segment], f64)) -> bool {
+    let side = |motion: &[Segment]| motion.iter().find_map(|s| Side::of_turn(s.turn_rate));
+    (one.1 - other.1).abs() <= SAME_WAY * one.1 && side(one.0) == side(other.0)
 }
 
 /// Refinement with at most `most` steps, and fewer after the deadline.
