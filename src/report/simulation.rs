@@ -7,6 +7,7 @@ use crate::document::{
     ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
     SimulationDocument, breaks_in_words, conduct_breaks, rules_in_words,
 };
+use crate::evaluation::NOT_BY_THE_RULES;
 use crate::text::{Times, counted, tenths, to_side};
 
 pub(super) const TIMES: &str = "Planning";
@@ -189,6 +190,19 @@ pub(super) fn conduct_lines(
         });
     let plans = simulation.replans.len();
     let kept = simulation.replans.iter().filter(|r| r.keeps_plan).count();
+    let with_verdict = |word: &&str| {
+        simulation
+            .replans
+            .iter()
+            .filter(|r| r.verdict == **word)
+            .count()
+    };
+    let given_up: String = ["relaxed", NOT_BY_THE_RULES]
+        .iter()
+        .map(|word| (with_verdict(word), word))
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, word)| format!(", {count} {word}"))
+        .collect();
     let land = simulation.land.as_ref().map(|land| {
         let text = match (land.least_m, land.grounded) {
             (Some(metres), _) => format!(
@@ -215,8 +229,8 @@ pub(super) fn conduct_lines(
         (
             "Plans",
             format!(
-                "{plans}, {kept} kept from the one before; manoeuvres replaced {}, to the other \
-                 side {}; remainders lost {}, unsafe {}, without a plan {}",
+                "{plans}, {kept} kept from the one before{given_up}; manoeuvres replaced {}, to the \
+                 other side {}; remainders lost {}, unsafe {}, without a plan {}",
                 sailed.replaced_manoeuvres,
                 sailed.side_switches,
                 sailed.lost_remainders,

@@ -14,7 +14,9 @@ const DETAILS: [&str; 9] = [
 ];
 
 /// Columns that a table drops next, in this order.
-const FURTHER: [&str; 6] = [
+const FURTHER: [&str; 8] = [
+    "behaviour",
+    "acts before",
     "passing",
     "encounter",
     "verified",
