@@ -13,8 +13,8 @@ use crate::trajectory::Segment;
 /// A new plan replaces the remainder where it costs less than this fraction of it.
 const WORTH_A_CHANGE: f64 = 0.98;
 
-/// A new plan that breaks fewer rules replaces the remainder where it costs at most this multiple of
-/// it: five times the distance, as costs are squared.
+/// Largest ratio of costs at which a new plan that breaks fewer rules replaces the remainder: five
+/// times the distance, as costs are squares.
 const WORTH_A_RULE: f64 = 25.0;
 
 /// A remainder that is kept.
@@ -25,10 +25,10 @@ pub(super) struct Remainder {
 }
 
 /// Returns the remainder where it is better than the new plan of an attempt. It is better where
-/// there is no new plan, or the new plan breaks more rules, is hardly cheaper, or breaks fewer rules at
-/// many times the cost. It is also better where a target that matters is outside the sets that were assumed, and where own ship returns to
-/// its route after a manoeuvre. The remainder has to be clear of the same sets, to arrive in time,
-/// and to start at own pose.
+/// there is no new plan, or the new plan breaks more rules, is hardly cheaper, or breaks fewer rules
+/// at many times the cost. It is also better where a target that matters is outside the sets that
+/// were assumed, and where own ship returns to its route after a manoeuvre. The remainder has to be
+/// clear of the same sets, to arrive in time, and to start at own pose.
 pub(super) fn better_remainder(
     scenario: &Scenario,
     problem: &Problem,

@@ -8,7 +8,7 @@ use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation};
 use crate::tolerance::TOUCH_M;
 
-/// Cost of a plan that no search can improve on, m²: its error is a millimetre in the mean square.
+/// Cost of a plan that no search can improve on, m²: its root mean square error is a millimetre.
 const NOTHING_M2: f64 = 1e-6;
 
 impl Relaxer<'_> {
