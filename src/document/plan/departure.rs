@@ -1,6 +1,8 @@
 //! Own ship's alteration in a few words: its greatest departure from the desired course, or where
 //! there is none from the desired speed.
 
+use std::f64::consts::{PI, TAU};
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +18,9 @@ use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 /// Degrees: a smaller departure from the desired course is none.
 pub(super) const LEAST_DEG: f64 = 5.0;
 
+/// Seconds: a shorter departure that was sailed is none.
+const LEAST_S: f64 = 3.0;
+
 /// Degrees: a departure goes on down to here, so that a course near [`LEAST_DEG`] is one departure.
 const LEAVES_DEG: f64 = 3.0;
 
@@ -24,6 +29,9 @@ const ON_PATH: f64 = 0.1;
 
 /// Fraction of the desired speed. A smaller departure from it is none.
 const SPEED: f64 = 0.02;
+
+/// Radians: a course farther from that of the leg is about opposite to it.
+const OPPOSITE_RAD: f64 = 0.75 * PI;
 
 /// Weight of time beside place, as a fraction of the desired speed. It decides between legs that
 /// cover the same ground.
@@ -159,7 +167,11 @@ pub(crate) fn manoeuvres(
     let only = departure(samples, desired, radius, is_along_path);
     if let Some(Departure::Course { .. }) = only {
         let turns = turns(samples, desired, radius).into_iter();
-        let sailed = turns.map(|turn| SailedManoeuvreDocument {
+        let lasts = |turn: &Turn| {
+            turn.returns
+                .is_none_or(|returns| returns > turn.from + LEAST_S)
+        };
+        let sailed = turns.filter(lasts).map(|turn| SailedManoeuvreDocument {
             departure: turn.departure(),
             returns_s: turn.returns,
         });
@@ -241,8 +253,14 @@ fn turns(samples: &[SampleDocument], desired: &DesiredTrajectory, radius: f64) -
             };
             turned = if is_between { 0.0 } else { least };
         }
-        let degrees = deg_from_radians(turned.abs());
         let last = current.map(|(side, _)| side);
+        // about opposite to the leg, a turn goes on to the side to which it began
+        if let Some(sign) = last.map(Side::turn_sign)
+            && turned * sign < -OPPOSITE_RAD
+        {
+            turned += sign * TAU;
+        }
+        let degrees = deg_from_radians(turned.abs());
         let turned_to = Side::of_turn(turned);
         let goes_on = turned_to.is_some() && turned_to == last;
         let least = if goes_on { LEAVES_DEG } else { LEAST_DEG };
@@ -422,6 +440,21 @@ mod tests {
         ] {
             assert_eq!(found(&east, &parts), expected);
         }
+    }
+
+    /// A course a little beyond the opposite of the path's is no turn to the other side.
+    #[test]
+    fn a_turn_about_is_one_departure() {
+        let turning = (1..30).map(|k| (1, 90.0 + 6.0 * f64::from(k), 5.0));
+        let about = [269.8, 270.3, 269.8].map(|course| (9, course, 5.0));
+        let parts: Vec<_> = std::iter::once((10, 90.0, 5.0))
+            .chain(turning)
+            .chain(about)
+            .collect();
+        assert_eq!(
+            found(&[(0.0, 0.0), (2000.0, 0.0)], &parts),
+            "starboard 180° from 9 s"
+        );
     }
 
     /// The turn back to the path counts, not the one to the desired course before it. Beside the path
