@@ -249,6 +249,10 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
                 let found = format_args!("{} speeds", speeds.len());
                 return field.reject(found, format_args!("at most {}", limits::SPEEDS));
             }
+            if (1..speeds.len()).any(|k| speeds[..k].contains(&speeds[k])) {
+                let allowed = "each speed once; 5.5 has a point, 5,5 is two numbers";
+                return field.reject("a speed twice", allowed);
+            }
             speeds
         }
         None if table.has_speed("speeds") => return None,
@@ -266,7 +270,6 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
         }
     };
     speeds.sort_by(f64::total_cmp);
-    speeds.dedup();
     Some(speeds)
 }
 

@@ -90,8 +90,8 @@ fn the_speeds_of_the_mission_are_own_ships_unless_it_has_others() {
 
 #[test]
 fn knots_replace_lists_too() {
-    let text = SCENARIO.replace("turning", "speeds_kn = [12, 0, 6, 6]\nturning")
-        + "leg_speeds_kn = [10, 5]";
+    let text =
+        SCENARIO.replace("turning", "speeds_kn = [12, 0, 6]\nturning") + "leg_speeds_kn = [10, 5]";
     let scenario = Scenario::parse(&text).expect("valid");
     let speeds = [0.0, 6.0, 12.0].map(mps_from_knots);
     assert_eq!(scenario.own_ship.speeds, speeds);
@@ -352,6 +352,7 @@ const MISTAKES: &str = r#"
     speed_mps = 5 | | own_ship.speed_mps
     beam_m = 8 | beam_m = 8\nspeeds_mps = [] | own_ship.speeds_mps
     beam_m = 8 | beam_m = 8\nspeeds_mps = [0, 0] | own_ship.speeds_mps
+    beam_m = 8 | beam_m = 8\nspeeds_mps = [5,5, 14,0] | own_ship.speeds_mps
     beam_m = 8 | beam_m = 8\nspeeds_mps = [-1, 2] | own_ship.speeds_mps[0]
     _radius_m = 100 | _radius_m = 0 | own_ship.turning_radius_m
     east_m = 1500, north_m = 0 } | east_m = 0, north_m = 0 } | mission.waypoints[1]

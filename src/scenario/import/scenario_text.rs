@@ -127,7 +127,9 @@ impl Writing<'_> {
         let fractions = given
             .iter()
             .flat_map(|v| ASSUMED_SPEEDS.map(|fraction| fraction * v));
-        let speeds: Vec<f64> = fractions.collect();
+        let mut speeds: Vec<f64> = fractions.collect();
+        speeds.sort_by(f64::total_cmp);
+        speeds.dedup();
         self.text += &format!("speeds_mps = {speeds:?}\n");
         let route = own.route.iter();
         let route: String = route.map(|p| format!("    {},\n", position(*p))).collect();
