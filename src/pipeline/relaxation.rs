@@ -156,7 +156,7 @@ impl Relaxer<'_> {
     /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
     /// without a plan says that the time ran out. The flag is true where ship domains are asked
     /// for. When all fail, [`Self::leaving_sets`] answers.
-    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 9] = [
+    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 10] = [
         Self::remainder_by_the_rules,
         Self::by_the_rules,
         Self::clear_of_domains,
@@ -165,6 +165,7 @@ impl Relaxer<'_> {
         Self::around_hard_sets,
         Self::waiting,
         Self::short_of_end,
+        Self::remainder_on_the_way,
         Self::at_least_risk,
     ];
 
@@ -212,13 +213,13 @@ impl Relaxer<'_> {
         }
         let why = match &first.planned.outcome {
             Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
-                return self.finished(with_domain, &first).unwrap_or(first);
+                return self.finished(&first).unwrap_or(first);
             }
             Outcome::Deadline(None) => return self.late(with_domain, first),
             Outcome::Infeasible(reason) => reason.clone(),
         };
         let relaxed = self.relaxed(first, &why, with_domain);
-        let relaxed = self.finished(with_domain, &relaxed).unwrap_or(relaxed);
+        let relaxed = self.finished(&relaxed).unwrap_or(relaxed);
         let arrives = relaxed.planned.outcome.plan().is_none_or(Plan::arrives);
         let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
         let why = relaxed.why.clone().unwrap_or(why);
@@ -283,21 +284,21 @@ impl Relaxer<'_> {
 
     /// [`RelaxationLevel::Rules`]: the remainder of the last plan, if it is clear of the hard sets
     /// and breaks no rule.
-    fn remainder_by_the_rules(&self, with_domain: bool) -> Option<Attempt> {
+    fn remainder_by_the_rules(&self, _: bool) -> Option<Attempt> {
         if !self.are_rules_asked() {
             return None;
         }
-        let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
+        let found = self.remainder_clear_of_hard_sets(RelaxationLevel::Rules)?;
         (found.1 == 0).then_some(found.0)
     }
 
     /// [`RelaxationLevel::Rules`]: the manoeuvre under way, finished in smaller domains, where the
     /// plan of an attempt begins another and breaks no fewer rules.
-    fn finished(&self, with_domain: bool, attempt: &Attempt) -> Option<Attempt> {
+    fn finished(&self, attempt: &Attempt) -> Option<Attempt> {
         if !(self.are_rules_asked() && begins_another(self.scenario, &attempt.planned)) {
             return None;
         }
-        let found = self.remainder_clear_of_hard_sets(with_domain, RelaxationLevel::Rules)?;
+        let found = self.remainder_clear_of_hard_sets(RelaxationLevel::Rules)?;
         let breaks = |trajectory| rules::breaks(self.scenario, trajectory);
         let fewest = attempt.trajectory().map_or(usize::MAX, breaks);
         (found.1 <= fewest).then_some(found.0)
@@ -307,28 +308,51 @@ impl Relaxer<'_> {
     /// hard sets.
     fn remainder(&self, with_domain: bool) -> Option<Attempt> {
         let level = RelaxationLevel::ReducedDomains;
-        self.remainder_clear_of_hard_sets(with_domain, level)
-            .map(|found| found.0)
+        let found = with_domain.then(|| self.remainder_clear_of_hard_sets(level));
+        found.flatten().map(|found| found.0)
+    }
+
+    /// [`RelaxationLevel::Waiting`]: the remainder of a last plan that ends on the way, if it is clear
+    /// of the hard sets. It is better than a risk.
+    fn remainder_on_the_way(&self, with_domain: bool) -> Option<Attempt> {
+        let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
+        let end = self.scenario.memory.remainder.last()?.end().position;
+        let left = path.left_from(end);
+        // the schedule may be past that end
+        let to_end = || DesiredTrajectory::new(&[own.pose.position, end], &[path.legs()[0].speed]);
+        let short = Scenario {
+            desired: path.shortened(left).or_else(|| to_end().ok())?,
+            ..self.scenario.clone()
+        };
+        let level = match with_domain {
+            true => RelaxationLevel::ReducedDomains,
+            false => RelaxationLevel::Compliant,
+        };
+        let of_short = self.of(&short, self.sets);
+        let (mut found, _) = of_short.remainder_clear_of_hard_sets(level)?;
+        if let Outcome::Solved(plan) = &mut found.planned.outcome {
+            plan.to_go = left;
+        }
+        Some(found)
     }
 
     /// The remainder against the hard sets and as much of the domains as it is clear of, and the
     /// number of rules that it breaks.
-    fn remainder_clear_of_hard_sets(
-        &self,
-        with_domain: bool,
-        level: RelaxationLevel,
-    ) -> Option<(Attempt, usize)> {
-        if !with_domain || self.scenario.memory.remainder.is_empty() {
+    fn remainder_clear_of_hard_sets(&self, level: RelaxationLevel) -> Option<(Attempt, usize)> {
+        if self.scenario.memory.remainder.is_empty() {
             return None;
         }
         let risk = self.scenario.max_risk;
-        let (whole, reductions) = self.scaled(&self.scales(0.0));
+        let (whole, reductions) = self.asked(&self.scales(0.0));
         let obstacles = level_sets(&whole, risk);
         let none = Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory));
         let mut found = Attempt::of(level, whole, reductions, obstacles, risk, none);
         let kept = better_remainder(self.scenario, &self.problem(&found.obstacles), &found)?;
         found.planned = kept.planned;
-        let retained = self.retained_along(found.trajectory()?, risk);
+        let retained = match self.scenario.compliance.shapes() {
+            true => self.retained_along(found.trajectory()?, risk),
+            false => self.scales(0.0),
+        };
         Some((self.clear_of(&found, &retained, level), kept.broken))
     }
 
@@ -343,7 +367,7 @@ impl Relaxer<'_> {
             true => RelaxationLevel::Rules,
             false => RelaxationLevel::ReducedDomains,
         };
-        if let Some((kept, broken)) = self.remainder_clear_of_hard_sets(with_domain, level)
+        if let Some((kept, broken)) = self.remainder_clear_of_hard_sets(level)
             && (broken == 0 || level > RelaxationLevel::Rules)
         {
             return Some(kept);
