@@ -633,8 +633,8 @@ fn dpi(word: &str) -> Result<f64, String> {
 }
 
 fn duration(word: &str) -> Result<f64, String> {
-    let allowed = "seconds above 0, at most 1000000";
-    number(word, |s| s > 0.0 && s <= 1e6, allowed)
+    let allowed = "seconds from 0.001 to 1000000";
+    number(word, |s| (1e-3..=1e6).contains(&s), allowed)
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {

@@ -60,7 +60,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 } else {
                     output.result(&format!("{}\n", simulation_text(&document, output.display)))
                 };
-                let reached = match document.safe && !document.ends_on_the_way() {
+                let reached = match document.is_success() {
                     true => ExitStatus::Good,
                     false => ExitStatus::NoPlan,
                 };
@@ -149,7 +149,7 @@ fn sail(
         }
     }
     if let Some(folder) = &args.plans {
-        write_plans(folder, &scene.found.stem, &simulation)?;
+        write_plans(folder, &scene.found.stem, &simulation, output)?;
     }
     let document = simulation.record();
     let written = products.write_simulation(&scene.found.stem, &scenario, &simulation, &document);
@@ -171,10 +171,22 @@ fn sailed_in_parts(scenario: &Scenario) -> Option<String> {
     })
 }
 
-fn write_plans(folder: &Path, stem: &str, simulation: &Simulation) -> anyhow::Result<()> {
+fn write_plans(
+    folder: &Path,
+    stem: &str,
+    simulation: &Simulation,
+    output: &Output,
+) -> anyhow::Result<()> {
+    let file = |index: usize| folder.join(format!("{stem}-{index:03}.json"));
     for (index, plan) in simulation.plans().iter().enumerate() {
-        let file = folder.join(format!("{stem}-{index:03}.json"));
-        write_atomically(&file, json(plan)?.as_bytes())?;
+        write_atomically(&file(index), json(plan)?.as_bytes())?;
+    }
+    let next = file(simulation.plans().len());
+    if next.exists() {
+        output.note(&format_args!(
+            "{}: this plan, and any after it, is of an earlier run",
+            shown(&next)
+        ));
     }
     Ok(())
 }

@@ -47,6 +47,7 @@ pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;
 pub use simulation::*;
+pub(crate) use simulation::{BEYOND_MARGIN, LastingAlarm};
 pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument};
 pub use targets::*;

@@ -11,13 +11,21 @@ use super::encounter::ConductDocument;
 use super::memory::{StateDocument, steady};
 use super::parts::{PositionDocument, SegmentDocument, segment};
 use super::plan::departure::SailedManoeuvreDocument;
+use super::plan::segment_document;
 use crate::colregs::SteadyShip;
-use crate::frame::{Pose, Vector};
+use crate::frame::{Pose, Vector, clockwise_deg, radians_from_deg};
 use crate::geometry::ConvexPolygon;
+use crate::trajectory::GroundSegment;
 use crate::vessel::Hull;
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
+
+/// The alarm of a ship that is farther off its plan than its tracking margin.
+pub(crate) const BEYOND_MARGIN: &str = "beyond the tracking margin";
+
+/// An alarm goes on where it is raised again within this many times between plans.
+const GOES_ON: f64 = 1.5;
 
 /// A scenario that was sailed in the closed loop. Times count from the scenario's present.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,9 +40,12 @@ pub struct SimulationDocument {
     pub arrived: bool,
     /// True where it was ended before the arrival and before its time.
     pub interrupted: bool,
-    /// True where it ended with a plan that ends before the last waypoint.
+    /// True where it ended before its time, at the end of a plan, and own ship had not arrived.
     #[serde(default)]
     pub ends_short: bool,
+    /// Straight from own ship's last place to the last waypoint.
+    #[serde(default)]
+    pub to_go_m: f64,
     pub duration_s: f64,
     pub targets: Vec<SimulatedTargetDocument>,
     /// Null without a map.
@@ -43,25 +54,73 @@ pub struct SimulationDocument {
     pub conduct: SailedDocument,
     pub alarms: Vec<AlarmDocument>,
     pub replans: Vec<ReplanDocument>,
-    /// Own ship's motion. A ship that does not follow its plan exactly has a segment per step,
-    /// which need not begin exactly where the one before ends.
-    pub sailed: Vec<SegmentDocument>,
+    /// Own ship's motion over ground, without gaps. A ship that is steered has a segment per step or
+    /// more.
+    pub sailed: Vec<GroundSegmentDocument>,
     pub timing: CycleTimingDocument,
 }
 
 impl SimulationDocument {
-    /// True where it ended at an intermediate end, because no next plan was found.
-    pub fn ends_on_the_way(&self) -> bool {
-        let last = self.replans.iter().rfind(|replan| replan.followed);
-        self.ends_short && last.is_some_and(|replan| replan.left_out_m > 0.0)
+    /// True where it ends as it should: safe, and at the last waypoint or when its time is over.
+    pub fn is_success(&self) -> bool {
+        self.safe && !self.ends_short
     }
 
-    /// Own ship at a time in seconds; `None` where nothing was sailed. O(log segments).
-    pub fn own_at(&self, time: f64) -> Option<SteadyShip> {
-        let begun = self.sailed.partition_point(|s| s.start.t_s <= time);
-        let last = segment(self.sailed.get(begun.saturating_sub(1))?);
-        let pose = last.pose_at(time.clamp(last.start_time, last.end_time()));
-        Some(SteadyShip::new(pose, last.speed))
+    /// The alarms, each with how often it was raised and when last: one that is raised again within
+    /// [`GOES_ON`] goes on. In order of their first times.
+    pub(crate) fn lasting_alarms(&self) -> Vec<LastingAlarm<'_>> {
+        let goes_on = GOES_ON * self.settings.replan_s;
+        let mut all: Vec<LastingAlarm> = Vec::new();
+        for alarm in &self.alarms {
+            let same = |a: &&mut LastingAlarm| {
+                (&a.first.alarm, &a.first.target) == (&alarm.alarm, &alarm.target)
+                    && alarm.t_s - a.until_s <= goes_on
+            };
+            match all.iter_mut().rev().find(same) {
+                Some(last) => (last.count, last.until_s) = (last.count + 1, alarm.t_s),
+                None => all.push(LastingAlarm {
+                    first: alarm,
+                    count: 1,
+                    until_s: alarm.t_s,
+                }),
+            }
+        }
+        all
+    }
+
+    /// Pose of own hull and its velocity over ground at a time in seconds; `None` where nothing was
+    /// sailed. O(log segments).
+    pub fn own_at(&self, time: f64) -> Option<(Pose, Vector)> {
+        let begun = self.sailed.partition_point(|s| s.track.start.t_s <= time);
+        let last = self.sailed.get(begun.saturating_sub(1))?.segment();
+        let time = time.clamp(last.track.start_time, last.track.end_time());
+        Some((last.pose_at(time), last.velocity_at(time)))
+    }
+}
+
+/// A line or an arc over ground.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroundSegmentDocument {
+    #[serde(flatten)]
+    pub track: SegmentDocument,
+    /// Course less heading, to starboard positive; absent where own ship lies along its course.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub crab_angle_deg: f64,
+}
+
+impl GroundSegmentDocument {
+    pub(crate) fn of(sailed: &GroundSegment) -> Self {
+        Self {
+            track: segment_document(&sailed.track),
+            crab_angle_deg: clockwise_deg(sailed.crab),
+        }
+    }
+
+    pub(crate) fn segment(&self) -> GroundSegment {
+        GroundSegment {
+            track: segment(&self.track),
+            crab: radians_from_deg(-self.crab_angle_deg),
+        }
     }
 }
 
@@ -225,6 +284,13 @@ impl AlarmDocument {
     }
 }
 
+/// An alarm that is raised plan after plan.
+pub(crate) struct LastingAlarm<'a> {
+    pub first: &'a AlarmDocument,
+    pub count: usize,
+    pub until_s: f64,
+}
+
 /// One cycle of planning.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReplanDocument {
@@ -287,5 +353,26 @@ impl CycleTimingDocument {
         let last = sorted.len().saturating_sub(1);
         let index = (p * last as f64).ceil() as usize;
         sorted.get(index).map_or(0.0, |s| s * 1e3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::Segment;
+
+    #[test]
+    fn the_crab_angle_is_the_course_less_the_heading_to_starboard() {
+        // toward north, heading 10° to starboard of that
+        let course = Pose::new(Vector::new(3.0, 4.0), radians_from_deg(90.0));
+        let sailed = GroundSegment {
+            track: Segment::straight(course, 2.0, 5.0, 3.0),
+            crab: radians_from_deg(10.0),
+        };
+        let document = GroundSegmentDocument::of(&sailed);
+        assert_eq!(document.track.start.course_deg, 0.0);
+        assert!((document.crab_angle_deg + 10.0).abs() < 1e-12);
+        let heading = document.segment().pose_at(4.0).heading;
+        assert!((heading - radians_from_deg(80.0)).abs() < 1e-12);
     }
 }

@@ -266,7 +266,11 @@ fn meetings<P: Piece>(
 /// Least signed distance between a hull and land along a motion, metres, and when. It is negative
 /// on land, infinite without land, and negatively infinite where it is not proven. O(edges log
 /// edges), and O(polygons + log edges) per segment.
-pub(crate) fn least_land_distance(land: &[Polygon], motion: &[Segment], own: &Hull) -> (f64, f64) {
+pub(crate) fn least_land_distance<P: Piece>(
+    land: &[Polygon],
+    motion: &[P],
+    own: &Hull,
+) -> (f64, f64) {
     let (body, reach) = (Body::hull(own), own.half_diagonal());
     let least = LandBodies::new(land).least_distance(motion, body, reach);
     let value = match least.certified {

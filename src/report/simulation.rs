@@ -4,7 +4,7 @@ use super::plan::{monitors_key, rules_broken};
 use super::table::{Display, Grid, Styled, Tone, in_cell, or_dash, painted, plain, verdict};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
+    LastingAlarm, ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
     SimulationDocument, breaks_in_words, conduct_breaks, rules_in_words,
 };
 use crate::evaluation::NOT_BY_THE_RULES;
@@ -66,6 +66,7 @@ pub fn simulations_line(simulations: &[SimulationDocument], failed: usize) -> St
         count(|s| s.arrived)
     );
     let others = [
+        (count(|s| s.ends_short), "ended on the way"),
         (
             count(|s| !s.conduct.breaks.is_empty()),
             "with a rule broken",
@@ -112,11 +113,13 @@ fn headline_parts(simulation: &SimulationDocument, times: Times) -> Vec<Styled> 
     };
     let breaks = breaks_in_words(simulation.conduct.breaks.iter().map(String::as_str));
     let (arrived, arrival_tone) = match (simulation.arrived, simulation.interrupted) {
-        (true, _) => ("arrived", Tone::Plain),
-        (false, true) => ("INTERRUPTED", Tone::Plain),
-        (false, false) if simulation.ends_on_the_way() => ("NO NEXT PLAN, ended", Tone::Bad),
-        (false, false) if simulation.ends_short => ("ended before the last waypoint", Tone::Plain),
-        (false, false) => ("not arrived", Tone::Plain),
+        (true, _) => ("arrived".to_owned(), Tone::Plain),
+        (false, true) => ("INTERRUPTED".to_owned(), Tone::Plain),
+        (false, false) if simulation.ends_short => (
+            format!("ENDED {:.0} m from the last waypoint", simulation.to_go_m),
+            Tone::Bad,
+        ),
+        (false, false) => ("not arrived".to_owned(), Tone::Plain),
     };
     let end = format!("{arrived} after {}", times.at(simulation.duration_s, 0));
     let breaks = breaks.map(|breaks| (breaks, Tone::Bad));
@@ -359,10 +362,19 @@ const LISTED: usize = 12;
 
 /// Lines of the first alarms, and the number of the others.
 pub(super) fn alarm_lines(simulation: &SimulationDocument, times: Times) -> Vec<String> {
-    let alarms = &simulation.alarms;
-    let mut lines: Vec<String> = (alarms.iter().take(LISTED))
-        .map(|alarm| format!("{}: {}", times.at(alarm.t_s, 0), alarm.words()))
-        .collect();
+    let alarms = simulation.lasting_alarms();
+    let line = |alarm: &LastingAlarm| {
+        let again = match alarm.count {
+            1 => String::new(),
+            n => format!(", {} more until {}", n - 1, times.at(alarm.until_s, 0)),
+        };
+        format!(
+            "{}{again}: {}",
+            times.at(alarm.first.t_s, 0),
+            alarm.first.words()
+        )
+    };
+    let mut lines: Vec<String> = alarms.iter().take(LISTED).map(line).collect();
     if alarms.len() > LISTED {
         lines.push(format!("and {} more", alarms.len() - LISTED));
     }

@@ -27,12 +27,13 @@ fn fault_lines(violations: &[Violation]) -> Vec<String> {
 
 /// Formats the verdict on a simulation, and all violations.
 pub fn simulation_verification_text(checked: &SimulationVerification) -> String {
+    // infinite without targets
+    let least = match checked.least_clearance.is_finite() {
+        true => format!(", least distance {} m", tenths(checked.least_clearance)),
+        false => String::new(),
+    };
     let verdict = match checked.violations.len() {
-        0 => format!(
-            "verified: {}, least distance {} m",
-            checked.outcome(),
-            tenths(checked.least_clearance)
-        ),
+        0 => format!("verified: {}{least}", checked.outcome()),
         n => format!("REJECTED, {}", counted(n, "fault")),
     };
     let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];

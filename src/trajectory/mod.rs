@@ -3,11 +3,13 @@
 mod desired;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod ground;
 mod network;
 mod segment;
 mod steered;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
+pub use ground::GroundSegment;
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;
 pub use segment::Segment;

@@ -76,12 +76,7 @@ impl Segment {
     pub fn pose_after(&self, elapsed: f64) -> Pose {
         let turn = self.turn_rate * elapsed;
         let half = 0.5 * turn;
-        let sinc = if half.abs() < 1e-4 {
-            1.0 - half * half / 6.0
-        } else {
-            half.sin() / half
-        };
-        let chord = self.speed * elapsed * sinc;
+        let chord = self.speed * elapsed * sinc(half);
         Pose {
             position: self.start.position + direction(self.start.heading + half) * chord,
             heading: self.start.heading + turn,
@@ -141,6 +136,23 @@ impl Segment {
             duration: elapsed(to).max(begun) - begun,
             ..*self
         }
+    }
+
+    /// [`Self::between`] two times, with time measured from `zero`.
+    pub(crate) fn part(&self, from: f64, to: f64, zero: f64) -> Self {
+        let part = self.between(from, to);
+        Self {
+            start_time: part.start_time - zero,
+            ..part
+        }
+    }
+}
+
+/// `sin(x) / x`: the chord of an arc of `2 x` radians over its length.
+pub(super) fn sinc(x: f64) -> f64 {
+    match x.abs() < 1e-4 {
+        true => 1.0 - x * x / 6.0,
+        false => x.sin() / x,
     }
 }
 

@@ -57,12 +57,35 @@ fn own_ship_stops_before_a_set_over_its_last_waypoint() {
     assert!(nearest("crossing") > 150.0 && nearest("moored") > 150.0);
 }
 
+/// In sight of a ship in a turn the first plans end on the way. Where no new plan is clear, the
+/// remainder is kept.
+#[test]
+fn a_remainder_that_ends_on_the_way_is_better_than_a_risk() {
+    let sailed = sail(parsed(&fault("turning-across-the-way.toml")));
+    let conduct = &sailed.conduct;
+    assert!(sailed.safe && conduct.unsafe_plans == 0 && conduct.lost_remainders == 0);
+}
+
+/// With a delay of 5 s: no plan is made while one is waiting to begin.
+#[test]
+fn plans_before_an_end_that_is_covered_are_made_one_after_another() {
+    let mut moored = parsed(&fault("moored-at-the-end.toml"));
+    moored.simulation.delay = 5.0;
+    let sailed = sail(moored);
+    assert!(sailed.safe && sailed.ends_short);
+    let pairs = sailed.replans.windows(2);
+    let gaps: Vec<f64> = pairs.map(|pair| pair[1].t_s - pair[0].t_s).collect();
+    assert!(gaps.iter().all(|gap| *gap > 5.0 - 1e-6), "{gaps:?}");
+    let end = sailed.replans.last().expect("plans").start_t_s;
+    assert!((sailed.duration_s - end - 2.0).abs() < 1e-6, "{end}");
+}
+
 /// A steered ship is off its plan, and the last plan ends where it is: nothing is sailed along it.
 #[test]
 fn a_plan_that_ends_at_once_is_not_sailed() {
     let sailed = sail(parsed(&fault("steered-to-a-covered-end.toml")));
     assert!(sailed.ends_short);
-    assert!(sailed.sailed.iter().all(|segment| segment.duration_s > 0.0));
+    assert!(sailed.sailed.iter().all(|s| s.track.duration_s > 0.0));
     let text = serde_json::to_string(&sailed).expect("a document");
     let checked = verify_simulations(&text).expect("a simulation");
     assert!(checked[0].violations.is_empty(), "{checked:?}");
@@ -535,13 +558,7 @@ fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
     let mut scenario = parsed(&text);
     scenario.simulation.duration = Some(800.0);
     let sailed = sail(scenario);
-    let course = |time: u32| {
-        sailed
-            .own_at(f64::from(time))
-            .expect("own ship")
-            .pose
-            .heading
-    };
+    let course = |time: u32| sailed.own_at(f64::from(time)).expect("own ship").0.heading;
     // the ships are abreast after 525 s
     assert!((course(200) - course(300)).abs() > 0.4);
     assert!((300..515).all(|time| (course(time) - course(300)).abs() < 0.01));

@@ -151,7 +151,7 @@ fn before_its_first_plan_own_ship_holds_course_and_speed() {
     let at = document
         .own_at(document.replans[first].start_t_s - 0.1)
         .expect("sailed")
-        .pose;
+        .0;
     let held = 2.0 * (document.replans[first].start_t_s - 0.1);
     assert!(
         (at.position - Vector::new(held, 0.0)).norm() < 0.01,

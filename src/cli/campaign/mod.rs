@@ -288,7 +288,7 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     }
     let document = simulation.record();
     let mut status = output.result(&simulation_text(&document, output.display));
-    if !document.safe {
+    if !document.is_success() {
         status = status.max(ExitStatus::NoPlan);
     }
     if let Some(file) = &args.json {

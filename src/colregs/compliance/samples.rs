@@ -5,7 +5,7 @@ use crate::colregs::{Risk, SteadyShip, TargetMemory, Thresholds};
 use crate::frame::{Pose, Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
 use crate::tolerance;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::{GroundSegment, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
 
 /// Seconds between two samples; the joints of a trajectory are samples too.
@@ -136,10 +136,10 @@ impl EncounterSamples {
     }
 
     /// Samples of a motion that was sailed, and of a target that kept course and speed from each of
-    /// these states to the next; times in seconds, the first not after the motion's start. Segments
-    /// need not begin exactly where the one before ends.
-    pub fn of_tracks(
-        sailed: &[Segment],
+    /// these states to the next; times in seconds, the first not after the motion's start. Own ship's
+    /// heading counts as its course.
+    pub fn of_tracks<S: Copy + Into<GroundSegment>>(
+        sailed: &[S],
         own: &OwnShip,
         target: &[(f64, SteadyShip)],
         hull: Hull,
@@ -380,15 +380,16 @@ impl OwnSamples {
 }
 
 /// Samples of the motion so far: its joints, and every second from each.
-fn sampled(sailed: &[Segment]) -> Vec<(f64, SteadyShip)> {
-    let samples = sailed.iter().flat_map(|s| {
-        let steps = (s.duration / STEP_S)
+fn sampled<S: Copy + Into<GroundSegment>>(sailed: &[S]) -> Vec<(f64, SteadyShip)> {
+    let sailed = sailed.iter().map(|s| (*s).into());
+    let samples = sailed.flat_map(|s: GroundSegment| {
+        let steps = (s.track.duration / STEP_S)
             .ceil()
             .max(1.0)
             .min(f64::from(MOST_SAMPLES));
         (0..steps as usize).map(move |k| {
-            let time = s.start_time + STEP_S * k as f64;
-            let ship = SteadyShip::new(s.pose_at(time), s.speed);
+            let time = s.track.start_time + STEP_S * k as f64;
+            let ship = SteadyShip::new(s.pose_at(time), s.track.speed);
             (time, ship)
         })
     });

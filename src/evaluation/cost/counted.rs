@@ -49,7 +49,7 @@ pub fn counted_error(
     }
 }
 
-/// [`counted_error`] of segments, which need not begin exactly where those before them end.
+/// [`counted_error`] of segments.
 pub(crate) fn counted_error_of_segments(
     segments: &[Segment],
     desired: &DesiredTrajectory,

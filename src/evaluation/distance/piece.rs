@@ -1,7 +1,7 @@
 //! Interface of the checker to a piece of motion: exact values, and bounds between two samples.
 
 use crate::frame::{Pose, Vector};
-use crate::trajectory::{Bounds, Cubic, Segment};
+use crate::trajectory::{Bounds, Cubic, GroundSegment, Segment};
 
 /// Piece of own ship's motion, smooth within its time.
 pub(crate) trait Piece: Copy + Sync {
@@ -65,11 +65,37 @@ impl Piece for Segment {
     }
 
     fn part(&self, from: f64, to: f64, zero: f64) -> Self {
-        let part = self.between(from, to);
-        Self {
-            start_time: part.start_time - zero,
-            ..part
-        }
+        Segment::part(self, from, to, zero)
+    }
+}
+
+impl Piece for GroundSegment {
+    fn start_time(&self) -> f64 {
+        self.track.start_time
+    }
+
+    fn end_time(&self) -> f64 {
+        self.track.end_time()
+    }
+
+    fn pose_at(&self, time: f64) -> Pose {
+        GroundSegment::pose_at(self, time)
+    }
+
+    fn velocity_at(&self, time: f64) -> Vector {
+        GroundSegment::velocity_at(self, time)
+    }
+
+    fn turn_rate_at(&self, _: f64) -> f64 {
+        self.track.turn_rate
+    }
+
+    fn bounds(&self) -> Bounds {
+        Piece::bounds(&self.track)
+    }
+
+    fn part(&self, from: f64, to: f64, zero: f64) -> Self {
+        GroundSegment::part(self, from, to, zero)
     }
 }
 

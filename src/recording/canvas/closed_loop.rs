@@ -84,7 +84,7 @@ impl<'a> ClosedLoop<'a> {
         let planned = self.plans.iter().flat_map(|plan| &plan.segments);
         points.extend(planned.map(|segment| segment.start.position));
         for &time in times {
-            let own = self.own_at(time).pose.position;
+            let own = self.own_at(time).0.position;
             points.push(own);
             let targets = self.simulation.targets.iter().filter_map(|t| t.at(time));
             let places = targets.map(|ship| ship.pose.position);
@@ -93,11 +93,11 @@ impl<'a> ClosedLoop<'a> {
         with_sea(&points)
     }
 
-    /// Own ship; at rest at its start where nothing was sailed.
-    pub fn own_at(&self, time: f64) -> SteadyShip {
+    /// Pose of own hull and its velocity over ground; at rest at its start where nothing was sailed.
+    pub fn own_at(&self, time: f64) -> (Pose, Vector) {
         let start = self.canvas.scenario.own_ship.pose;
         let sailed = self.simulation.own_at(time);
-        sailed.unwrap_or_else(|| SteadyShip::new(start, 0.0))
+        sailed.unwrap_or_else(|| (start, Vector::zeros()))
     }
 
     /// The plan that own ship follows at a time; `None` before the first.
@@ -150,7 +150,7 @@ impl<'a> ClosedLoop<'a> {
     pub fn off_plan(&self, time: f64) -> Option<f64> {
         let before = self.plan_at(time - 2.0 * tolerance::TIME_S);
         let planned = on(&before.or_else(|| self.plan_at(time))?.segments, time);
-        Some((self.own_at(time).pose.position - planned.pose.position).norm())
+        Some((self.own_at(time).0.position - planned.pose.position).norm())
     }
 
     /// The distances of the hulls that matter, metres; `None` without a target.
@@ -179,7 +179,7 @@ impl<'a> ClosedLoop<'a> {
     /// Metres between the hulls, negative in overlap.
     pub fn clearance(&self, target: &SimulatedTargetDocument, time: f64) -> Option<f64> {
         let own = self.canvas.scenario.own_ship.hull;
-        let own = target.own_hull(own).polygon(&self.own_at(time).pose);
+        let own = target.own_hull(own).polygon(&self.own_at(time).0);
         let other = target.outline(&target.at(time)?.pose)?;
         Some(own.separation(&other))
     }

@@ -25,7 +25,7 @@ pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop, judged: &[Judged]) -> L
     log_contacts(rec, model)?;
     let mut labels = chart::labels(&model.canvas);
     let times = model.canvas.cursor_times.iter();
-    let own = times.clone().map(|&t| model.own_at(t).pose.position);
+    let own = times.clone().map(|&t| model.own_at(t).0.position);
     labels.keep_off_track(model.canvas.scenario.own_ship.hull.beam, own);
     for target in &model.simulation.targets {
         let beam = target.set_m.as_ref().map_or(target.beam_m, |_| 0.0);
@@ -58,12 +58,16 @@ pub fn judged<'a>(model: &ClosedLoop<'a>) -> Vec<Judged<'a>> {
 /// Own ship and the targets at a time, as they were; `None` where one of them has no track.
 fn sighted(model: &ClosedLoop, time: f64) -> Option<Vec<Sighted>> {
     let canvas = &model.canvas;
-    let own = Sighted::ship(canvas, &canvas.scenario.own_ship.hull, &model.own_at(time));
+    let own = Sighted::ship(canvas, &canvas.scenario.own_ship.hull, model.own_at(time));
     let targets = model.simulation.targets.iter();
     let targets = targets.map(|target| {
         let ship = target.at(time)?;
         match target.set_m {
-            None => Some(Sighted::ship(canvas, &target.hull(), &ship)),
+            None => Some(Sighted::ship(
+                canvas,
+                &target.hull(),
+                (ship.pose, ship.velocity()),
+            )),
             Some(_) => Some(Sighted::set(
                 ship.pose.position,
                 target.outline(&ship.pose)?,
@@ -207,7 +211,7 @@ fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
         let Some(time) = target.contact_t_s else {
             continue;
         };
-        let place = flat(model.own_at(time).pose.position);
+        let place = flat(model.own_at(time).0.position);
         let label = format!("contact with {} at {}", target.name, clock(time));
         // the closest approach names it
         let mark = labelled([place], style::ALARM, 6.0, [label]).with_show_labels(false);

@@ -50,13 +50,14 @@ pub struct Sighted {
 }
 
 impl Sighted {
-    pub fn ship(canvas: &Canvas, hull: &Hull, ship: &SteadyShip) -> Self {
-        let place = ship.pose.position;
+    /// A ship in a pose, with its velocity over ground.
+    pub fn ship(canvas: &Canvas, hull: &Hull, (pose, velocity): (Pose, Vector)) -> Self {
+        let place = pose.position;
         Self {
             place,
-            outline: hull.polygon(&ship.pose),
-            symbol: symbol(canvas, hull, &ship.pose),
-            tip: place + ship.velocity() * vector_seconds(canvas),
+            outline: hull.polygon(&pose),
+            symbol: symbol(canvas, hull, &pose),
+            tip: place + velocity * vector_seconds(canvas),
             is_set: false,
         }
     }
@@ -74,14 +75,22 @@ impl Sighted {
     /// Own ship on a motion.
     pub fn own(canvas: &Canvas, motion: &ShownMotion, time: f64) -> Self {
         let own = SteadyShip::new(motion.pose_at(time), motion.speed_at(time));
-        Self::ship(canvas, &canvas.scenario.own_ship.hull, &own)
+        Self::ship(
+            canvas,
+            &canvas.scenario.own_ship.hull,
+            (own.pose, own.velocity()),
+        )
     }
 
     /// A target where it is expected.
     pub fn target(canvas: &Canvas, target: &Target, time: f64) -> Option<Self> {
         if let Some(ship) = target.ship() {
             let there = SteadyShip::on_track(ship, time);
-            return Some(Self::ship(canvas, &ship.hull, &there));
+            return Some(Self::ship(
+                canvas,
+                &ship.hull,
+                (there.pose, there.velocity()),
+            ));
         }
         let outline = target.sets()?.outer_section(time);
         Some(Self::set(target.position_at(time), outline))

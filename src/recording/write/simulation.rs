@@ -5,15 +5,12 @@ use std::path::Path;
 use rerun::{TextLog, TextLogLevel, TimeColumn};
 
 use super::{Recorder, RecordingError, encoding_error, put};
-use crate::document::{AlarmDocument, PlanDocument, SimulationDocument};
+use crate::document::{PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
 use crate::recording::views::{chart, closed_loop, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 use crate::text::{clock, rounded};
-
-/// An alarm goes on where it is raised again within this many times between plans.
-const GOES_ON: f64 = 1.5;
 
 /// A simulation, with the text of its recording.
 #[derive(Debug, Clone, Copy)]
@@ -95,7 +92,7 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     closed_loop::log_chart(rec, &model, &judged)?;
     closed_loop::log_curves(rec, &model)?;
     rules::log_lanes(rec, &lanes)?;
-    let marks = rules::marks(&judged, None, |t| model.own_at(t).pose.position);
+    let marks = rules::marks(&judged, None, |t| model.own_at(t).0.position);
     rules::log_marks(rec, &marks)?;
     log_events(rec, document)?;
     layout::of_simulation(&model, lanes.len())
@@ -211,18 +208,10 @@ fn manoeuvres(document: &SimulationDocument) -> impl Iterator<Item = Event> {
 
 /// The alarms; one that goes on from plan to plan is there once.
 fn alarms(document: &SimulationDocument) -> impl Iterator<Item = Event> {
-    let goes_on = GOES_ON * document.settings.replan_s;
-    let begins = move |(index, alarm): &(usize, &AlarmDocument)| {
-        let mut earlier = document.alarms[..*index].iter().rev();
-        let same = |a: &&AlarmDocument| (&a.alarm, &a.target) == (&alarm.alarm, &alarm.target);
-        earlier
-            .find(same)
-            .is_none_or(|last| alarm.t_s - last.t_s > goes_on)
-    };
-    let begun = document.alarms.iter().enumerate().filter(begins);
-    begun.map(|(_, alarm)| Event {
-        time: alarm.t_s,
+    let lasting = document.lasting_alarms().into_iter();
+    lasting.map(|alarm| Event {
+        time: alarm.first.t_s,
         level: TextLogLevel::WARN,
-        text: format!("alarm: {}", alarm.words()),
+        text: format!("alarm: {}", alarm.first.words()),
     })
 }

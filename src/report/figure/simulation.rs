@@ -21,7 +21,7 @@ pub fn simulation_figure(
     simulation: &SimulationDocument,
     options: &FigureOptions,
 ) -> Result<Figure, FigureError> {
-    let title = match simulation.safe {
+    let title = match simulation.is_success() {
         true => simulation.scenario.clone(),
         false => headline(simulation, Times::Clock),
     };
@@ -60,7 +60,7 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
     let closest = simulation.targets.iter();
     let closest = closest.map(|target| [apart(target), target.least_clearance_t_s]);
     let times = marked_times(style, end, INSTANTS, closest);
-    let own = |time: &f64| simulation.own_at(*time).map(|own| own.pose);
+    let own = |time: &f64| simulation.own_at(*time).map(|own| own.0);
     let targets = simulation.targets.iter().map(|target| {
         let moment = |time: f64| {
             let pose = target.at(time).map(|ship| ship.pose);

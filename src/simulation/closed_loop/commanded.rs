@@ -10,7 +10,7 @@ use crate::pipeline;
 use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::Motion;
 use crate::tolerance::{TIME_S, TOUCH_M};
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::{GroundSegment, Segment, Trajectory};
 
 /// A course and a speed for own ship.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,13 +110,8 @@ impl Simulation {
         };
         let in_plan = self.time - self.active.start;
         let present = self.active.trajectory.segments().iter();
-        let present = present.filter(|s| s.end_time() > in_plan).map(|s| {
-            let part = s.between(in_plan, s.end_time());
-            Segment {
-                start_time: part.start_time - in_plan,
-                ..part
-            }
-        });
+        let present = present.filter(|s| s.end_time() > in_plan);
+        let present = present.map(|s| s.part(in_plan, s.end_time(), in_plan));
         let present: Vec<Segment> = present.collect();
         let each = commands.iter().map(|c| is_clear(&self.response(*c)));
         (is_clear(&present), each.collect())
@@ -161,15 +156,16 @@ impl Simulation {
         let recent = self
             .sailed
             .iter()
-            .filter(|s| s.end_time() > since + INSTANT);
-        let recent: Vec<Segment> = recent.map(|s| s.between(since, s.end_time())).collect();
+            .filter(|s| s.track.end_time() > since + INSTANT);
+        let recent = recent.map(|s| s.part(since, s.track.end_time(), 0.0));
+        let recent: Vec<GroundSegment> = recent.collect();
         let own = &self.scenario.own_ship.hull;
         let places = recent
             .iter()
-            .flat_map(|s| [s.start.position, s.end().position]);
+            .flat_map(|s| [s.track.start.position, s.track.end().position]);
         let places: Vec<Vector> = places.collect();
         // an arc is within its own length of its ends
-        let length = recent.iter().map(Segment::length).fold(0.0, f64::max);
+        let length = recent.iter().map(|s| s.track.length()).fold(0.0, f64::max);
         let reach = own.half_diagonal() + length;
         let window = Window::around(&places).filter(|_| reach.is_finite());
         if window.is_some_and(|window| land.map.pieces_within(&window.grown(reach)).is_empty()) {
@@ -259,7 +255,13 @@ mod tests {
         assert!(sailed.safe && sailed.targets[0].outside_sets == 0);
         assert!(sailed.targets[0].least_clearance_m > Some(20.0));
         assert_eq!(sailed.duration_s, 600.0);
-        let heading = sailed.sailed.last().expect("segments").start.course_deg;
+        let heading = sailed
+            .sailed
+            .last()
+            .expect("segments")
+            .track
+            .start
+            .course_deg;
         assert!(
             (heading - crate::frame::course_deg_from_heading(commands[first].heading)).abs() < 1e-6
         );

@@ -2,10 +2,10 @@
 
 use crate::colregs::SteadyShip;
 use crate::evaluation::{Body, MovingSlabs};
-use crate::frame::{Pose, Vector};
+use crate::frame::Pose;
 use crate::geometry::ConvexPolygon;
 use crate::target::Uncertainty;
-use crate::trajectory::{Cubic, Segment};
+use crate::trajectory::GroundSegment;
 use crate::vessel::Hull;
 
 /// What own ship may not touch.
@@ -33,27 +33,11 @@ impl Shape {
     }
 }
 
-/// Own ship's motion within a step, from t = 0.
-#[derive(Debug, Clone)]
-pub(super) enum OwnMotion {
-    Segments(Vec<Segment>),
-    Cubic(Cubic),
-}
-
-impl OwnMotion {
-    /// Largest speed, m/s.
-    fn fastest(&self) -> f64 {
-        match self {
-            Self::Segments(segments) => segments.iter().map(|s| s.speed).fold(0.0, f64::max),
-            Self::Cubic(cubic) => cubic.bounds().speed,
-        }
-    }
-}
-
 #[derive(Debug, Clone)]
 struct Step {
     time: f64,
-    own: OwnMotion,
+    /// From t = 0.
+    own: Vec<GroundSegment>,
     target: SteadyShip,
     /// Lower bound of the distance of the hulls in the step, metres.
     bound: f64,
@@ -98,23 +82,21 @@ impl Clearance {
         }
     }
 
-    /// Adds a step that begins at `time` and lasts `step` seconds. Own ship begins at `start` and
-    /// moves with `own`; the target begins at `target` and keeps its course and speed.
-    pub fn add(
-        &mut self,
-        (time, step): (f64, f64),
-        (start, own): (Vector, &OwnMotion),
-        target: &SteadyShip,
-    ) {
-        let apart = (target.pose.position - start).norm();
-        let closing = own.fastest() + target.speed;
+    /// Adds a step that begins at `time` and lasts `step` seconds. Own ship moves with `own`; the
+    /// target begins at `target` and keeps its course and speed.
+    pub fn add(&mut self, (time, step): (f64, f64), own: &[GroundSegment], target: &SteadyShip) {
+        let start = own.first().map(|s| s.track.start.position);
+        let apart = start.map_or(f64::NAN, |start| (target.pose.position - start).norm());
+        // a NaN is the greatest
+        let fastest = own.iter().map(|s| s.track.speed).max_by(f64::total_cmp);
+        let closing = fastest.unwrap_or(f64::NAN) + target.speed;
         let reach = self.own.half_diagonal() + self.target.reach();
         let bound = apart - reach - closing * step;
         // centres are farther apart than hulls
         self.nearer_than = self.nearer_than.min(apart);
         let added = Step {
             time,
-            own: own.clone(),
+            own: own.to_vec(),
             target: *target,
             bound,
         };
@@ -156,10 +138,7 @@ impl Least {
             ConvexPolygon::point(step.target.velocity()),
         );
         let (slabs, body) = (MovingSlabs::new(&sets), Body::hull(own));
-        let found = match &step.own {
-            OwnMotion::Segments(segments) => slabs.least_distance(segments, body),
-            OwnMotion::Cubic(cubic) => slabs.least_distance(&[*cubic], body),
-        };
+        let found = slabs.least_distance(&step.own, body);
         let time = step.time + found.time;
         // negated on purpose: a NaN is taken over and is a contact
         if !(found.value >= self.metres) && !self.metres.is_nan() {
@@ -174,6 +153,8 @@ impl Least {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::Vector;
+    use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -187,20 +168,20 @@ mod tests {
             let (own_hull, hull) = (Hull::new(30.0, 8.0), Hull::new(60.0, 12.0));
             let start = Pose::new(Vector::new(within(50.0), within(50.0)), within(3.0));
             let rate = if case % 2 == 0 { within(0.05) } else { 0.0 };
-            let segment = Segment::new(start, 0.0, 10.0, 5.0 + within(2.0), rate);
+            let segment = GroundSegment {
+                track: Segment::new(start, 0.0, 10.0, 5.0 + within(2.0), rate),
+                crab: within(1.0),
+            };
             let pose = Pose::new(Vector::new(within(90.0), within(90.0)), within(3.0));
             let target = SteadyShip::new(pose, 5.0 + within(4.0));
             let mut clearance = Clearance::new(own_hull, Shape::Hull(hull));
             for k in 0..20 {
                 let (time, step) = (f64::from(k) * 0.5, 0.5);
-                let part = Segment {
-                    start_time: 0.0,
-                    ..segment.between(time, time + step)
-                };
-                let own = OwnMotion::Segments(vec![part]);
+                let part = segment.part(time, time + step, time);
+                let own = [part];
                 let mut now = target;
                 now.pose.position += target.velocity() * time;
-                clearance.add((time, step), (part.start.position, &own), &now);
+                clearance.add((time, step), &own, &now);
             }
             let at = |time: f64| {
                 let mut pose = target.pose;
@@ -229,11 +210,11 @@ mod tests {
     fn a_place_that_is_no_number_is_a_contact() {
         let lost = Vector::new(f64::NAN, 0.0);
         let line = Segment::straight(Pose::new(lost, 0.0), 0.0, 1.0, 5.0);
-        let own = OwnMotion::Segments(vec![line]);
+        let own = [GroundSegment::from(line)];
         let target = SteadyShip::new(Pose::new(Vector::new(1e4, 0.0), 0.0), 1.0);
         let hull = Hull::new(30.0, 8.0);
         let mut clearance = Clearance::new(hull, Shape::Hull(hull));
-        clearance.add((3.0, 1.0), (lost, &own), &target);
+        clearance.add((3.0, 1.0), &own, &target);
         assert!(clearance.is_contact() && clearance.settled().metres.is_nan());
     }
 }

@@ -5,7 +5,7 @@ use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::planner::ControlSettings;
 use crate::planner::optimal_control::{force, node, state};
-use crate::trajectory::{Cubic, ForceNode, Steered};
+use crate::trajectory::{ForceNode, Steered};
 use crate::vessel::{ForceVector, OwnShip, StateVector};
 
 /// Longest step of the integration, in the model's unit of time: a second at the length of the
@@ -67,13 +67,11 @@ impl ForcedShip {
         .ok()
     }
 
-    /// Applies the forces that a plan has from `time` on, for `step` seconds. The motion counts from
-    /// 0. O(nodes of the plan).
-    pub fn advance(&mut self, plan: &Steered, time: f64, step: f64) -> Cubic {
+    /// Applies the forces that a plan has from `time` on, for `step` seconds. O(nodes of the plan).
+    pub fn advance(&mut self, plan: &Steered, time: f64, step: f64) {
         let vessel = self.control.vessel.exact(self.control.length);
         let unit = vessel.scales().state;
         let longest = INTEGRATION_STEP * unit[0] / unit[3];
-        let begun = self.node(0.0);
         for pair in plan.nodes().windows(2) {
             let from = pair[0].time.max(time);
             let duration = pair[1].time.min(time + step) - from;
@@ -82,6 +80,5 @@ impl ForcedShip {
                 self.state = vessel.integrated(&self.state, &force(&pair[0]), duration, steps);
             }
         }
-        Cubic::from_nodes(&begun, &self.node(step))
     }
 }

@@ -27,19 +27,19 @@ use sensor::TargetSensor;
 use tracker::Track;
 
 use crate::colregs::SteadyShip;
-use crate::document::{AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
+use crate::document::{AlarmDocument, BEYOND_MARGIN, PlanDocument, ReplanDocument, SailedDocument};
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
 use crate::pipeline::Relaxation;
-use crate::planner::{Minimises, Plan};
+use crate::planner::{Minimises, NoPlan, Outcome, Plan};
 use crate::scenario::{
     Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings, VesselModel,
 };
 use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::text::{rounded, tenths};
 use crate::tolerance::ELLIPSE_SIDES;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::{GroundSegment, Trajectory};
 use crate::vessel::Hull;
 
 /// Seconds: times nearer than this are one.
@@ -99,7 +99,9 @@ pub struct Simulation {
     active: Active,
     pending: Option<Active>,
     next_cycle: f64,
-    sailed: Vec<Segment>,
+    sailed: Vec<GroundSegment>,
+    /// True while own ship is beyond its tracking margin.
+    is_beyond: bool,
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
     plan_seconds: Vec<f64>,
@@ -169,7 +171,11 @@ impl Simulation {
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let mut simulation = Self::begun(scenario, measured_delay)?;
         simulation.observe();
-        simulation.cycle(0.0, "start".to_owned());
+        let none = simulation.cycle(0.0, "start".to_owned());
+        if let Some(why @ NoPlan::HorizonTooShort { horizon, .. }) = none {
+            let allowed = format!("a longer one: {why}");
+            return Err(vec![Fault::new("horizon_s", rounded(horizon), &allowed)]);
+        }
         simulation.activate();
         let is_whole = simulation.active.left_out == 0.0;
         simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2.filter(|_| is_whole);
@@ -244,6 +250,7 @@ impl Simulation {
             pending: None,
             next_cycle: scenario.simulation.replan,
             sailed: Vec::new(),
+            is_beyond: false,
             replans: Vec::new(),
             alarms: Vec::new(),
             plan_seconds: Vec::new(),
@@ -401,9 +408,11 @@ impl Simulation {
             self.activate();
         }
         // sets are smaller by then, so the next plan may go on from where this one ends
-        let before_end = self.active.end() - self.settings().delay - BEFORE_END_S;
-        if self.active.ends_short() && before_end > self.time + INSTANT {
-            self.next_cycle = self.next_cycle.min(before_end);
+        if self.pending.is_none() && self.active.ends_short() {
+            let before_end = self.active.end() - self.settings().delay - BEFORE_END_S;
+            if before_end > self.time + INSTANT {
+                self.next_cycle = self.next_cycle.min(before_end);
+            }
         }
     }
 
@@ -421,7 +430,7 @@ impl Simulation {
         let is_off = margin > 0.0 && self.off_plan() > margin;
         first(|target| target.track.has_left(), "another velocity")
             .or_else(|| first(|target| target.is_acquired, "acquired"))
-            .or_else(|| is_off.then(|| "beyond the tracking margin".to_owned()))
+            .or_else(|| is_off.then(|| BEYOND_MARGIN.to_owned()))
     }
 
     fn observe(&mut self) {
@@ -447,8 +456,8 @@ impl Simulation {
         }
     }
 
-    /// Makes a plan that holds from `delay` seconds from now on.
-    fn cycle(&mut self, delay: f64, reason: String) {
+    /// Makes a plan that holds from `delay` seconds from now on; returns why there is none.
+    fn cycle(&mut self, delay: f64, reason: String) -> Option<NoPlan> {
         let Cycle {
             run,
             replan,
@@ -518,6 +527,10 @@ impl Simulation {
             });
         }
         self.replans.push(replan);
+        match run.planned.outcome {
+            Outcome::Infeasible(why) => Some(why),
+            Outcome::Solved(_) | Outcome::Deadline(_) => None,
+        }
     }
 
     fn alarm(&mut self, alarm: &str, target: Option<&str>, reason: Option<String>) {
@@ -566,21 +579,21 @@ impl Simulation {
                 target.states.push((time, ship));
             }
         }
-        let start = self.own.pose(&self.active.trajectory, in_plan).position;
         let motion = self.own.advance(&self.active.trajectory, in_plan, step);
         for target in &mut self.targets {
             let now = &target.truth.now;
-            target.clearance.add((time, step), (start, &motion), now);
+            target.clearance.add((time, step), &motion, now);
             target.truth.advance(step);
         }
         own::join(&mut self.sailed, &motion, time);
         self.time = time + step;
-        let off = self.off_plan();
-        let most = self.tracking_margin();
-        if off > most && self.conduct.largest_off_plan_m <= most {
+        let (off, most) = (self.off_plan(), self.tracking_margin());
+        let is_beyond = off > most;
+        if is_beyond && !self.is_beyond {
             let reason = format!("{} m off the plan", tenths(off));
-            self.alarm("beyond the tracking margin", None, Some(reason));
+            self.alarm(BEYOND_MARGIN, None, Some(reason));
         }
+        self.is_beyond = is_beyond;
         if off > self.conduct.largest_off_plan_m {
             self.conduct.largest_off_plan_m = off;
             self.conduct.largest_off_plan_t_s = self.time;

@@ -1,6 +1,5 @@
 //! Own ship: where it is, and how it moves along its plan.
 
-use super::contact::OwnMotion;
 use super::forces::ForcedShip;
 use super::guidance::follow;
 use super::stream::{Purpose, normal, stream};
@@ -8,12 +7,15 @@ use super::vessel::{Vessel, VesselState};
 use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::scenario::{Current, Scenario, VesselModel};
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::{GroundSegment, Segment, Trajectory};
 use crate::vessel::StateVector;
 use rand_chacha::ChaCha8Rng;
 
 /// m/s. A slower ship has no course over ground.
 pub(super) const NO_WAY: f64 = 1e-3;
+
+/// Seconds. Longest arc of a ship that is steered.
+const ARC_S: f64 = 0.5;
 
 /// Own ship, which follows its plan exactly or is steered.
 #[derive(Debug, Clone)]
@@ -110,22 +112,20 @@ impl Own {
         }
     }
 
-    /// Moves own ship for `step` seconds along its plan; the motion counts from 0.
-    pub fn advance(&mut self, plan: &Trajectory, time: f64, step: f64) -> OwnMotion {
+    /// Moves own ship for `step` seconds along its plan; the motion counts from 0. A ship that is
+    /// steered moves on lines and arcs of at most [`ARC_S`].
+    pub fn advance(&mut self, plan: &Trajectory, time: f64, step: f64) -> Vec<GroundSegment> {
         if let (Some(ship), Some(plan)) = (&mut self.forced, plan.steered()) {
-            return OwnMotion::Cubic(ship.advance(plan, time, step));
+            return arcs(ship.pose(), step, |begun, part| {
+                ship.advance(plan, time + begun, part);
+                ship.pose()
+            });
         }
         let Some(state) = &mut self.state else {
             let parts = plan.segments().iter();
             let parts = parts.filter(|s| s.end_time() > time && s.start_time < time + step);
-            let parts = parts.map(|s| {
-                let part = s.between(time, time + step);
-                Segment {
-                    start_time: part.start_time - time,
-                    ..part
-                }
-            });
-            return OwnMotion::Segments(parts.collect());
+            let parts = parts.map(|s| GroundSegment::from(s.part(time, time + step, time)));
+            return parts.collect();
         };
         let current = self.current.mean + self.current_noise;
         let known = if self.current.known {
@@ -134,40 +134,40 @@ impl Own {
             Vector::zeros()
         };
         let order = follow(plan, time, &self.vessel, state, self.max_speed, known);
-        let cubic = self.vessel.advance(state, &order, current, step);
+        let motion = arcs(state.pose, step, |_, part| {
+            self.vessel.advance(state, &order, current, part);
+            state.pose
+        });
         // exact for a Gauss-Markov process
         let kept = (-step / self.current.time).exp();
         let new = Vector::new(normal(&mut self.rng), normal(&mut self.rng));
         self.current_noise =
             self.current_noise * kept + new * (self.current.std * (1.0 - kept * kept).sqrt());
-        OwnMotion::Cubic(cubic)
+        motion
     }
 }
 
-/// Adds the motion of a step that begins at `time` to the motion so far. A cubic becomes a line or
-/// an arc of its mean speed and turn rate.
-pub(super) fn join(sailed: &mut Vec<Segment>, motion: &OwnMotion, time: f64) {
-    let parts = match motion {
-        OwnMotion::Segments(segments) => segments.clone(),
-        OwnMotion::Cubic(cubic) => {
-            let way = cubic.positions[1] - cubic.positions[0];
-            let turn = cubic.headings[1] - cubic.headings[0];
-            vec![Segment {
-                start: Pose::new(cubic.positions[0], cubic.headings[0]),
-                start_time: 0.0,
-                duration: cubic.duration,
-                speed: way.norm() / cubic.duration,
-                turn_rate: turn / cubic.duration,
-            }]
-        }
+/// The arcs of a step from a pose, each to where `advance` ends. That is given the seconds since the
+/// step began, and those of the arc.
+fn arcs(from: Pose, step: f64, mut advance: impl FnMut(f64, f64) -> Pose) -> Vec<GroundSegment> {
+    let count = (step / ARC_S).ceil().max(1.0);
+    let part = step / count;
+    let mut from = from;
+    let arc = |k: u32| {
+        let begun = part * f64::from(k);
+        let to = advance(begun, part);
+        GroundSegment::through([std::mem::replace(&mut from, to), to], begun, part)
     };
-    for part in parts {
-        let part = Segment {
-            start_time: part.start_time + time,
-            ..part
-        };
+    (0..count as u32).map(arc).collect()
+}
+
+/// Adds the motion of a step that begins at `time` to the motion so far.
+pub(super) fn join(sailed: &mut Vec<GroundSegment>, motion: &[GroundSegment], time: f64) {
+    for part in motion {
+        let mut part = *part;
+        part.track.start_time += time;
         match sailed.last_mut().filter(|last| last.is_continued_by(&part)) {
-            Some(last) => last.duration = part.end_time() - last.start_time,
+            Some(last) => last.track.duration = part.track.end_time() - last.track.start_time,
             None => sailed.push(part),
         }
     }

@@ -3,19 +3,16 @@
 use super::{Simulated, Simulation};
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
-    ConductDocument, CycleTimingDocument, SIMULATION_FORMAT, SailedDocument, SailedLandDocument,
-    SampleDocument, SimulatedTargetDocument, SimulationDocument, SimulationSettingsDocument,
-    finite, manoeuvres, sample, segment_document, state_document,
+    ConductDocument, CycleTimingDocument, GroundSegmentDocument, SIMULATION_FORMAT, SailedDocument,
+    SailedLandDocument, SampleDocument, SimulatedTargetDocument, SimulationDocument,
+    SimulationSettingsDocument, finite, manoeuvres, sample, state_document,
 };
 use crate::evaluation::{counted_error_of_segments, least_land_distance};
-use crate::frame::{Vector, heading_of, wrap};
+use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
 use crate::scenario::VesselModel;
 use crate::trajectory::Segment;
-
-/// Metres. A shorter way has no course beyond rounding.
-const LEAST_WAY_M: f64 = 0.01;
 
 impl Simulation {
     /// The result so far.
@@ -24,6 +21,7 @@ impl Simulation {
     /// O(targets × seconds sailed), and with a map O(its edges × segments).
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
+        let track: Vec<Segment> = self.sailed.iter().map(|s| s.track).collect();
         // explicit sets have no rules
         let ships = self.targets.iter().filter(|target| target.set.is_none());
         let samples: Vec<EncounterSamples> = ships
@@ -54,6 +52,7 @@ impl Simulation {
         let late = self.replans.iter().any(|r| !r.followed);
         let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
         let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
+        let to_go = (self.own().pose.position - desired.end()).norm();
         let ended = self.time >= self.active.end() - super::INSTANT;
         let cost = self.active.document.as_ref();
         let cost = cost.and_then(|plan| plan.cost.as_ref());
@@ -63,15 +62,17 @@ impl Simulation {
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let mut cost_m2 = match arrived {
-            true => whole_space_time_error(desired, &self.sailed, weight),
-            false => sailed_space_time_error(desired, &self.sailed, weight),
+            true => whole_space_time_error(desired, &track, weight),
+            false => sailed_space_time_error(desired, &track, weight),
         };
         if super::is_under_forces(&self.scenario) {
             // as in its plans, where arrival is not required
             let within = own.hull.length;
-            arrived = (self.own().pose.position - desired.end()).norm() <= within;
-            cost_m2 = counted_error_of_segments(&self.sailed, desired, weight, within).0;
+            arrived = to_go <= within;
+            cost_m2 = counted_error_of_segments(&track, desired, weight, within).0;
         }
+        // a sum of nothing is -0
+        cost_m2 += 0.0;
         SimulationDocument {
             format: SIMULATION_FORMAT.to_owned(),
             build: env!("CARGO_PKG_VERSION").to_owned(),
@@ -81,8 +82,8 @@ impl Simulation {
             contact,
             arrived,
             interrupted: !self.finished(),
-            ends_short: self.finished()
-                && (self.stop_time.is_finite() || ended && self.active.ends_short()),
+            ends_short: self.finished() && !arrived && self.time < self.duration - super::INSTANT,
+            to_go_m: to_go,
             duration_s: self.time,
             targets: match self.sailed.is_empty() {
                 true => Vec::new(),
@@ -95,7 +96,7 @@ impl Simulation {
                 turns: most(&|m| m.turns),
                 speed_changes: most(&|m| m.speed_changes),
                 manoeuvres: manoeuvres(
-                    &sailed_samples(&self.sailed),
+                    &sailed_samples(&track),
                     desired,
                     own.turning_radius,
                     self.scenario.planner.facts().follows_paths,
@@ -105,7 +106,7 @@ impl Simulation {
             },
             alarms: self.alarms.clone(),
             replans: self.replans.clone(),
-            sailed: self.sailed.iter().map(segment_document).collect(),
+            sailed: self.sailed.iter().map(GroundSegmentDocument::of).collect(),
             timing: CycleTimingDocument {
                 plan_s: self.plan_seconds.clone(),
             },
@@ -120,10 +121,14 @@ impl Simulation {
         let places = self
             .sailed
             .iter()
-            .flat_map(|s| [s.start.position, s.end().position]);
+            .flat_map(|s| [s.track.start.position, s.track.end().position]);
         let places: Vec<Vector> = places.collect();
         // an arc is within its own length of its ends
-        let length = self.sailed.iter().map(Segment::length).fold(0.0, f64::max);
+        let length = self
+            .sailed
+            .iter()
+            .map(|s| s.track.length())
+            .fold(0.0, f64::max);
         let reach = own.half_diagonal() + length + least.max(0.0) + 1.0;
         let window = Window::around(&places).filter(|_| reach.is_finite());
         let near = window.map(|window| map.pieces_within(&window.grown(reach)));
@@ -163,27 +168,14 @@ impl Simulation {
     }
 }
 
-/// The sailed motion at the start of each segment, at every second of it, and at its end. A segment
-/// has the heading of own ship, which is not its course in a current or in a turn with a rudder.
-fn sailed_samples(sailed: &[Segment]) -> Vec<SampleDocument> {
+/// The sailed motion at the start of each segment, at every second of it, and at its end.
+fn sailed_samples(track: &[Segment]) -> Vec<SampleDocument> {
     let mut samples = Vec::new();
-    let mut leeway = 0.0;
-    for (index, segment) in sailed.iter().enumerate() {
-        if let Some(next) = sailed.get(index + 1) {
-            let way = next.start.position - segment.start.position;
-            let ahead = segment.end().position - segment.start.position;
-            if way.norm().min(ahead.norm()) > LEAST_WAY_M {
-                leeway = wrap(heading_of(way) - heading_of(ahead));
-            }
-        }
-        let mut add = |time: f64| {
-            let mut pose = segment.pose_at(time);
-            pose.heading += leeway;
-            samples.push(sample(pose, time, segment.speed));
-        };
+    for (index, segment) in track.iter().enumerate() {
+        let mut add = |time: f64| samples.push(sample(segment.pose_at(time), time, segment.speed));
         let steps = segment.duration.ceil().max(1.0) as u32;
         (0..steps).for_each(|k| add(segment.start_time + f64::from(k)));
-        if index + 1 == sailed.len() {
+        if index + 1 == track.len() {
             add(segment.end_time());
         }
     }
@@ -238,25 +230,8 @@ fn simulated(
 mod tests {
     use super::*;
     use crate::document::Departure;
-    use crate::frame::{Pose, Side};
+    use crate::frame::{Side, heading_of};
     use crate::scenario::Scenario;
-
-    /// Own ship heads 10° into the current and sails along its path.
-    #[test]
-    fn a_heading_into_the_current_is_no_manoeuvre() {
-        let steps = (0..100).map(f64::from);
-        let sailed: Vec<Segment> = steps
-            .map(|time| {
-                let start = Pose::new(Vector::new(5.0 * time, 0.0), -10_f64.to_radians());
-                Segment::new(start, time, 1.0, 5.0, 0.0)
-            })
-            .collect();
-        let samples = sailed_samples(&sailed);
-        assert_eq!(samples.len(), 101);
-        for sample in &samples {
-            assert!((sample.course_deg - 90.0).abs() < 1e-9, "{sample:?}");
-        }
-    }
 
     /// A current and a rudder: the courses from place to place have the manoeuvres.
     #[test]
@@ -267,12 +242,12 @@ mod tests {
         while !simulation.finished() {
             simulation.step();
         }
-        let sailed = &simulation.sailed;
+        let track: Vec<Segment> = simulation.sailed.iter().map(|s| s.track).collect();
         // degrees to port of the path, which leads east
         let course = |from: f64, until: f64| {
             let at = |time: f64| {
-                let after = sailed.partition_point(|s| s.start_time < time);
-                sailed[after.min(sailed.len() - 1)].start.position
+                let after = track.partition_point(|s| s.start_time < time);
+                track[after.min(track.len() - 1)].start.position
             };
             heading_of(at(until) - at(from)).to_degrees()
         };

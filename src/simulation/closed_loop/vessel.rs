@@ -2,7 +2,6 @@
 
 use crate::frame::{Pose, Vector, wrap};
 use crate::scenario::VesselModel;
-use crate::trajectory::Cubic;
 use crate::vessel::OwnShip;
 
 /// Longest step of the integration, seconds: a sixtieth of the default time constant of the turn
@@ -77,19 +76,10 @@ impl Vessel {
         }
     }
 
-    /// The motion under constant orders in a current (m/s) for `step` seconds from t = 0, as a
-    /// cubic through its ends.
-    pub fn advance(
-        &self,
-        state: &mut VesselState,
-        order: &Order,
-        current: Vector,
-        step: f64,
-    ) -> Cubic {
+    /// Moves the ship under constant orders in a current (m/s) for `step` seconds.
+    pub fn advance(&self, state: &mut VesselState, order: &Order, current: Vector, step: f64) {
         let count = (step / INTEGRATION_STEP).ceil().max(1.0);
         let dt = step / count;
-        let velocity = |state: &VesselState| state.pose.ahead() * state.speed + current;
-        let begun = *state;
         for _ in 0..count as usize {
             let before = *state;
             self.respond(state, order, dt);
@@ -98,14 +88,6 @@ impl Vessel {
             let speed = 0.5 * (before.speed + state.speed);
             state.pose.position += (middle.ahead() * speed + current) * dt;
             state.pose.heading = before.pose.heading + turn;
-        }
-        Cubic {
-            start_time: 0.0,
-            duration: step,
-            positions: [begun.pose.position, state.pose.position],
-            velocities: [velocity(&begun), velocity(state)],
-            headings: [begun.pose.heading, state.pose.heading],
-            yaw_rates: [begun.turn_rate, state.turn_rate],
         }
     }
 

@@ -47,32 +47,36 @@ fn a_contact_ends_with_status_1_and_is_named() {
 }
 
 /// Own ship cannot pass the coaster within a horizon of two minutes, and waits behind it until a plan
-/// ends at an intermediate end. With another horizon one plan enters a set.
+/// ends at an intermediate end.
 #[test]
 fn a_mission_in_parts_that_is_not_finished_is_no_success() {
     let folder = Folder::new();
     let parts = std::fs::read_to_string("tests/faults/longer-than-its-horizon.toml");
     let parts = parts.expect("a scenario");
-    let within = |horizon: u32| {
-        let with = parts.replace("horizon_s = 900.0", &format!("horizon_s = {horizon}"));
-        folder.write("parts.toml", with)
-    };
-    let file = within(120);
+    let parts = parts.replace("horizon_s = 900.0", "horizon_s = 120");
+    let file = folder.write("parts.toml", parts);
     let ended = searoom(&["simulate", &file]).code(1);
     says(&stderr(&ended), "so it is sailed in parts");
     let first = stdout(&ended).lines().next().map(str::to_owned);
     let first = first.expect("a line");
     says(
         &first,
-        "no contact, every plan safe; breaks overtaking (R5); NO NEXT PLAN, ended after ",
+        "no contact, every plan safe; breaks overtaking (R5); ENDED ",
     );
-    // a set over the last waypoint is no failure
-    let moored = stdout(&run("simulate tests/faults/moored-at-the-end.toml").success());
-    says(&moored, "ended before the last waypoint after ");
-    let ended = stdout(&searoom(&["simulate", &within(200)]).code(1));
+    says(&first, " m from the last waypoint after ");
+    let moored = "tests/faults/moored-at-the-end.toml";
+    let moored = stdout(&searoom(&["simulate", moored]).code(1));
+    says(&moored, "no contact, every plan safe; ENDED ");
+}
+
+/// A set covers the last waypoint until own ship is nearer.
+#[test]
+fn an_alarm_that_goes_on_is_one_line_with_its_reason() {
+    let file = "tests/faults/wide-ellipse-at-risk.toml";
+    let shown = stdout(&searoom(&["simulate", file]).code(1));
     says(
-        &ended,
-        "alarm at 480 s: unsafe plan: coaster ahead; at risk 0.67, the last waypoint is inside sets",
+        &shown,
+        "alarm at 0 s, 8 more until 160 s: unsafe plan: t; NOT SAFE, the last waypoint is inside sets",
     );
 }
 

@@ -76,7 +76,7 @@ fn the_land_of_a_simulation_is_checked_again() {
     }
 }
 
-/// The closest approach is in the last step, in which the current is in no gap.
+/// The closest approach is in the last step.
 #[test]
 fn a_simulation_in_a_current_verifies_at_its_end() {
     let folder = Folder::new();
@@ -104,7 +104,7 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             searoom(&["verify", &name])
         };
         let shown = stdout(&check(&|_| {}).success());
-        let verdict = "Head-on: verified: no contact, least distance ";
+        let verdict = "Head-on: verified: no contact, safe, least distance ";
         assert!(shown.starts_with(verdict), "{shown}");
         for (pointer, value) in [
             ("/contact", true.into()),
@@ -113,6 +113,8 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/targets/0/contact_t_s", 100.0.into()),
             ("/targets/0/track/0/north_m", 170.0.into()),
             ("/sailed/0/start/north_m", 20.0.into()),
+            ("/sailed/1/start/east_m", 45.3.into()),
+            ("/sailed/1/start/course_deg", 91.7.into()),
             ("/sailed/1/duration_s", (-27.4).into()),
             ("/duration_s", 900.0.into()),
             ("/replans/1/safe", false.into()),
@@ -130,6 +132,7 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             let shown = stdout(&altered.code(1));
             assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
         }
+        check(&|document| document["sailed"][1]["crab_angle_deg"] = 3.3.into()).code(1);
         check(&|document| document["sailed"] = 3.into()).code(2);
     }
 }
