@@ -199,44 +199,25 @@ impl PlanDocument {
     /// The target whose set a motion enters first, or [`LAND`]. In a manoeuvre by the rules, which is
     /// for the ships with a role, those without one come last.
     fn entered(&self, held: &[Segment]) -> Option<&str> {
-        let ends = held
-            .iter()
-            .flat_map(|s| [s.start.position, s.end().position]);
-        let reach = held
-            .iter()
-            .map(|s| if s.is_arc() { s.length() } else { 0.0 });
-        let ends: Vec<Vector> = ends.collect();
-        let swept = Window::around(&ends)?.grown(reach.fold(0.0, f64::max));
-        let first = |obstacle: &dyn SpaceTimeObstacle, from: f64, until: f64| {
-            let parts = held
-                .iter()
-                .filter(|s| s.start_time <= until && s.end_time() >= from);
-            let mut parts = parts.map(|s| {
-                let part = s.between(s.start_time.max(from), s.end_time().min(until));
-                Segment {
-                    start_time: part.start_time - from,
-                    ..part
-                }
-            });
-            parts
-                .find_map(|part| obstacle.first_contact(&part, DEPTH_M))
-                .map(|time| from + time)
+        let begins = held.first()?.start_time;
+        let is_by_rules = (self.manoeuvres.iter())
+            .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
+        let is_last = |set: &&ObstacleDocument| {
+            let mut encounters = self.encounters.iter();
+            is_by_rules && encounters.any(|e| e.target == set.name && !has_role(&e.role))
         };
-        let of_target = |set: &ObstacleDocument| {
-            let [from, until] = set.valid_s;
-            let (initial, velocity) = (set.initial_set.set().ok()?, set.velocity_set.set().ok()?);
-            let moved = window(&velocity);
-            let moved = moved.low.abs().sup(&moved.high.abs()).max();
-            if !window(&initial).grown(moved * (until - from)).meets(&swept) {
-                return None;
-            }
-            let sets = Uncertainty::constant(initial, velocity);
-            first(&Obstacle::new("", sets).ok()?, from, until)
-        };
-        let targets = self.obstacles.iter();
-        let targets = targets.filter_map(|set| Some((of_target(set)?, set.name.as_str())));
+        let (last, first): (Vec<_>, Vec<_>) = self.obstacles.iter().partition(is_last);
+        let ashore = self.ashore(held).map(|time| (time, LAND));
+        let first = first_entered(held, first).into_iter().chain(ashore);
+        let first = first.min_by(|a, b| a.0.total_cmp(&b.0));
+        Some(first.or_else(|| first_entered(held, last))?.1)
+    }
+
+    /// When a motion first comes too near to land.
+    fn ashore(&self, held: &[Segment]) -> Option<f64> {
         let own = &self.own_ship;
         let radius = Hull::new(own.length_m, own.beam_m).half_diagonal() + own.land_margin_m;
+        let swept = swept(held)?;
         let pieces = self.land.iter().filter_map(|piece| {
             let vertices: Vec<Vector> = piece.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
             let near = Window::around(&vertices)?.grown(radius).meets(&swept);
@@ -244,21 +225,71 @@ impl PlanDocument {
         });
         let pieces: Vec<ConvexPolygon> = pieces.collect();
         let land = LandObstacle::around(&pieces, radius);
-        let ashore = held.iter().find_map(|s| land.first_contact(s, DEPTH_M));
-        let all = targets.chain(ashore.map(|time| (time, LAND)));
-        let begins = held[0].start_time;
-        let is_by_rules = (self.manoeuvres.iter())
-            .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
-        let without_role = |name: &str| {
-            let mut encounters = self.encounters.iter();
-            is_by_rules && encounters.any(|e| e.target == name && !has_role(&e.role))
-        };
-        let first = all.min_by(|a, b| {
-            let role = without_role(a.1).cmp(&without_role(b.1));
-            role.then(a.0.total_cmp(&b.0))
-        });
-        Some(first?.1)
+        held.iter().find_map(|s| land.first_contact(s, DEPTH_M))
     }
+}
+
+/// The first of these sets that a motion enters, and when. Only what is before a contact is tested
+/// against the next set.
+fn first_entered<'a>(held: &[Segment], sets: Vec<&'a ObstacleDocument>) -> Option<(f64, &'a str)> {
+    let mut held = held.to_vec();
+    let mut first = None;
+    for set in sets {
+        if let Some(time) = enters(&held, set)
+            && first.is_none_or(|(before, _)| time < before)
+        {
+            first = Some((time, set.name.as_str()));
+            held.retain(|s| s.start_time < time);
+            if let Some(last) = held.last_mut() {
+                *last = last.between(last.start_time, time);
+            }
+        }
+    }
+    first
+}
+
+/// When a motion enters a set.
+fn enters(held: &[Segment], set: &ObstacleDocument) -> Option<f64> {
+    let [from, until] = set.valid_s;
+    let (initial, velocity) = (set.initial_set.set().ok()?, set.velocity_set.set().ok()?);
+    let (place, reach) = disc(&initial);
+    let (drift, spread) = disc(&velocity);
+    let parts = held
+        .iter()
+        .filter(|s| s.start_time <= until && s.end_time() >= from);
+    let parts = parts.map(|s| s.part(s.start_time.max(from), s.end_time().min(until), from));
+    // by discs around the set, and around an arc
+    let is_near = |part: &Segment| {
+        let (at, way, beside) = match part.is_arc() {
+            true => (part.middle().position, Vector::zeros(), 0.5 * part.length()),
+            false => (part.start.position, part.velocity_at(part.start_time), 0.0),
+        };
+        let off = at - place - drift * part.start_time;
+        let closing = way - drift;
+        let nearest = -off.dot(&closing) / closing.norm_squared();
+        let nearest = nearest.max(0.0).min(part.duration);
+        let apart = (off + closing * nearest).norm();
+        // negated on purpose: a NaN is near
+        !(apart > reach + spread * part.end_time() + beside)
+    };
+    let near: Vec<Segment> = parts.filter(is_near).collect();
+    if near.is_empty() {
+        return None;
+    }
+    let obstacle = Obstacle::new("", Uncertainty::constant(initial, velocity)).ok()?;
+    let contact = |part: &Segment| obstacle.first_contact(part, DEPTH_M);
+    Some(from + near.iter().find_map(contact)?)
+}
+
+/// A box around a motion.
+fn swept(motion: &[Segment]) -> Option<Window> {
+    let ends = motion
+        .iter()
+        .flat_map(|s| [s.start.position, s.end().position]);
+    let ends: Vec<Vector> = ends.collect();
+    // an arc is within its own length of its ends
+    let arcs = motion.iter().filter(|s| s.is_arc()).map(Segment::length);
+    Some(Window::around(&ends)?.grown(arcs.fold(0.0, f64::max)))
 }
 
 /// The motion of legs without their waits and with one speed, m/s.
@@ -276,11 +307,12 @@ fn at_one_speed(legs: &[PlannedLeg], speed: f64) -> Vec<Segment> {
     at_speed.collect()
 }
 
-/// The smallest box around a set.
-fn window(set: &ConvexSet) -> Window {
+/// Centre and radius of a disc around a set.
+fn disc(set: &ConvexSet) -> (Vector, f64) {
     let most = |x: f64, y: f64| set.support(Vector::new(x, y));
     let low = Vector::new(-most(-1.0, 0.0), -most(0.0, -1.0));
-    Window::new(low, Vector::new(most(1.0, 0.0), most(0.0, 1.0)))
+    let high = Vector::new(most(1.0, 0.0), most(0.0, 1.0));
+    (0.5 * (low + high), 0.5 * (high - low).norm())
 }
 
 #[cfg(test)]

@@ -162,12 +162,21 @@ impl<'a> Proxy<'a> {
         self.bound_about(segment, segment.middle().position)
     }
 
+    /// Of the enclosing disc: along a line the least distance, along an arc from its midpoint.
     #[inline]
     fn bound_about(&self, segment: &Segment, middle: Vector) -> f64 {
         let half = 0.5 * segment.duration;
         let apart = middle - self.centre - self.drift * (segment.start_time + half);
-        let closing = (segment.speed + self.drift.norm()) * half;
-        apart.norm() - closing - self.radius - self.growth * segment.end_time()
+        let radius = self.radius + self.growth * segment.end_time();
+        if segment.is_arc() {
+            return apart.norm() - (segment.speed + self.drift.norm()) * half - radius;
+        }
+        // relative to the disc, from the start to the midpoint
+        let way = middle - segment.start.position - self.drift * half;
+        let nearest = -apart.dot(&way) / way.norm_squared();
+        // a NaN becomes the start
+        let nearest = nearest.max(-1.0).min(1.0);
+        (apart + way * nearest).norm() - radius
     }
 
     /// Signed distance from the section in metres, negative inside: the slack of a polytope, the
