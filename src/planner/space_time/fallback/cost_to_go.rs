@@ -4,6 +4,8 @@
 //! sets are sampled at cell centres and discrete instants. Own ship is at its greatest speed along
 //! the axes only; between them the grid is slower, by 29 % at worst.
 
+use std::ops::Range;
+
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::planner::Problem;
@@ -15,6 +17,9 @@ const CELLS: usize = 80;
 
 /// Cells that own ship travels per time step at its greatest speed.
 const REACH: i32 = 2;
+
+/// Cells beside those that own ship can have reached which a search may ask for.
+const BESIDE: f64 = 4.0;
 
 /// Cells of a padded row. Nothing can be reached from the padding beyond the edges.
 const WIDE: usize = CELLS + 2 * REACH as usize;
@@ -33,8 +38,8 @@ pub(crate) struct CostToGoGrid {
 
 impl CostToGoGrid {
     /// Backward recursion from the horizon over all positions that lie on some path within the
-    /// horizon. O(cells x instants x (moves + legs)); some milliseconds. `None` where
-    /// the time is up before.
+    /// horizon. O(cells x instants x (moves + legs)); some milliseconds. `None` where the time is up
+    /// before.
     pub(crate) fn of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Option<Self> {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
@@ -75,16 +80,24 @@ impl CostToGoGrid {
                 grid.block(&mut blocked, proxy, time);
             }
             for row in 0..CELLS {
+                let within = grid.reached(start, layer, row);
+                if within.is_empty() {
+                    continue;
+                }
                 if layer + 1 < layers {
                     grid.best_after(layer, row, &moves, &mut later);
                 }
-                for (column, later) in later.iter().enumerate() {
-                    let k = row * CELLS + column;
-                    let (here, at) = (grid.middle(k), grid.index(layer, column, row));
-                    if blocked[k] {
+                let first = row * CELLS;
+                // most cells lead nowhere and are far from the end
+                let is_beside = (grid.middle(first).y - end.y).abs() <= cell;
+                for column in within {
+                    let later = later[column];
+                    if !(later.is_finite() || is_beside) || blocked[first + column] {
                         continue;
                     }
-                    if (here - end).norm() <= cell {
+                    let at = grid.index(layer, column, row);
+                    let here = grid.middle(first + column);
+                    if is_beside && (here - end).norm() <= cell {
                         grid.to_go[at] = 0.0;
                     } else if later.is_finite() {
                         let nearest = problem.desired.nearest(here, time, problem.time_weight);
@@ -100,6 +113,17 @@ impl CostToGoGrid {
     /// Cell size of the grid for a problem, metres.
     pub(crate) fn cell_size(problem: &Problem) -> f64 {
         problem.own.max_speed() * problem.horizon / (CELLS as f64 - 1.0)
+    }
+
+    /// Columns of a row that own ship can have reached from its start.
+    fn reached(&self, start: Vector, layer: usize, row: usize) -> Range<usize> {
+        let place = (start - self.corner) / self.cell;
+        let reach = f64::from(REACH) * layer as f64 + BESIDE;
+        let aside = place.y - row as f64;
+        let half = (reach * reach - aside * aside).sqrt();
+        // a NaN is no column
+        let column = |at: f64| at.clamp(0.0, CELLS as f64) as usize;
+        column((place.x - half).ceil())..column((place.x + half).floor() + 1.0)
     }
 
     fn middle(&self, k: usize) -> Vector {
