@@ -86,7 +86,7 @@ pub(super) fn headline(simulation: &SimulationDocument, times: Times) -> String 
     format!("{}: {}", simulation.scenario, parts.join("; "))
 }
 
-fn headline_parts(simulation: &SimulationDocument, times: Times) -> Vec<Styled> {
+pub(super) fn headline_parts(simulation: &SimulationDocument, times: Times) -> Vec<Styled> {
     let met = (simulation.targets.iter())
         .filter(|target| target.contact_t_s.is_some())
         .map(|target| target.name.as_str());

@@ -174,8 +174,12 @@ impl<'a> Proxy<'a> {
         // relative to the disc, from the start to the midpoint
         let way = middle - segment.start.position - self.drift * half;
         let nearest = -apart.dot(&way) / way.norm_squared();
-        // a NaN becomes the start
-        let nearest = nearest.max(-1.0).min(1.0);
+        // without a way any place on it
+        let nearest = if nearest.is_nan() {
+            0.0
+        } else {
+            nearest.clamp(-1.0, 1.0)
+        };
         (apart + way * nearest).norm() - radius
     }
 
@@ -269,7 +273,8 @@ impl<'a> Proxy<'a> {
     }
 
     fn local_meets(&self, segment: &Segment, middle: Vector) -> bool {
-        self.bound_about(segment, middle) <= 0.0
+        // negated on purpose: a NaN is tested
+        !(self.bound_about(segment, middle) > 0.0)
             && match self.ellipsoid {
                 Some(ellipsoid) => ellipsoid_contact(ellipsoid, segment).is_some(),
                 None => contact::meets(self.body, segment, TOUCH_M),

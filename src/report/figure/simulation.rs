@@ -4,7 +4,7 @@ use super::plan::{Charted, Meeting, Moment, Traffic, marked_times, moments, traf
 use super::{Figure, FigureError, FigureOptions, Panel, Style};
 use crate::document::{SimulatedTargetDocument, SimulationDocument, chart_role};
 use crate::frame::{Pose, Vector};
-use crate::report::simulation::headline;
+use crate::report::simulation::{headline, headline_parts};
 use crate::scenario::Scenario;
 use crate::text::{Times, significant};
 
@@ -21,27 +21,33 @@ pub fn simulation_figure(
     simulation: &SimulationDocument,
     options: &FigureOptions,
 ) -> Result<Figure, FigureError> {
-    let title = match simulation.is_success() {
-        true => simulation.scenario.clone(),
-        false => headline(simulation, Times::Clock),
-    };
     options.draw(simulation.duration_s, |style| {
-        let figure = match style.panels {
-            true => moments(scenario, style, &traffic(simulation, style)),
-            false => Figure::new(1, vec![simulation_panel(scenario, simulation, style)]),
-        };
-        figure.titled(&title)
+        if style.panels {
+            let figure = moments(scenario, style, &traffic(simulation, style));
+            return figure.titled(&headline(simulation, Times::Clock));
+        }
+        let panel = simulation_panel(scenario, simulation, style);
+        Figure::new(1, vec![panel]).titled(&simulation.scenario)
     })
 }
 
-/// Panel of [`simulation_figure`].
+/// Panel of [`simulation_figure`], under how it ended.
 pub(in crate::report) fn simulation_panel(
     scenario: &Scenario,
     simulation: &SimulationDocument,
     style: &Style,
 ) -> Panel {
     let traffic = traffic(simulation, style);
-    traffic_chart("Sailed", scenario, style, &traffic, None, Vec::new())
+    let parts = headline_parts(simulation, Times::Clock).into_iter();
+    let parts: Vec<String> = parts.map(|(text, _)| text).collect();
+    traffic_chart(
+        &parts.join("; "),
+        scenario,
+        style,
+        &traffic,
+        None,
+        Vec::new(),
+    )
 }
 
 fn corners(target: &SimulatedTargetDocument, pose: &Pose) -> Vec<Vector> {
