@@ -37,6 +37,9 @@ const RETAINED_HALVINGS: usize = 10;
 /// Metres by which reductions of domains may differ in answers that relax as much.
 const SAME_REDUCTION_M: f64 = 1.0;
 
+/// Seconds between the next plan and the end of a remainder that is kept until then.
+const BEFORE_END_S: f64 = 2.0;
+
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
 
@@ -313,10 +316,14 @@ impl Relaxer<'_> {
     }
 
     /// [`RelaxationLevel::Waiting`]: the remainder of a last plan that ends on the way, if it is clear
-    /// of the hard sets. It is better than a risk.
+    /// of the hard sets and another plan is due before its end. Until then it is better than a risk.
     fn remainder_on_the_way(&self, with_domain: bool) -> Option<Attempt> {
         let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
-        let end = self.scenario.memory.remainder.last()?.end().position;
+        let last = self.scenario.memory.remainder.last()?;
+        if last.end_time() < self.scenario.simulation.replan + BEFORE_END_S {
+            return None;
+        }
+        let end = last.end().position;
         let left = path.left_from(end);
         // the schedule may be past that end
         let to_end = || DesiredTrajectory::new(&[own.pose.position, end], &[path.legs()[0].speed]);
