@@ -446,7 +446,7 @@ mod tests {
     #[test]
     fn a_turn_about_is_one_departure() {
         let turning = (1..30).map(|k| (1, 90.0 + 6.0 * f64::from(k), 5.0));
-        let about = [269.8, 270.3, 269.8].map(|course| (9, course, 5.0));
+        let about = [269.8, 270.3, 269.9].map(|course| (9, course, 5.0));
         let parts: Vec<_> = std::iter::once((10, 90.0, 5.0))
             .chain(turning)
             .chain(about)
