@@ -56,6 +56,29 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync) {
     });
 }
 
+/// The results of two pieces of work at once, each of which takes long enough for a thread.
+pub(crate) fn both<A, B: Send>(
+    one: impl FnOnce() -> A,
+    other: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if cores() < 2 || AT_WORK.get() {
+        return (one(), other());
+    }
+    thread::scope(|scope| {
+        let running = scope.spawn(|| {
+            AT_WORK.set(true);
+            other()
+        });
+        AT_WORK.set(true);
+        let _at_work = AtWork;
+        let one = one();
+        (
+            one,
+            running.join().unwrap_or_else(|panic| resume_unwind(panic)),
+        )
+    })
+}
+
 /// `work` on so many threads at once; work within it stays on its thread.
 pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
     thread::scope(|scope| {
@@ -101,6 +124,17 @@ mod tests {
         let mut items = [[0; 5]; 3];
         super::each(&mut items, |inner| super::each(inner, |item| *item += 1));
         assert_eq!(items, [[1; 5]; 3]);
+        assert!(!super::AT_WORK.get());
+    }
+
+    #[test]
+    fn both_results_are_those_of_their_work() {
+        let within = || super::both(|| super::AT_WORK.get(), || 2);
+        assert_eq!(super::both(within, || "three").1, "three");
+        assert_eq!(super::both(within, || 3).0.1, 2);
+        assert!(!super::AT_WORK.get());
+        let panics = || super::both(|| 1, || -> u8 { panic!("in the other") });
+        assert!(std::panic::catch_unwind(panics).is_err());
         assert!(!super::AT_WORK.get());
     }
 

@@ -37,12 +37,14 @@ use super::{
     PlannerFacts, Problem, SearchKind, SearchStats,
 };
 use crate::obstacle::{LAND, SpaceTimeObstacle};
+use crate::parallel;
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use covered_end::end_covered;
 use fallback::{hybrid_a_star, sequential};
-use graph::{Graph, node};
+use graph::Graph;
+use graph::node::{self, State};
 use piece::pieces;
 use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::trial::Context;
@@ -50,6 +52,8 @@ use route::Route;
 use rules::groups;
 use selection::Selection;
 use selection::budget::SearchBudget;
+use selection::coarse_search::CoarseSearch;
+use selection::conflict_search;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
@@ -274,7 +278,7 @@ fn plan_with(
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
     }
     let targets = by_obstacle(proxies).count();
-    let budget = SearchBudget::of(targets, problem.search);
+    let budget = SearchBudget::of(targets, others.is_some(), problem.search);
     let best = attempt(&context, budget, &nominal_motion, &conflicts, others, clock);
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
@@ -296,8 +300,8 @@ struct Attempt {
     explored: ExploredGraph,
 }
 
-/// Searches the graph, and refines its plan and the manoeuvres around the conflicts of the nominal
-/// motion. Resolves conflicts that are far apart one after another, unless `others` are asked for.
+/// Searches the graph, and among several targets the ways of passing them. Refines what they find
+/// and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that are far apart one after another, unless `others` are asked for.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,
@@ -306,37 +310,36 @@ fn attempt(
     others: Option<&mut Vec<Vec<Segment>>>,
     clock: Clock,
 ) -> Attempt {
-    let mut graph = Graph::new(context, nominal_motion, clock);
-    let mut search = Search::new(graph.root());
     let mut selection = Selection::new(*context, budget);
     selection.others = others.is_some().then(Vec::new);
-    let mut stages = budget.stages.iter();
-    let mut expansions = 0;
-    let mut timed_out = false;
-    loop {
-        match search.next_goal(&mut graph, expansions) {
-            Stop::Goal(goal) => {
-                let path = node::path_to(&search, goal);
-                let cost = search.nodes()[goal].cost;
-                selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>());
-                break;
-            }
-            Stop::Budget => {
-                let Some((most, weight)) = stages.next() else {
-                    break;
-                };
-                if context.problem.search != SearchKind::Dijkstra {
-                    search.weigh(*weight);
-                }
-                expansions = *most;
-            }
-            Stop::Exhausted => break,
-            Stop::Time => {
-                timed_out = true;
-                break;
-            }
+    let search_graph = || searched_graph(context, budget, nominal_motion, clock);
+    let (search, stop) = if budget.conflict_nodes > 0 {
+        let within = (budget.conflict_nodes, conflict_search::STEPS);
+        let search_grid = || {
+            let search = CoarseSearch::new(*context, nominal_motion, clock)?;
+            let along = search.along_grid(clock);
+            Some((search, along))
+        };
+        let ((searched, coarse), found) = parallel::both(
+            || (search_graph(), search_grid()),
+            || conflict_search::resolve(context, nominal_motion, within, clock),
+        );
+        found
+            .into_iter()
+            .for_each(|guess| selection.add_initial_guess(guess));
+        if let Some((search, along)) = coarse {
+            selection.add_coarse_search(search, along);
         }
+        searched
+    } else {
+        search_graph()
+    };
+    if let Stop::Goal(goal) = stop {
+        let path = node::path_to(&search, goal);
+        let cost = search.nodes()[goal].cost;
+        selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>());
     }
+    let mut timed_out = matches!(stop, Stop::Time);
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     if let Some(others) = others {
         *others = selection.others.take().unwrap_or_default();
@@ -355,6 +358,29 @@ fn attempt(
         timed_out,
         stats: search.counts(),
         explored: node::explored(search),
+    }
+}
+
+/// Searches the graph in the stages of the budget.
+fn searched_graph(
+    context: &Context,
+    budget: &SearchBudget,
+    nominal_motion: &[Segment],
+    clock: Clock,
+) -> (Search<State>, Stop) {
+    let mut graph = Graph::new(context, nominal_motion, clock);
+    let mut search = Search::new(graph.root());
+    let mut expansions = 0;
+    let mut stages = budget.stages.iter();
+    loop {
+        let stop = search.next_goal(&mut graph, expansions);
+        let (Stop::Budget, Some((most, weight))) = (&stop, stages.next()) else {
+            return (search, stop);
+        };
+        if context.problem.search != SearchKind::Dijkstra {
+            search.weigh(*weight);
+        }
+        expansions = *most;
     }
 }
 

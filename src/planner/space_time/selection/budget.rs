@@ -53,6 +53,12 @@ impl SearchBudget {
         ..Self::ONE_TARGET
     };
 
+    /// Budget for some of several targets, which are resolved one after another.
+    pub(crate) const PART_OF_SEVERAL: Self = Self {
+        conflict_nodes: 0,
+        ..Self::SEVERAL_TARGETS
+    };
+
     /// Budget of a thorough search among several targets.
     pub(crate) const THOROUGH: Self = Self {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
@@ -72,11 +78,12 @@ impl SearchBudget {
         ..Self::ONE_TARGET
     };
 
-    /// Budget for the given number of targets.
-    pub(crate) const fn of(targets: usize, search: SearchKind) -> &'static Self {
+    /// Budget for the given number of targets, which may be some of all.
+    pub(crate) const fn of(targets: usize, is_part: bool, search: SearchKind) -> &'static Self {
         match (targets, search) {
             (0 | 1, _) => &Self::ONE_TARGET,
             (_, SearchKind::Thorough) => &Self::THOROUGH,
+            _ if is_part => &Self::PART_OF_SEVERAL,
             _ => &Self::SEVERAL_TARGETS,
         }
     }

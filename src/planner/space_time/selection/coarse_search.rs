@@ -5,12 +5,13 @@
 //! corners and refined like any other manoeuvre.
 
 use crate::frame::Vector;
+use crate::parallel;
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::fallback::hybrid_a_star;
-use crate::planner::space_time::refinement::Refinement;
 use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::selection::conflict_search::{
     Corner, MAX_CORNERS, SHORTEST_M, through,
 };
@@ -44,22 +45,16 @@ pub(crate) struct CoarseSearch<'a> {
 }
 
 impl<'a> CoarseSearch<'a> {
-    /// A search for a plan cheaper than `least`, m². `None` where the grid is too coarse for that,
-    /// or the time is up. About two milliseconds.
+    /// `None` where the time is up. About two milliseconds.
     pub(crate) fn new(
         context: Context<'a>,
         nominal_motion: &'a [Segment],
-        least: f64,
         clock: Clock,
     ) -> Option<Self> {
-        let problem = context.problem;
-        if is_too_cheap(problem, least) {
-            return None;
-        }
         Some(Self {
             context,
             nominal_motion,
-            grid: CostToGoGrid::of(problem, context.proxies, clock)?,
+            grid: CostToGoGrid::of(context.problem, context.proxies, clock)?,
         })
     }
 
@@ -68,7 +63,7 @@ impl<'a> CoarseSearch<'a> {
         let problem = self.context.problem;
         let start = problem.own.pose.position;
         let path = self.grid.path_from(start, problem.desired.end());
-        self.along(path, GRID_TOLERANCE, clock)
+        self.refined(self.along(path, GRID_TOLERANCE), clock)
     }
 
     /// Motion of a hybrid A* that costs not much more than `least`, m², and the refined manoeuvres
@@ -91,16 +86,24 @@ impl<'a> CoarseSearch<'a> {
         let motion = hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)?;
         let path = motion.iter().map(|s| (s.start_time, s.start.position));
         let end = motion.last().map(|s| (s.end_time(), s.end().position));
-        let mut refined = self.along(path.chain(end).collect(), HYBRID_TOLERANCE, clock);
-        let guess = initial_guess_from(problem, route, &motion);
-        let fitting = guess.and_then(|guess| Refinement::fitting(&self.context, guess));
-        refined.extend(fitting.map(|r| r.run(&self.context, STEPS, clock)));
-        Some((motion, refined))
+        let mut guesses = self.along(path.chain(end).collect(), HYBRID_TOLERANCE);
+        guesses.extend(initial_guess_from(problem, route, &motion));
+        Some((motion, self.refined(guesses, clock)))
     }
 
-    /// Refined manoeuvres along a path, given by times and positions. One goes to the last
-    /// waypoint, one back onto the route after the last corner that is off it.
-    fn along(&self, path: Vec<(f64, Vector)>, cells: f64, clock: Clock) -> Vec<Refinement> {
+    /// Refinements of those guesses that fit.
+    fn refined(&self, guesses: Vec<InitialGuess>, clock: Clock) -> Vec<Refinement> {
+        let fitting = guesses.into_iter().take_while(|_| !clock.is_up());
+        let mut refined: Vec<Refinement> = fitting
+            .filter_map(|guess| Refinement::fitting(&self.context, guess))
+            .collect();
+        parallel::each(&mut refined, |r| r.go_on(&self.context, STEPS, clock));
+        refined
+    }
+
+    /// Manoeuvres along a path, given by times and positions. One goes to the last waypoint, one
+    /// back onto the route after the last corner that is off it.
+    fn along(&self, path: Vec<(f64, Vector)>, cells: f64) -> Vec<InitialGuess> {
         let tolerance = cells * self.grid.cell;
         let problem = self.context.problem;
         let off = |corner: &Corner, time_weight: f64| {
@@ -119,10 +122,8 @@ impl<'a> CoarseSearch<'a> {
             ways.push((&corners[..=last_off], false));
         }
         ways.into_iter()
-            .take_while(|_| !clock.is_up())
             .filter_map(|(corners, to_goal)| {
-                let fitting = through(&self.context, self.nominal_motion, corners, to_goal)?;
-                Some(fitting.run(&self.context, STEPS, clock))
+                through(&self.context, self.nominal_motion, corners, to_goal)
             })
             .collect()
     }

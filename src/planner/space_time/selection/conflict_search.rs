@@ -23,8 +23,11 @@ use crate::trajectory::Segment;
 /// them.
 const MAX_ANSWERS: usize = 3;
 
-/// Refinement steps of a child.
-const STEPS: usize = 10;
+/// Refinement steps of a child. A child that needs more is seldom a cheap one.
+pub(crate) const STEPS: usize = 4;
+
+/// Refinement steps of a child where no other manoeuvre is clear.
+pub(crate) const MORE_STEPS: usize = 10;
 
 /// Largest number of corners of a manoeuvre: with more, its segment variables do not fit.
 pub(crate) const MAX_CORNERS: usize = 6;
@@ -82,12 +85,12 @@ impl Node {
     }
 }
 
-/// Manoeuvres that are clear of every target and cost less than `limit` (m²), the cheapest first;
-/// takes at most `most` nodes.
+/// Manoeuvres that are clear of every target, the cheapest first; takes at most `most` nodes, with
+/// so many refinement steps for a child.
 pub(crate) fn resolve(
     context: &Context,
     nominal_motion: &[Segment],
-    (most, limit): (usize, f64),
+    (most, steps): (usize, usize),
     clock: Clock,
 ) -> Vec<InitialGuess> {
     let mut found = Vec::new();
@@ -110,8 +113,13 @@ pub(crate) fn resolve(
         }
         let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
         if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
-            let children = children(context, &node, obstacle, &conflict, clock);
-            open.extend(children.into_iter().filter(|child| child.cost < limit));
+            open.extend(children(
+                context,
+                &node,
+                (obstacle, &conflict),
+                steps,
+                clock,
+            ));
         }
     }
     found
@@ -121,8 +129,8 @@ pub(crate) fn resolve(
 fn children(
     context: &Context,
     node: &Node,
-    obstacle: usize,
-    conflict: &Conflict,
+    (obstacle, conflict): (usize, &Conflict),
+    steps: usize,
     clock: Clock,
 ) -> Vec<Node> {
     let mut considered = node.considered.clone();
@@ -143,7 +151,7 @@ fn children(
     ways.push(along(node, conflict.ahead, 1.0));
     ways.into_iter()
         .take_while(|_| !clock.is_up())
-        .filter_map(|corners| child(&context, node, &corners, &considered, clock))
+        .filter_map(|corners| child(&context, node, &corners, &considered, steps, clock))
         .collect()
 }
 
@@ -208,28 +216,30 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
     segment.pose_at(time.max(segment.start_time))
 }
 
-/// Refinement of a manoeuvre through at least two corners. It leaves the nominal motion at the
-/// first one, and goes through the others to the last waypoint or back onto the route. `None` where
-/// none fits.
+/// Manoeuvre through at least two corners. It leaves the nominal motion at the first one, and goes
+/// through the others to the last waypoint or back onto the route. `None` where none fits.
 pub(crate) fn through(
     context: &Context,
     nominal_motion: &[Segment],
     corners: &[Corner],
     to_goal: bool,
-) -> Option<Refinement> {
+) -> Option<InitialGuess> {
     let node = Node {
         to_goal,
         ..Node::root(nominal_motion)
     };
-    fitting(context, &node, corners)
+    guesses(context, &node, corners)
+        .find(|guess| Refinement::fitting(context, guess.clone()).is_some())
 }
 
-/// Refinement of the node's manoeuvre with these corners; `None` where none fits.
-fn fitting(context: &Context, node: &Node, corners: &[Corner]) -> Option<Refinement> {
+/// The node's manoeuvre with these corners, by angle of its return.
+fn guesses(
+    context: &Context,
+    node: &Node,
+    corners: &[Corner],
+) -> impl Iterator<Item = InitialGuess> {
     let angles = RETURN_ANGLES.into_iter();
-    angles
-        .filter_map(|angle| guess(context, node, corners, angle))
-        .find_map(|guess| Refinement::fitting(context, guess))
+    angles.filter_map(|angle| guess(context, node, corners, angle))
 }
 
 /// Refines a manoeuvre with these corners.
@@ -238,9 +248,12 @@ fn child(
     node: &Node,
     corners: &[Corner],
     considered: &[usize],
+    steps: usize,
     clock: Clock,
 ) -> Option<Node> {
-    let refinement = fitting(context, node, corners)?.run(context, STEPS, clock);
+    let refinement = guesses(context, node, corners)
+        .find_map(|guess| Refinement::fitting(context, guess))?
+        .run(context, steps, clock);
     let guess = refinement.best()?;
     let rollout = guess
         .structure
@@ -472,7 +485,7 @@ mod tests {
         let context = Context::new(&problem, &route, &proxies, &[]);
         let nominal = route.follow(0.0, 0.0);
         let conflict = Conflict::of(&proxies, &nominal).expect("a conflict");
-        let found = children(&context, &Node::root(&nominal), 0, &conflict, clock);
+        let found = children(&context, &Node::root(&nominal), (0, &conflict), 10, clock);
         let mut sides = [false; 2];
         for child in &found {
             assert!(first_contact(&proxies, &child.motion).is_none());

@@ -2,7 +2,7 @@
 //! candidate wins.
 
 pub(crate) mod budget;
-mod coarse_search;
+pub(crate) mod coarse_search;
 pub(crate) mod conflict_search;
 pub(crate) mod initial_guess;
 mod tidy;
@@ -106,6 +106,8 @@ pub(crate) struct Selection<'a> {
     best: Option<Candidate>,
     graph_cost: Option<f64>,
     prices: Prices,
+    coarse_search: Option<CoarseSearch<'a>>,
+    along_grid: Vec<Refinement>,
     /// Clear motions that pass the sets in other ways than the cheapest, where they are asked for.
     pub others: Option<Vec<Vec<Segment>>>,
 }
@@ -119,6 +121,8 @@ impl<'a> Selection<'a> {
             best: None,
             graph_cost: None,
             prices: Prices::of(context.problem, context.route),
+            coarse_search: None,
+            along_grid: Vec::new(),
             others: None,
         }
     }
@@ -136,8 +140,15 @@ impl<'a> Selection<'a> {
         self.add_candidate(motion);
     }
 
-    /// Refines the graph's plan and the predefined manoeuvres around the conflicts of the nominal
-    /// motion. Searches for cheaper ones among several targets. True when the deadline was reached.
+    /// Adds a coarse search, with its refined manoeuvres.
+    pub(crate) fn add_coarse_search(&mut self, search: CoarseSearch<'a>, along: Vec<Refinement>) {
+        self.coarse_search = Some(search);
+        self.along_grid = along;
+    }
+
+    /// Refines the manoeuvres added and the predefined ones around the conflicts of the nominal
+    /// motion. Among several targets a longer conflict search follows where nothing is clear, and a
+    /// hybrid A* for a cheaper motion. True when the deadline was reached.
     pub(crate) fn refine(
         &mut self,
         nominal_motion: &[Segment],
@@ -205,8 +216,18 @@ impl<'a> Selection<'a> {
                 refinement.finish(&context);
             }
         });
-        if self.search_budget.conflict_nodes > 0 {
-            self.search_among_several(&mut running, nominal_motion, clock);
+        running.append(&mut self.along_grid);
+        let most = self.search_budget.conflict_nodes;
+        if most > 0 && self.least(&running).is_infinite() {
+            let within = (most / 2, conflict_search::MORE_STEPS);
+            let found = conflict_search::resolve(&context, nominal_motion, within, clock);
+            let refined = |guess| Refinement::fitting(&context, guess);
+            running.extend(found.into_iter().filter_map(refined));
+        }
+        let (coarse, least) = (self.coarse_search.take(), self.least(&running));
+        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least, clock)) {
+            self.add_candidate(motion);
+            running.extend(along);
         }
         if let Some((tidy, guesses)) = tidy {
             self.add_tidy(&tidy, &running, &guesses, clock);
@@ -218,30 +239,6 @@ impl<'a> Selection<'a> {
             self.others = Some(self.other_ways(&running));
         }
         clock.is_up()
-    }
-
-    /// Adds manoeuvres among several targets: of the coarse search, and of the conflict search.
-    fn search_among_several(
-        &mut self,
-        running: &mut Vec<Refinement>,
-        nominal_motion: &[Segment],
-        clock: Clock,
-    ) {
-        let context = self.context;
-        let coarse = CoarseSearch::new(context, nominal_motion, self.least(running), clock);
-        running.extend(coarse.iter().flat_map(|c| c.along_grid(clock)));
-        // insertions may make up for the margin
-        let limit = self.least(running) * (1.0 + self.search_budget.leader_margin);
-        let within = (self.search_budget.conflict_nodes, limit);
-        let found = conflict_search::resolve(&context, nominal_motion, within, clock);
-        let refined = |guess| Refinement::fitting(&context, guess);
-        running.extend(found.into_iter().filter_map(refined));
-        // the dearest search comes last: the best candidate bounds it
-        let least = self.least(running);
-        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least, clock)) {
-            self.add_candidate(motion);
-            running.extend(along);
-        }
     }
 
     /// Cost of the cheapest clear motion so far, m²; infinite without any.
