@@ -56,8 +56,9 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync) {
     });
 }
 
-/// The results of two pieces of work at once, each of which takes long enough for a thread.
-pub(crate) fn both<A, B: Send>(
+/// The results of two pieces of work at once, each of which takes long enough for a thread. Work
+/// within them stays on its thread.
+pub(crate) fn join<A, B: Send>(
     one: impl FnOnce() -> A,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
@@ -72,10 +73,8 @@ pub(crate) fn both<A, B: Send>(
         AT_WORK.set(true);
         let _at_work = AtWork;
         let one = one();
-        (
-            one,
-            running.join().unwrap_or_else(|panic| resume_unwind(panic)),
-        )
+        let other = running.join();
+        (one, other.unwrap_or_else(|panic| resume_unwind(panic)))
     })
 }
 
@@ -129,12 +128,14 @@ mod tests {
 
     #[test]
     fn both_results_are_those_of_their_work() {
-        let within = || super::both(|| super::AT_WORK.get(), || 2);
-        assert_eq!(super::both(within, || "three").1, "three");
-        assert_eq!(super::both(within, || 3).0.1, 2);
+        let within = || super::join(|| super::AT_WORK.get(), || 2);
+        let ((at_work, two), three) = super::join(within, || "three");
+        assert_eq!((at_work, two, three), (super::cores() > 1, 2, "three"));
         assert!(!super::AT_WORK.get());
-        let panics = || super::both(|| 1, || -> u8 { panic!("in the other") });
-        assert!(std::panic::catch_unwind(panics).is_err());
+        let in_one = || super::join(|| -> u8 { panic!("in one") }, || 1);
+        let in_other = || super::join(|| 1, || -> u8 { panic!("in the other") });
+        assert!(std::panic::catch_unwind(in_one).is_err());
+        assert!(std::panic::catch_unwind(in_other).is_err());
         assert!(!super::AT_WORK.get());
     }
 

@@ -300,8 +300,9 @@ struct Attempt {
     explored: ExploredGraph,
 }
 
-/// Searches the graph, and among several targets the ways of passing them. Refines what they find
-/// and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that are far apart one after another, unless `others` are asked for.
+/// Searches the graph, and among several targets a grid and the ways of passing them. Refines what
+/// they find and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that
+/// are far apart one after another, unless `others` are asked for.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,
@@ -312,27 +313,10 @@ fn attempt(
 ) -> Attempt {
     let mut selection = Selection::new(*context, budget);
     selection.others = others.is_some().then(Vec::new);
-    let search_graph = || searched_graph(context, budget, nominal_motion, clock);
-    let (search, stop) = if budget.conflict_nodes > 0 {
-        let within = (budget.conflict_nodes, conflict_search::STEPS);
-        let search_grid = || {
-            let search = CoarseSearch::new(*context, nominal_motion, clock)?;
-            let along = search.along_grid(clock);
-            Some((search, along))
-        };
-        let ((searched, coarse), found) = parallel::both(
-            || (search_graph(), search_grid()),
-            || conflict_search::resolve(context, nominal_motion, within, clock),
-        );
-        found
-            .into_iter()
-            .for_each(|guess| selection.add_initial_guess(guess));
-        if let Some((search, along)) = coarse {
-            selection.add_coarse_search(search, along);
-        }
-        searched
-    } else {
-        search_graph()
+    let several = budget.conflict_nodes > 0 && context.first_conflict(nominal_motion).is_some();
+    let (search, stop) = match several {
+        true => searched_among_several(context, budget, nominal_motion, &mut selection, clock),
+        false => searched_graph(context, budget, nominal_motion, clock),
     };
     if let Stop::Goal(goal) = stop {
         let path = node::path_to(&search, goal);
@@ -359,6 +343,37 @@ fn attempt(
         stats: search.counts(),
         explored: node::explored(search),
     }
+}
+
+/// Searches the graph and a coarse grid, and at the same time the ways of passing the targets.
+fn searched_among_several<'a>(
+    context: &Context<'a>,
+    budget: &SearchBudget,
+    nominal_motion: &'a [Segment],
+    selection: &mut Selection<'a>,
+    clock: Clock,
+) -> (Search<State>, Stop) {
+    let search_grid = || {
+        let grid = CoarseSearch::new(*context, nominal_motion, clock)?;
+        let along = grid.along_grid(clock);
+        Some((grid, along))
+    };
+    let (most, steps) = (budget.conflict_nodes, conflict_search::STEPS);
+    let ((graph, grid), resolved) = parallel::join(
+        || {
+            let graph = searched_graph(context, budget, nominal_motion, clock);
+            (graph, search_grid())
+        },
+        || conflict_search::resolve(context, nominal_motion, most, steps, clock),
+    );
+    for (guess, motion) in resolved {
+        selection.add_initial_guess(guess);
+        selection.add_candidate(motion);
+    }
+    if let Some((grid, along)) = grid {
+        selection.add_coarse_search(grid, along);
+    }
+    graph
 }
 
 /// Searches the graph in the stages of the budget.

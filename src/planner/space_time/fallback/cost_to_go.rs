@@ -111,7 +111,7 @@ impl CostToGoGrid {
     }
 
     /// Cell size of the grid for a problem, metres.
-    pub(crate) fn cell_size(problem: &Problem) -> f64 {
+    fn cell_size(problem: &Problem) -> f64 {
         problem.own.max_speed() * problem.horizon / (CELLS as f64 - 1.0)
     }
 

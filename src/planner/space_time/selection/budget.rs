@@ -20,7 +20,8 @@ pub(crate) struct SearchBudget {
     pub leader_margin: f64,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
-    /// Largest number of nodes of the conflict search; 0 for no search among several targets.
+    /// Largest number of nodes of the conflict search, half as many for a second one where nothing
+    /// is clear; 0 for neither these nor the grid.
     pub conflict_nodes: usize,
     /// Where conflicts are resolved one after another: largest number of motions that have no way
     /// past their next conflict.

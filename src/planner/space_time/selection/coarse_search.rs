@@ -10,8 +10,8 @@ use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::fallback::hybrid_a_star;
+use crate::planner::space_time::refinement::Refinement;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::selection::conflict_search::{
     Corner, MAX_CORNERS, SHORTEST_M, through,
 };
@@ -33,7 +33,8 @@ const COARSER: f64 = 1.3;
 /// third.
 const OF_USE: f64 = 1.5;
 
-/// Cost below which the grid is too coarse to find a cheaper plan, in squared cells.
+/// Cost below which the grid is too coarse for the hybrid A* to find a cheaper plan, in squared
+/// cells.
 const TOO_CHEAP: f64 = 0.01;
 
 /// Coarse search for one problem.
@@ -45,7 +46,7 @@ pub(crate) struct CoarseSearch<'a> {
 }
 
 impl<'a> CoarseSearch<'a> {
-    /// `None` where the time is up. About two milliseconds.
+    /// Makes the grid, in about two milliseconds. `None` where the time is up.
     pub(crate) fn new(
         context: Context<'a>,
         nominal_motion: &'a [Segment],
@@ -73,7 +74,7 @@ impl<'a> CoarseSearch<'a> {
         least: f64,
         clock: Clock,
     ) -> Option<(Vec<Segment>, Vec<Refinement>)> {
-        if !least.is_finite() || is_too_cheap(self.context.problem, least) {
+        if !least.is_finite() || least < TOO_CHEAP * self.grid.cell.powi(2) {
             return None;
         }
         let Context {
@@ -86,24 +87,20 @@ impl<'a> CoarseSearch<'a> {
         let motion = hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)?;
         let path = motion.iter().map(|s| (s.start_time, s.start.position));
         let end = motion.last().map(|s| (s.end_time(), s.end().position));
-        let mut guesses = self.along(path.chain(end).collect(), HYBRID_TOLERANCE);
-        guesses.extend(initial_guess_from(problem, route, &motion));
-        Some((motion, self.refined(guesses, clock)))
+        let mut along = self.along(path.chain(end).collect(), HYBRID_TOLERANCE);
+        let guess = initial_guess_from(problem, route, &motion);
+        along.extend(guess.and_then(|guess| Refinement::fitting(&self.context, guess)));
+        Some((motion, self.refined(along, clock)))
     }
 
-    /// Refinements of those guesses that fit.
-    fn refined(&self, guesses: Vec<InitialGuess>, clock: Clock) -> Vec<Refinement> {
-        let fitting = guesses.into_iter().take_while(|_| !clock.is_up());
-        let mut refined: Vec<Refinement> = fitting
-            .filter_map(|guess| Refinement::fitting(&self.context, guess))
-            .collect();
-        parallel::each(&mut refined, |r| r.go_on(&self.context, STEPS, clock));
-        refined
+    fn refined(&self, mut fitting: Vec<Refinement>, clock: Clock) -> Vec<Refinement> {
+        parallel::each(&mut fitting, |r| r.go_on(&self.context, STEPS, clock));
+        fitting
     }
 
-    /// Manoeuvres along a path, given by times and positions. One goes to the last waypoint, one
+    /// Refinements along a path, given by times and positions. One goes to the last waypoint, one
     /// back onto the route after the last corner that is off it.
-    fn along(&self, path: Vec<(f64, Vector)>, cells: f64) -> Vec<InitialGuess> {
+    fn along(&self, path: Vec<(f64, Vector)>, cells: f64) -> Vec<Refinement> {
         let tolerance = cells * self.grid.cell;
         let problem = self.context.problem;
         let off = |corner: &Corner, time_weight: f64| {
@@ -127,11 +124,6 @@ impl<'a> CoarseSearch<'a> {
             })
             .collect()
     }
-}
-
-/// True for a cost that the grid is too coarse to undercut, m².
-fn is_too_cheap(problem: &Problem, cost: f64) -> bool {
-    cost < TOO_CHEAP * CostToGoGrid::cell_size(problem).powi(2)
 }
 
 /// At most [`MAX_CORNERS`] corners of a path to the last waypoint, without the end. The first is

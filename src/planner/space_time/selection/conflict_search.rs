@@ -2,7 +2,7 @@
 //!
 //! A node is a manoeuvre that is refined clear of the targets considered so far. The cheapest node
 //! is taken first. If it meets a further target, it has a child for each way of passing that
-//! target; if it meets none, it is the answer. This is conflict-based search (Sharon et al. 2015,
+//! target; if it meets none, it is an answer. This is conflict-based search (Sharon et al. 2015,
 //! doi:10.1016/j.artint.2014.11.006) on targets in place of agents.
 
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
@@ -85,14 +85,18 @@ impl Node {
     }
 }
 
-/// Manoeuvres that are clear of every target, the cheapest first; takes at most `most` nodes, with
-/// so many refinement steps for a child.
+/// Manoeuvre that is clear of every target and of land, with its motion.
+pub(crate) type Resolved = (InitialGuess, Vec<Segment>);
+
+/// Manoeuvres that are clear of every target and of land, about the cheapest first. Takes at most
+/// `most` nodes, and refines a child by `steps`.
 pub(crate) fn resolve(
     context: &Context,
     nominal_motion: &[Segment],
-    (most, steps): (usize, usize),
+    most: usize,
+    steps: usize,
     clock: Clock,
-) -> Vec<InitialGuess> {
+) -> Vec<Resolved> {
     let mut found = Vec::new();
     let mut open = vec![Node::root(nominal_motion)];
     for _ in 0..most {
@@ -104,7 +108,7 @@ pub(crate) fn resolve(
         let node = open.swap_remove(cheapest);
         let Some((obstacle, _)) = first_contact(context.proxies, &node.motion) else {
             if !land::meets(context.problem.land_obstacle, &node.motion) {
-                found.extend(node.guess);
+                found.extend(node.guess.map(|guess| (guess, node.motion)));
             }
             continue;
         };
@@ -216,30 +220,28 @@ fn pose_at(motion: &[Segment], time: f64) -> Pose {
     segment.pose_at(time.max(segment.start_time))
 }
 
-/// Manoeuvre through at least two corners. It leaves the nominal motion at the first one, and goes
-/// through the others to the last waypoint or back onto the route. `None` where none fits.
+/// Refinement of a manoeuvre through at least two corners. It leaves the nominal motion at the
+/// first one, and goes through the others to the last waypoint or back onto the route. `None` where
+/// none fits.
 pub(crate) fn through(
     context: &Context,
     nominal_motion: &[Segment],
     corners: &[Corner],
     to_goal: bool,
-) -> Option<InitialGuess> {
+) -> Option<Refinement> {
     let node = Node {
         to_goal,
         ..Node::root(nominal_motion)
     };
-    guesses(context, &node, corners)
-        .find(|guess| Refinement::fitting(context, guess.clone()).is_some())
+    fitting(context, &node, corners)
 }
 
-/// The node's manoeuvre with these corners, by angle of its return.
-fn guesses(
-    context: &Context,
-    node: &Node,
-    corners: &[Corner],
-) -> impl Iterator<Item = InitialGuess> {
+/// Refinement of the node's manoeuvre with these corners; `None` where none fits.
+fn fitting(context: &Context, node: &Node, corners: &[Corner]) -> Option<Refinement> {
     let angles = RETURN_ANGLES.into_iter();
-    angles.filter_map(|angle| guess(context, node, corners, angle))
+    angles
+        .filter_map(|angle| guess(context, node, corners, angle))
+        .find_map(|guess| Refinement::fitting(context, guess))
 }
 
 /// Refines a manoeuvre with these corners.
@@ -251,9 +253,7 @@ fn child(
     steps: usize,
     clock: Clock,
 ) -> Option<Node> {
-    let refinement = guesses(context, node, corners)
-        .find_map(|guess| Refinement::fitting(context, guess))?
-        .run(context, steps, clock);
+    let refinement = fitting(context, node, corners)?.run(context, steps, clock);
     let guess = refinement.best()?;
     let rollout = guess
         .structure

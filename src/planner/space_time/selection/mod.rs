@@ -1,5 +1,5 @@
-//! Candidate selection: refines the graph's plans and predefined manoeuvres; the cheapest clear
-//! candidate wins.
+//! Candidate selection: refines the plans of the searches and predefined manoeuvres; the cheapest
+//! clear candidate wins.
 
 pub(crate) mod budget;
 pub(crate) mod coarse_search;
@@ -147,8 +147,9 @@ impl<'a> Selection<'a> {
     }
 
     /// Refines the manoeuvres added and the predefined ones around the conflicts of the nominal
-    /// motion. Among several targets a longer conflict search follows where nothing is clear, and a
-    /// hybrid A* for a cheaper motion. True when the deadline was reached.
+    /// motion. Among several targets another conflict search follows where nothing is clear, with
+    /// more steps and fewer nodes, and a hybrid A* for a cheaper motion. True when the deadline was
+    /// reached.
     pub(crate) fn refine(
         &mut self,
         nominal_motion: &[Segment],
@@ -206,6 +207,7 @@ impl<'a> Selection<'a> {
                 (round..next).for_each(|round| advance(refinement, &context, round, clock));
             });
             if clock.is_up() {
+                running.append(&mut self.along_grid);
                 self.collect(ranked(&running));
                 return true;
             }
@@ -218,14 +220,16 @@ impl<'a> Selection<'a> {
         });
         running.append(&mut self.along_grid);
         let most = self.search_budget.conflict_nodes;
-        if most > 0 && self.least(&running).is_infinite() {
-            let within = (most / 2, conflict_search::MORE_STEPS);
-            let found = conflict_search::resolve(&context, nominal_motion, within, clock);
-            let refined = |guess| Refinement::fitting(&context, guess);
-            running.extend(found.into_iter().filter_map(refined));
+        if most > 0 && !self.least(&running).is_finite() {
+            let (most, steps) = (most / 2, conflict_search::MORE_STEPS);
+            let resolved = conflict_search::resolve(&context, nominal_motion, most, steps, clock);
+            for (guess, motion) in resolved {
+                running.extend(Refinement::fitting(&context, guess));
+                self.add_candidate(motion);
+            }
         }
-        let (coarse, least) = (self.coarse_search.take(), self.least(&running));
-        if let Some((motion, along)) = coarse.and_then(|c| c.along_hybrid(least, clock)) {
+        let (grid, least) = (self.coarse_search.take(), self.least(&running));
+        if let Some((motion, along)) = grid.and_then(|g| g.along_hybrid(least, clock)) {
             self.add_candidate(motion);
             running.extend(along);
         }
