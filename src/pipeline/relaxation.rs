@@ -514,10 +514,11 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
     /// its end, or else where the last plan ends, each within half of the time. It keeps the level
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius.
-    fn short_of_end(&self, _: bool) -> Option<Attempt> {
+    /// turning radius. Where that half ran out, the levels below have the rest, and the answer says
+    /// that there was no more time.
+    fn short_of_end(&self, with_domain: bool) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
-        let (whole, reductions) = self.scaled(&self.scales(0.0));
+        let (whole, reductions) = self.asked(&self.scales(0.0));
         let hard = level_sets(&whole, risk);
         let problem = self.problem(&hard);
         let (why, desired) = self.scenario.planner.short_of_end(&problem)?;
@@ -544,10 +545,23 @@ impl Relaxer<'_> {
             Some(answer) => answer,
             None if is_near && !late => {
                 let planned = Planned::of(Outcome::Solved(Plan::staying(&problem)?));
-                let level = RelaxationLevel::ReducedDomains;
+                let level = match with_domain {
+                    true => RelaxationLevel::ReducedDomains,
+                    false => RelaxationLevel::Compliant,
+                };
                 let found = Attempt::of(level, whole, reductions, hard, risk, planned);
-                let retained = self.retained_along(found.trajectory()?, risk);
-                self.clear_of(&found, &retained, level)
+                if with_domain {
+                    let retained = self.retained_along(found.trajectory()?, risk);
+                    self.clear_of(&found, &retained, level)
+                } else {
+                    found
+                }
+            }
+            None if late => {
+                let mut below = [Self::remainder_on_the_way, Self::at_least_risk].into_iter();
+                return below
+                    .find_map(|plan| plan(self, with_domain))
+                    .map(out_of_time);
             }
             None => return None,
         };
@@ -615,13 +629,15 @@ impl Relaxer<'_> {
         let nominal: Vec<_> = targets
             .map(|(t, hard)| entered::nominal(t, hard, own))
             .collect();
-        let Some(planned) = self.scenario.planner.leaving_sets(&problem, &nominal) else {
-            return attempt;
-        };
-        let Some(plan) = planned.outcome.plan() else {
-            return attempt;
-        };
         let is_up = || self.time_left().is_zero();
+        let found = self.scenario.planner.leaving_sets(&problem, &nominal);
+        let found = found.and_then(|planned| Some((planned.outcome.plan()?.clone(), planned)));
+        let Some((plan, planned)) = found else {
+            return match is_up() {
+                true => out_of_time(attempt),
+                false => attempt,
+            };
+        };
         let left = |set| {
             let left = entered::left_for_good(set, &plan.trajectory, is_up)?;
             // nothing is claimed for a ship that has arrived
@@ -630,7 +646,7 @@ impl Relaxer<'_> {
         let released = hard.iter().map(left).collect();
         let timed_out = matches!(attempt.planned.outcome, Outcome::Deadline(_)) || is_up();
         let outcome = if timed_out {
-            Outcome::Deadline(Some(plan.clone()))
+            Outcome::Deadline(Some(plan))
         } else {
             planned.outcome
         };
@@ -849,11 +865,15 @@ impl Relaxer<'_> {
     }
 }
 
-/// Marks a plan as one that the deadline kept from being improved.
+/// Marks an answer as one that the deadline kept from being improved.
 pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
     attempt.planned.outcome = match attempt.planned.outcome {
         Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
-        other => other,
+        Outcome::Infeasible(why) => {
+            attempt.why = Some(why);
+            Outcome::Deadline(None)
+        }
+        deadline => deadline,
     };
     attempt
 }

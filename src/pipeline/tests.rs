@@ -555,6 +555,18 @@ fn out_of_time_there_is_still_an_answer() {
     ));
 }
 
+/// Own ship starts in a set, and the time is up before a way out and on is found.
+#[test]
+fn out_of_time_a_start_inside_is_not_called_infeasible() {
+    let in_time = fault("inside-out-of-time.toml");
+    let out_of_time = run(Scenario {
+        deadline: 0.0,
+        ..in_time.clone()
+    });
+    assert!(matches!(out_of_time.planned.outcome, Outcome::Deadline(_)));
+    assert!(matches!(run(in_time).planned.outcome, Outcome::Solved(_)));
+}
+
 #[test]
 fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
     let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);

@@ -28,6 +28,7 @@ fn verified_file(name: &str) -> Value {
 fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
     for name in [
         "deadline-without-relaxation",
+        "stays-without-domains",
         "forces-node",
         "ellipse-1e-300",
         "left-set",
