@@ -24,6 +24,7 @@ use judge::judge_answer;
 use relaxation::{Attempt, Relaxer};
 use rules::relaxed_rules;
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::evaluation::Evaluation;
@@ -173,6 +174,7 @@ pub fn run(scenario: Scenario) -> Run {
         sets: &sets,
         land_obstacle,
         begun,
+        is_cut_short: &Cell::new(false),
     };
     let answer = relaxer.answer();
     let plan_time = begun.elapsed();

@@ -3,6 +3,7 @@
 //! A level is tried when the levels above it gave no plan. A planner may find a way around a larger
 //! set and miss it for a smaller one. So some levels also plan against more than they require.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use super::entered;
@@ -150,6 +151,8 @@ pub(super) struct Relaxer<'a> {
     pub sets: &'a [TargetSets],
     pub land_obstacle: &'a LandObstacle,
     pub begun: Instant,
+    /// True once an attempt was cut short, whatever answers in the end.
+    pub is_cut_short: &'a Cell<bool>,
 }
 
 impl Relaxer<'_> {
@@ -176,9 +179,13 @@ impl Relaxer<'_> {
     pub fn answer(&self) -> Attempt {
         let (search, planner) = (self.scenario.search, self.scenario.planner.facts());
         let several = self.scenario.targets.len() > 1 && planner.searches.contains(&search);
-        match search {
+        let answer = match search {
             SearchKind::Thorough if several => self.thorough_answer(),
             _ => self.answer_of_one_search(),
+        };
+        match self.is_cut_short.get() {
+            true => out_of_time(answer),
+            false => answer,
         }
     }
 
@@ -514,8 +521,7 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
     /// its end, or else where the last plan ends, each within half of the time. It keeps the level
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius. Where that half ran out, the levels below have the rest, and the answer says
-    /// that there was no more time.
+    /// turning radius. Where its time runs out, the levels below have the rest.
     fn short_of_end(&self, with_domain: bool) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));
@@ -541,6 +547,9 @@ impl Relaxer<'_> {
             let keeps = answer.level < RelaxationLevel::Risk && answer.trajectory().is_some();
             keeps.then_some(answer)
         });
+        if late {
+            self.is_cut_short.set(true);
+        }
         let mut found = match answer {
             Some(answer) => answer,
             None if is_near && !late => {
@@ -556,12 +565,6 @@ impl Relaxer<'_> {
                 } else {
                     found
                 }
-            }
-            None if late => {
-                let mut below = [Self::remainder_on_the_way, Self::at_least_risk].into_iter();
-                return below
-                    .find_map(|plan| plan(self, with_domain))
-                    .map(out_of_time);
             }
             None => return None,
         };
@@ -746,6 +749,9 @@ impl Relaxer<'_> {
                 settings: &self.scenario.settings,
             })
         };
+        if planned.is_cut_short {
+            self.is_cut_short.set(true);
+        }
         Attempt::of(level, whole, reductions, obstacles, risk, planned)
     }
 

@@ -404,6 +404,8 @@ pub struct Planned {
     pub manoeuvres: Vec<PlannedManoeuvre>,
     /// True for the remainder of the plan that own ship follows.
     pub is_remainder: bool,
+    /// True where a part of the search was given up to leave time for others.
+    pub is_cut_short: bool,
 }
 
 impl Planned {
@@ -418,6 +420,7 @@ impl Planned {
             escape: None,
             manoeuvres: Vec::new(),
             is_remainder: false,
+            is_cut_short: false,
         }
     }
 }

@@ -286,6 +286,7 @@ fn plan_with(
         (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
     };
     Planned {
+        is_cut_short: best.is_cut_short,
         stats: best.stats,
         explored: best.explored,
         ..Planned::of(outcome)
@@ -296,6 +297,7 @@ fn plan_with(
 struct Attempt {
     plan: Option<Plan>,
     timed_out: bool,
+    is_cut_short: bool,
     stats: SearchStats,
     explored: ExploredGraph,
 }
@@ -324,15 +326,17 @@ fn attempt(
         selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>());
     }
     let mut timed_out = matches!(stop, Stop::Time);
+    let mut is_cut_short = false;
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     if let Some(others) = others {
         *others = selection.others.take().unwrap_or_default();
     } else if !timed_out && sequential::are_several(conflicts) {
         // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-        let motion =
+        let (motion, is_late) =
             sequential::resolve_sequentially(context, nominal_motion, &selection, budget, clock);
         // without a motion, too, the time may have been up
         timed_out = clock.is_up();
+        is_cut_short = is_late;
         if let Some(motion) = motion {
             selection.add_candidate(motion);
         }
@@ -340,6 +344,7 @@ fn attempt(
     Attempt {
         plan: selection.plan(),
         timed_out,
+        is_cut_short,
         stats: search.counts(),
         explored: node::explored(search),
     }

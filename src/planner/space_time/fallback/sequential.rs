@@ -45,14 +45,15 @@ struct Node {
 
 /// The cheapest motion found to the last waypoint that is clear of every proxy and of land, from a
 /// nominal one that is not clear. It is cheaper than the `selection`'s candidate. `None` where none
-/// is found.
+/// is found. With it true where ways were left out to leave time for others.
 pub(crate) fn resolve_sequentially(
     context: &Context,
     nominal_motion: &[Segment],
     selection: &Selection,
     budget: &SearchBudget,
     clock: Clock,
-) -> Option<Vec<Segment>> {
+) -> (Option<Vec<Segment>>, bool) {
+    let mut is_cut_short = false;
     let mut least = selection.least_cost();
     let (mut dead_ends, mut more) = (budget.dead_ends, usize::MAX);
     // half of the time is left to others after a dead end
@@ -77,6 +78,7 @@ pub(crate) fn resolve_sequentially(
             continue;
         };
         let is_late = dead_ends < budget.dead_ends && clock.left() < reserve;
+        is_cut_short |= is_late && dead_ends > 0 && more > 0;
         if dead_ends == 0 || more == 0 || is_late || clock.is_up() {
             continue;
         }
@@ -92,7 +94,7 @@ pub(crate) fn resolve_sequentially(
         children.reverse();
         open.extend(children);
     }
-    best
+    (best, is_cut_short)
 }
 
 /// A motion for each way past the first sets that the node's motion meets, at `contact`: first the
