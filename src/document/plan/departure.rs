@@ -136,13 +136,18 @@ impl PlanDocument {
 
 /// Departure of a sampled motion from the desired trajectory. At a corner, every course between
 /// those of its legs is a desired one: within two turning `radius` in metres. A departure toward the
-/// desired path is the return from a manoeuvre. A motion along given paths departs in speed alone.
+/// desired path is the return from a manoeuvre. A motion along given paths departs in speed alone,
+/// and one of no duration not at all.
 pub(crate) fn departure(
     samples: &[SampleDocument],
     desired: &DesiredTrajectory,
     radius: f64,
     is_along_path: bool,
 ) -> Option<Departure> {
+    let (first, last) = samples.first().zip(samples.last())?;
+    if last.t_s <= first.t_s {
+        return None;
+    }
     let turns = match is_along_path {
         true => Vec::new(),
         false => turns(samples, desired, radius),
@@ -397,6 +402,13 @@ mod tests {
         let desired = DesiredTrajectory::new(&points, &speeds).expect("a path");
         let found = departure(&sailed(parts), &desired, 30.0, false);
         found.map_or("none".to_owned(), |found| found.to_string())
+    }
+
+    #[test]
+    fn a_motion_of_no_duration_departs_from_nothing() {
+        let north = [(0.0, 0.0), (0.0, 1000.0)];
+        assert_eq!(found(&north, &[(1, 60.0, 5.0)]), "none");
+        assert_ne!(found(&north, &[(30, 60.0, 5.0)]), "none");
     }
 
     #[test]
