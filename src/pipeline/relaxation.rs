@@ -276,7 +276,7 @@ impl Relaxer<'_> {
             let mut attempts = Self::ATTEMPTS.iter();
             attempts.find_map(|plan| plan(self, with_domain))
         });
-        match found {
+        match self.or_cut_again(found, with_domain) {
             Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
             Some(found) => self.late(with_domain, found),
             None => self.leaving_sets(first),
@@ -518,11 +518,32 @@ impl Relaxer<'_> {
         }
     }
 
-    /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
-    /// its end, or else where the last plan ends, each within half of the time. It keeps the level
-    /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius. Where its time runs out, the levels below have the rest.
+    /// Where a level ran out of its share of the time and no answer is safe, the rest of the time is
+    /// for the mission that is cut.
+    fn or_cut_again(&self, found: Option<Attempt>, with_domain: bool) -> Option<Attempt> {
+        let is_safe = |of: &Attempt| of.trajectory().is_some() && of.level < RelaxationLevel::Risk;
+        let has_time = self.is_cut_short.get() && !self.time_left().is_zero();
+        if found.as_ref().is_some_and(is_safe) || !has_time {
+            return found;
+        }
+        match (self.cut(with_domain, 1.0), found) {
+            (Some(again), Some(found)) if !again.is_better_than(&found) => Some(found),
+            (Some(again), _) => Some(again),
+            (None, found) => found,
+        }
+    }
+
+    /// [`RelaxationLevel::Waiting`]: the answer of [`Self::cut`] within half of the time, which leaves
+    /// the rest to the levels below.
     fn short_of_end(&self, with_domain: bool) -> Option<Attempt> {
+        self.cut(with_domain, 0.5)
+    }
+
+    /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
+    /// its end, or else where the last plan ends, each within a share of the time. It keeps the level
+    /// of that answer. Without one the plan ends where own ship is, if the place is within its
+    /// turning radius.
+    fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));
         let hard = level_sets(&whole, risk);
@@ -539,7 +560,7 @@ impl Relaxer<'_> {
         let answer = desired.into_iter().chain(before).find_map(|desired| {
             let short = Scenario {
                 desired,
-                deadline: self.scenario.deadline - 0.5 * self.time_left().as_secs_f64(),
+                deadline: self.scenario.deadline - (1.0 - share) * self.time_left().as_secs_f64(),
                 ..self.scenario.clone()
             };
             let answer = self.of(&short, self.sets).answer_of_one_search();
