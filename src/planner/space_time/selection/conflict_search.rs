@@ -117,13 +117,8 @@ pub(crate) fn resolve(
         }
         let met = by_obstacle(context.proxies).find(|h| h[0].obstacle == obstacle);
         if let Some(conflict) = met.and_then(|h| Conflict::of(h, &node.motion)) {
-            open.extend(children(
-                context,
-                &node,
-                (obstacle, &conflict),
-                steps,
-                clock,
-            ));
+            let children = children(context, &node, obstacle, &conflict, steps, clock);
+            open.extend(children);
         }
     }
     found
@@ -133,7 +128,8 @@ pub(crate) fn resolve(
 fn children(
     context: &Context,
     node: &Node,
-    (obstacle, conflict): (usize, &Conflict),
+    obstacle: usize,
+    conflict: &Conflict,
     steps: usize,
     clock: Clock,
 ) -> Vec<Node> {
@@ -485,7 +481,8 @@ mod tests {
         let context = Context::new(&problem, &route, &proxies, &[]);
         let nominal = route.follow(0.0, 0.0);
         let conflict = Conflict::of(&proxies, &nominal).expect("a conflict");
-        let found = children(&context, &Node::root(&nominal), (0, &conflict), 10, clock);
+        let root = Node::root(&nominal);
+        let found = children(&context, &root, 0, &conflict, MORE_STEPS, clock);
         let mut sides = [false; 2];
         for child in &found {
             assert!(first_contact(&proxies, &child.motion).is_none());
