@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use super::parts::{ImprovementDocument, TimingDocument};
 use super::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument, MONITORS,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
@@ -113,8 +114,22 @@ pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str
         let manoeuvre = "a manoeuvre by the rules, found without the graph".to_owned();
         add("search", if by_rules { manoeuvre } else { graph });
     }
-    add(TIME_LINE, format!("{:.2} ms", 1e3 * plan.timing.plan_s));
+    add(TIME_LINE, time_words(&plan.timing));
     lines
+}
+
+/// The planning time, and when a thorough search found better answers.
+fn time_words(timing: &TimingDocument) -> String {
+    let whole = format!("{:.2} ms", 1e3 * timing.plan_s);
+    let step = |step: &ImprovementDocument| {
+        let cost = square_metres(step.cost_m2);
+        format!("{cost} m² after {:.0} ms", 1e3 * step.after_s)
+    };
+    let steps: Vec<String> = timing.improvements.iter().map(step).collect();
+    match steps.len() {
+        0 | 1 => whole,
+        _ => format!("{whole}; J {}", steps.join(", ")),
+    }
 }
 
 /// Manoeuvres that the plan continues, and the targets that did not stay in their sets.

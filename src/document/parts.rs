@@ -113,9 +113,19 @@ pub struct CostDocument {
 }
 
 /// Planning time, the only value that differs between two runs.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimingDocument {
     pub plan_s: f64,
+    /// The answers of a thorough search; empty for others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub improvements: Vec<ImprovementDocument>,
+}
+
+/// An answer that was the best for some time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ImprovementDocument {
+    pub after_s: f64,
+    pub cost_m2: f64,
 }
 
 /// Pose at a time.

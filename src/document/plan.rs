@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::parts::{
-    CostDocument, EscapeDocument, LowerBoundDocument, MissionDocument, NodeDocument,
-    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
-    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
-    ViolationDocument,
+    CostDocument, EscapeDocument, ImprovementDocument, LowerBoundDocument, MissionDocument,
+    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
+    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
+    TrajectoryDocument, ViolationDocument,
 };
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
@@ -215,8 +215,14 @@ pub(crate) fn position(p: Vector) -> PositionDocument {
 }
 
 pub(crate) fn timing(run: &Run) -> TimingDocument {
+    let improvements = run.planned.improvements.iter();
+    let improvements = improvements.map(|improvement| ImprovementDocument {
+        after_s: improvement.after.as_secs_f64(),
+        cost_m2: improvement.cost,
+    });
     TimingDocument {
         plan_s: run.plan_time.as_secs_f64(),
+        improvements: improvements.collect(),
     }
 }
 

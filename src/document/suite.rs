@@ -146,7 +146,7 @@ impl SuiteRunDocument {
             encounters: plan.encounters.clone(),
             targets: Some(plan.targets.len()),
             search_stats: Some(plan.search_stats),
-            timing: Some(plan.timing),
+            timing: Some(plan.timing.clone()),
             notes,
         }
     }

@@ -4,6 +4,7 @@ use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
 use crate::obstacle::PolytopeObstacle;
+use crate::planner::SearchKind;
 use crate::planner::path_time::PathTimePlanner;
 use crate::scenario::Compliance;
 use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
@@ -555,7 +556,8 @@ fn out_of_time_there_is_still_an_answer() {
     ));
 }
 
-/// Own ship starts in a set, and the time is up before a way out and on is found.
+/// Own ship starts in a set, and the time is up before a way out and on is found. To join the path
+/// where it begins takes a full turn, for which the horizon is too short.
 #[test]
 fn out_of_time_a_start_inside_is_not_called_infeasible() {
     let in_time = fault("inside-out-of-time.toml");
@@ -563,8 +565,36 @@ fn out_of_time_a_start_inside_is_not_called_infeasible() {
         deadline: 0.0,
         ..in_time.clone()
     });
-    assert!(matches!(out_of_time.planned.outcome, Outcome::Deadline(_)));
+    assert!(matches!(
+        out_of_time.planned.outcome,
+        Outcome::Deadline(Some(_))
+    ));
     assert!(matches!(run(in_time).planned.outcome, Outcome::Solved(_)));
+}
+
+/// A thorough search notes its answers, the last of which is the plan.
+#[test]
+fn a_thorough_search_notes_what_it_found_and_when() {
+    let of = |search| {
+        run(Scenario {
+            compliance: Compliance::Shape,
+            search,
+            ..fault("rules-foreseen-role.toml")
+        })
+    };
+    let [quick, thorough] = [SearchKind::AStar, SearchKind::Thorough].map(of);
+    let cost = |run: &Run| run.planned.outcome.plan().expect("a plan").cost;
+    let found = &thorough.planned.improvements;
+    assert!(quick.planned.improvements.is_empty());
+    assert!(
+        found.len() > 1 && found[0].cost == cost(&quick),
+        "{found:?}"
+    );
+    assert_eq!(found[found.len() - 1].cost, cost(&thorough));
+    for pair in found.windows(2) {
+        assert!(pair[1].cost < pair[0].cost && pair[1].after > pair[0].after);
+    }
+    assert!(found[found.len() - 1].after < thorough.plan_time);
 }
 
 #[test]

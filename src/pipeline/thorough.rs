@@ -3,7 +3,7 @@
 use super::relaxation::{Attempt, RelaxationLevel, Relaxer, out_of_time};
 use super::sets;
 use crate::obstacle::{SpaceTimeObstacle, level_sets};
-use crate::planner::{Outcome, Plan, Planned, SearchKind};
+use crate::planner::{Improvement, Outcome, Plan, Planned, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation};
 use crate::tolerance::TOUCH_M;
@@ -23,6 +23,8 @@ impl Relaxer<'_> {
         let is_late = |of: &Attempt| matches!(of.planned.outcome, Outcome::Deadline(_));
         let quick = with_search(self.scenario, SearchKind::AStar);
         let mut best = self.of(&quick, self.sets).answer_of_one_search();
+        let mut improvements = Vec::new();
+        self.note(&best, &mut improvements);
         let costs_nothing = |plan: &Plan| plan.cost < NOTHING_M2;
         let is_free = best.planned.outcome.plan().is_some_and(costs_nothing);
         if is_late(&best) || is_free && best.level == RelaxationLevel::Compliant {
@@ -32,6 +34,7 @@ impl Relaxer<'_> {
         let mut late = is_late(&larger);
         if !best.is_better_than(&larger) {
             best = larger;
+            self.note(&best, &mut improvements);
         }
         let others = match best.planned.is_remainder {
             true => Vec::new(),
@@ -46,11 +49,24 @@ impl Relaxer<'_> {
                 && found.is_better_than(&best)
             {
                 best = found;
+                self.note(&best, &mut improvements);
             }
         }
+        best.planned.improvements = improvements;
         match late || self.time_left().is_zero() {
             true => out_of_time(best),
             false => best,
+        }
+    }
+
+    /// Adds an answer to those that were the best for some time, unless it costs the same.
+    fn note(&self, best: &Attempt, improvements: &mut Vec<Improvement>) {
+        let Some(cost) = best.planned.outcome.plan().map(|plan| plan.cost) else {
+            return;
+        };
+        if improvements.last().is_none_or(|last| last.cost != cost) {
+            let after = self.begun.elapsed();
+            improvements.push(Improvement { after, cost });
         }
     }
 

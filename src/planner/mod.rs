@@ -406,6 +406,17 @@ pub struct Planned {
     pub is_remainder: bool,
     /// True where a part of the search was given up to leave time for others.
     pub is_cut_short: bool,
+    /// The answers of a thorough search, each better than the one before; else empty.
+    pub improvements: Vec<Improvement>,
+}
+
+/// An answer that was the best for some time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Improvement {
+    /// Planning time when it was found.
+    pub after: Duration,
+    /// Its [`Plan::cost`], m². An answer that gives up less may cost more than the one before.
+    pub cost: f64,
 }
 
 impl Planned {
@@ -421,6 +432,7 @@ impl Planned {
             manoeuvres: Vec::new(),
             is_remainder: false,
             is_cut_short: false,
+            improvements: Vec::new(),
         }
     }
 }

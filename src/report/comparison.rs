@@ -163,7 +163,11 @@ fn row(group: &[&EntryDocument]) -> Vec<Styled> {
         or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
         figure(|c| c.max_risk, risk_figure),
         listed(group.iter().map(nodes)),
-        listed(group.iter().map(|entry| entry.timing.map(milliseconds))),
+        listed(
+            group
+                .iter()
+                .map(|entry| entry.timing.as_ref().map(milliseconds)),
+        ),
         verified(cost.filter(|_| planned).map(|_| entry.verified), safe),
         yes_or_no(safe),
         rules_broken(
@@ -275,7 +279,7 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         turn.map_or_else(String::new, |(_, side)| side.to_string()),
         (entry.breaks.as_ref()).map_or_else(String::new, |b| b.join(" ")),
         (entry.search_stats).map_or_else(String::new, |stats| stats.expanded.to_string()),
-        optional(entry.timing.map(|timing| 1e3 * timing.plan_s)),
+        optional(entry.timing.as_ref().map(|timing| 1e3 * timing.plan_s)),
         entry.reason.clone().unwrap_or_default(),
     ]
 }

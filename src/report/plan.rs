@@ -106,7 +106,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         or_dash(risks.max_by(f64::total_cmp).map(risk_figure)),
         rules_broken(breaks(&run.encounters)),
         or_dash(run.search_stats.map(|stats| stats.expanded.to_string())),
-        or_dash(run.timing.map(milliseconds)),
+        or_dash(run.timing.as_ref().map(milliseconds)),
         verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
         yes_or_no(cost.map(|_| run.safe)),
     ]
@@ -117,7 +117,7 @@ pub(super) fn manoeuvre(departure: Option<Departure>) -> String {
     departure.map_or("none".to_owned(), |departure| departure.brief())
 }
 
-pub(super) fn milliseconds(timing: TimingDocument) -> String {
+pub(super) fn milliseconds(timing: &TimingDocument) -> String {
     format!("{:.2}", 1e3 * timing.plan_s)
 }
 

@@ -5,7 +5,7 @@ use super::{PlanDocument, departure};
 use crate::document::encounter::has_role;
 use crate::document::parts::{ObstacleDocument, PositionDocument};
 use crate::frame::{Pose, Vector, deg_from_radians, heading_of, wrap};
-use crate::geometry::{ConvexPolygon, ConvexSet, Window};
+use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::target::Uncertainty;
 use crate::tolerance;
@@ -251,9 +251,8 @@ fn first_entered<'a>(held: &[Segment], sets: Vec<&'a ObstacleDocument>) -> Optio
 /// When a motion enters a set.
 fn enters(held: &[Segment], set: &ObstacleDocument) -> Option<f64> {
     let [from, until] = set.valid_s;
-    let (initial, velocity) = (set.initial_set.set().ok()?, set.velocity_set.set().ok()?);
-    let (place, reach) = disc(&initial);
-    let (drift, spread) = disc(&velocity);
+    let (place, reach) = set.initial_set.disc();
+    let (drift, spread) = set.velocity_set.disc();
     let parts = held
         .iter()
         .filter(|s| s.start_time <= until && s.end_time() >= from);
@@ -276,6 +275,7 @@ fn enters(held: &[Segment], set: &ObstacleDocument) -> Option<f64> {
     if near.is_empty() {
         return None;
     }
+    let (initial, velocity) = (set.initial_set.set().ok()?, set.velocity_set.set().ok()?);
     let obstacle = Obstacle::new("", Uncertainty::constant(initial, velocity)).ok()?;
     let contact = |part: &Segment| obstacle.first_contact(part, DEPTH_M);
     Some(from + near.iter().find_map(contact)?)
@@ -305,14 +305,6 @@ fn at_one_speed(legs: &[PlannedLeg], speed: f64) -> Vec<Segment> {
         segment
     });
     at_speed.collect()
-}
-
-/// Centre and radius of a disc around a set.
-fn disc(set: &ConvexSet) -> (Vector, f64) {
-    let most = |x: f64, y: f64| set.support(Vector::new(x, y));
-    let low = Vector::new(-most(-1.0, 0.0), -most(0.0, -1.0));
-    let high = Vector::new(most(1.0, 0.0), most(0.0, 1.0));
-    (0.5 * (low + high), 0.5 * (high - low).norm())
 }
 
 #[cfg(test)]

@@ -86,6 +86,26 @@ macro_rules! set_document {
                     Self::Ellipse { $center, $shape } => ellipse(*$center, $shape),
                 }
             }
+
+            /// Centre and radius of a disc around the set, without its construction.
+            pub(in crate::document) fn disc(&self) -> (Vector, f64) {
+                match self {
+                    Self::Polygon { $vertices } => {
+                        let corners = $vertices.iter().map(|p| Vector::from(*p));
+                        let extreme = |f: fn(f64, f64) -> f64, from: f64| {
+                            let from = Vector::new(from, from);
+                            corners.clone().fold(from, |m, p| m.zip_map(&p, f))
+                        };
+                        let low = extreme(f64::min, f64::INFINITY);
+                        let high = extreme(f64::max, f64::NEG_INFINITY);
+                        (0.5 * (low + high), 0.5 * (high - low).norm())
+                    }
+                    Self::Ellipse { $center, $shape } => {
+                        let [[a, _], [_, b]] = $shape;
+                        (Vector::from(*$center), (a + b).sqrt())
+                    }
+                }
+            }
         }
     };
 }

@@ -25,6 +25,9 @@ const LONGEST_TANGENT_RADII: f64 = 3.0;
 /// skipped.
 const SKIPPED_RADII: f64 = 4.0;
 
+/// What is added to the cost of a route that is too late for the horizon, m².
+const LATE_M2: f64 = 1e12;
+
 /// Least distance between two changes of speed, metres. Shorter remainders of a piece would vanish
 /// in rounding.
 const SHORTEST_M: f64 = 1e-3;
@@ -108,34 +111,22 @@ pub(crate) struct Route {
 impl Route {
     /// Cheapest route of those that join the path at [`JOINS`] at each speed. Corners are rounded
     /// with the turning radius where the legs are long enough; otherwise the mean course leads
-    /// through them. `None` only when nothing is finite. After the deadline, the best route so far.
+    /// through them. `None` only when nothing is finite. After the deadline, the best route so far,
+    /// or the shortest where that is late.
     pub(crate) fn new(problem: &Problem, clock: Clock) -> Option<Self> {
         let own = problem.own;
         let desired = problem.desired;
         let mut best: Option<(f64, Self)> = None;
         for (leg, along) in joins(problem) {
             for speed in own.moving_speeds() {
-                if best.is_some() && clock.is_up() {
-                    return best.map(|(_, route)| route);
+                if clock.is_up() {
+                    let in_time = best.filter(|(rank, _)| *rank < LATE_M2);
+                    return in_time.map_or_else(|| Self::shortest(problem), |b| Some(b.1));
                 }
-                let Some(mut route) = Self::joining(problem, leg, along, speed) else {
+                let Some(route) = Self::joining(problem, leg, along, speed) else {
                     continue;
                 };
-                let mut arrival = route.arrival(0.0, 0.0);
-                if arrival > problem.horizon {
-                    route.least_change = 0.0;
-                    arrival = route.arrival(0.0, 0.0);
-                }
-                if arrival > problem.horizon {
-                    let factor = problem.horizon * (1.0 - 1e-6) / arrival.max(desired.duration());
-                    for piece in &mut route.pieces {
-                        piece.due *= factor;
-                        piece.slowness *= factor;
-                    }
-                }
-                if clock.is_up() {
-                    return Some(route);
-                }
+                let route = route.before_horizon(problem);
                 let cost = problem.error_to_end(&route.follow(0.0, 0.0));
                 let late = route.arrival(0.0, 0.0) > problem.horizon;
                 let unplain = route.joins_by_odd_turns() || !route.joins_at(desired, leg);
@@ -143,7 +134,7 @@ impl Route {
                     true => ODD_TURNS_PRICE,
                     false => 1.0,
                 };
-                let rank = if late { cost + 1e12 } else { cost * price };
+                let rank = if late { cost + LATE_M2 } else { cost * price };
                 if rank.is_finite()
                     && best
                         .as_ref()
@@ -159,6 +150,32 @@ impl Route {
             }
         }
         best.map(|(_, route)| route)
+    }
+
+    /// Shortest route of those that join the path at the greatest speed: it takes no search.
+    fn shortest(problem: &Problem) -> Option<Self> {
+        let speed = problem.own.max_speed();
+        let routes = joins(problem).into_iter();
+        let routes = routes.filter_map(|(leg, along)| Self::joining(problem, leg, along, speed));
+        let shortest = routes.min_by(|a, b| a.length().total_cmp(&b.length()))?;
+        Some(shortest.before_horizon(problem))
+    }
+
+    /// This route with a faster schedule where the desired one is too late for the horizon.
+    fn before_horizon(mut self, problem: &Problem) -> Self {
+        let mut arrival = self.arrival(0.0, 0.0);
+        if arrival > problem.horizon {
+            self.least_change = 0.0;
+            arrival = self.arrival(0.0, 0.0);
+        }
+        if arrival > problem.horizon {
+            let factor = problem.horizon * (1.0 - 1e-6) / arrival.max(problem.desired.duration());
+            for piece in &mut self.pieces {
+                piece.due *= factor;
+                piece.slowness *= factor;
+            }
+        }
+        self
     }
 
     /// This route, on which own ship does not change its speed to be on schedule again.

@@ -25,18 +25,28 @@ const STEP: f64 = 2.0;
 const SHOWN: f64 = 4.0;
 
 /// Draws one row of panels per scenario: the chart, the distance to the nearest target over time,
-/// and in a sweep the cost over the accepted risk.
+/// in a sweep the cost over the accepted risk, and, where a thorough search found several answers, the
+/// cost over the planning time.
 pub fn comparison_figure(
     compared: &[(&Scenario, &[Entry])],
     options: &FigureOptions,
 ) -> Result<Figure, FigureError> {
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
     let ends = compared.iter().map(|(scenario, _)| scenario.horizon);
+    let is_improved = |(_, entries): &(_, &[Entry])| entries.iter().any(|e| steps(e).len() > 1);
+    let improved = compared.iter().any(is_improved);
     options.draw(ends.fold(f64::INFINITY, f64::min), |style| {
-        let rows = compared
-            .iter()
-            .flat_map(|(scenario, entries)| comparison_panels(scenario, entries, sweep, style));
-        let columns = if sweep && !style.is_small() { 3 } else { 2 };
+        let rows = compared.iter().flat_map(|(scenario, entries)| {
+            let mut panels = comparison_panels(scenario, entries, sweep, style);
+            if improved {
+                panels.push(anytime(scenario, entries, style));
+            }
+            panels
+        });
+        let columns = match style.is_small() {
+            true => 2,
+            false => 2 + usize::from(sweep) + usize::from(improved),
+        };
         let figure = Figure::new(columns, rows.collect());
         // titles tell the scenarios apart
         if compared.len() > 1 {
@@ -248,6 +258,73 @@ fn distances(scenario: &Scenario, curves: &[Curve]) -> Panel {
     let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
     for (stroke, line) in lines.iter().rev() {
         panel.curve(line, false, *stroke);
+    }
+    panel
+}
+
+/// Seconds of planning and cost of each answer that led to a verified plan within the risk, in order
+/// of time.
+fn steps(entry: &Entry) -> Vec<Vector> {
+    let (Some(run), Some(_)) = (entry.run.as_deref(), cost_within_risk(entry)) else {
+        return Vec::new();
+    };
+    let improvements = run.planned.improvements.iter();
+    let mut steps: Vec<Vector> = improvements
+        .map(|improvement| Vector::new(improvement.after.as_secs_f64(), improvement.cost))
+        .collect();
+    if let (true, Some(plan)) = (steps.is_empty(), run.planned.outcome.plan()) {
+        steps.push(Vector::new(run.plan_time.as_secs_f64(), plan.cost));
+    }
+    steps
+}
+
+/// Draws the cost over planning time, relative to the least: a step for each answer of a thorough
+/// search, until it ended, and a point for each other one.
+fn anytime(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
+    let of = |entry: &Entry| Some((entry.run.as_deref()?.plan_time, steps(entry)));
+    let found: Vec<_> = (entries.iter())
+        .filter_map(|entry| Some((Stroke::of(entry.candidate.method), entry, of(entry)?)))
+        .filter(|(.., (_, steps))| !steps.is_empty())
+        .collect();
+    let costs = found
+        .iter()
+        .flat_map(|(.., (_, steps))| steps.iter().map(|p| p.y));
+    let least = costs.clone().fold(f64::INFINITY, f64::min);
+    let most = costs.fold(1.01 * least, f64::max) / least;
+    let ends = found.iter().map(|(.., (end, _))| end.as_secs_f64());
+    let end = 1.05 * ends.fold(f64::MIN_POSITIVE, f64::max);
+    let edge = 0.1 * (most - 1.0);
+    let window = Window::new(Vector::new(0.0, 1.0 - edge), Vector::new(end, most + edge));
+    let title = format!("{}: cost over planning time", scenario.title);
+    let axes = ["Planning time [s]", "J / least J [-]"];
+    let mut panel = Panel::free(title, axes, window);
+    for (stroke, _, (end, steps)) in found.iter().rev() {
+        let steps: Vec<Vector> = (steps.iter())
+            .map(|p| Vector::new(p.x, p.y / least))
+            .collect();
+        let before = steps
+            .windows(2)
+            .map(|pair| Vector::new(pair[1].x, pair[0].y));
+        let corners = steps
+            .iter()
+            .skip(1)
+            .zip(before)
+            .flat_map(|(p, corner)| [corner, *p]);
+        let last = Vector::new(end.as_secs_f64(), steps[steps.len() - 1].y);
+        let line: Vec<Vector> = [steps[0]]
+            .into_iter()
+            .chain(corners)
+            .chain([last])
+            .collect();
+        panel.curve(&line, false, *stroke);
+        panel.plots.push(marks(&steps, stroke.colour));
+    }
+    for (stroke, entry, (_, steps)) in found.iter().filter(|_| !style.is_small()) {
+        let cost = steps[steps.len() - 1].y;
+        panel.line_key(
+            &format!("{}: {cost:.0} m²", entry.candidate.method),
+            *stroke,
+        );
     }
     panel
 }
