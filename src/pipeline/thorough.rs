@@ -23,8 +23,7 @@ impl Relaxer<'_> {
         let is_late = |of: &Attempt| matches!(of.planned.outcome, Outcome::Deadline(_));
         let quick = with_search(self.scenario, SearchKind::AStar);
         let mut best = self.of(&quick, self.sets).answer_of_one_search();
-        let mut improvements = Vec::new();
-        self.note(&best, &mut improvements);
+        self.note(&mut best);
         let costs_nothing = |plan: &Plan| plan.cost < NOTHING_M2;
         let is_free = best.planned.outcome.plan().is_some_and(costs_nothing);
         if is_late(&best) || is_free && best.level == RelaxationLevel::Compliant {
@@ -33,8 +32,7 @@ impl Relaxer<'_> {
         let larger = self.answer_of_one_search();
         let mut late = is_late(&larger);
         if !best.is_better_than(&larger) {
-            best = larger;
-            self.note(&best, &mut improvements);
+            self.keep(larger, &mut best);
         }
         let others = match best.planned.is_remainder {
             true => Vec::new(),
@@ -48,25 +46,31 @@ impl Relaxer<'_> {
             if let Some(found) = self.candidate(&other)
                 && found.is_better_than(&best)
             {
-                best = found;
-                self.note(&best, &mut improvements);
+                self.keep(found, &mut best);
             }
         }
-        best.planned.improvements = improvements;
         match late || self.time_left().is_zero() {
             true => out_of_time(best),
             false => best,
         }
     }
 
-    /// Adds an answer to those that were the best for some time, unless it costs the same.
-    fn note(&self, best: &Attempt, improvements: &mut Vec<Improvement>) {
+    /// Puts a better answer in the place of the best one.
+    fn keep(&self, mut better: Attempt, best: &mut Attempt) {
+        better.planned.improvements = std::mem::take(&mut best.planned.improvements);
+        *best = better;
+        self.note(best);
+    }
+
+    /// Notes what an answer costs, unless it is as much as before.
+    fn note(&self, best: &mut Attempt) {
         let Some(cost) = best.planned.outcome.plan().map(|plan| plan.cost) else {
             return;
         };
-        if improvements.last().is_none_or(|last| last.cost != cost) {
+        let noted = &mut best.planned.improvements;
+        if noted.last().is_none_or(|last| last.cost != cost) {
             let after = self.begun.elapsed();
-            improvements.push(Improvement { after, cost });
+            noted.push(Improvement { after, cost });
         }
     }
 
