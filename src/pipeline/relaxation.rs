@@ -12,6 +12,7 @@ use super::rules::{self, encountered, first_turn};
 use super::sets::TargetSets;
 use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
+use crate::parallel;
 use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
@@ -746,8 +747,16 @@ impl Relaxer<'_> {
 
     /// Plans against domains of these scale factors at a risk.
     fn attempt(&self, level: RelaxationLevel, scales: &[f64], risk: f64) -> Attempt {
-        let (whole, reductions) = self.asked(scales);
         let planner = self.scenario.planner;
+        let facts = planner.facts();
+        let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
+        // along paths a few lines are tested all the same
+        let is_skipped = is_late && !facts.follows_paths && !facts.relaxes_domains_only;
+        let (whole, reductions) = match is_skipped {
+            // these are there; others take time
+            true => self.asked(&self.scales(0.0)),
+            false => self.asked(scales),
+        };
         let obstacles = planner.outer_sets(level_sets(&whole, risk));
         let mut problem = self.problem(&obstacles);
         let mut encounters = Vec::new();
@@ -756,10 +765,7 @@ impl Relaxer<'_> {
             problem.under_way = self.scenario.memory.under_way;
         }
         problem.encountered = &encounters;
-        let facts = planner.facts();
-        let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
-        // along paths a few lines are tested all the same
-        let planned = if is_late && !facts.follows_paths && !facts.relaxes_domains_only {
+        let planned = if is_skipped {
             Planned::of(Outcome::Deadline(None))
         } else {
             planner.plan(&PlanRequest {
@@ -804,8 +810,15 @@ impl Relaxer<'_> {
 
     /// The sets with domains of these scale factors, and metres by which each domain is reduced.
     fn scaled(&self, scales: &[f64]) -> (Vec<Obstacle>, Vec<f64>) {
-        let all = self.sets.iter().zip(scales);
-        let scaled = all.map(|(sets, scale)| sets.scaled(*scale));
+        let scaled = |index: usize, sets: &TargetSets| sets.scaled(scales[index]);
+        let is_work = scales.iter().any(|scale| *scale > 0.0 && *scale < 1.0);
+        let scaled = match is_work {
+            true => parallel::map(self.sets, scaled),
+            false => (self.sets.iter().enumerate())
+                .map(|(index, sets)| scaled(index, sets))
+                .collect(),
+        };
+        let scaled = scaled.into_iter();
         scaled.map(|s| (s.obstacle, s.reduction)).unzip()
     }
 
@@ -846,12 +859,11 @@ impl Relaxer<'_> {
 
     /// Scale factor of each domain that a motion is clear of, from below, by bisection.
     fn retained_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
-        let all = self.sets.iter();
-        all.map(|sets| {
+        parallel::map(self.sets, |_, sets| {
             let clear = |scale: f64| {
                 let set = sets.scaled(scale).obstacle;
                 let set = if risk > 0.0 { set.at_risk(risk) } else { set };
-                !set.is_entered(trajectory.segments(), crate::tolerance::TOUCH_M)
+                !set.is_entered(trajectory.segments(), tolerance::TOUCH_M)
             };
             if !sets.has_domain() || clear(1.0) {
                 return 1.0;
@@ -859,7 +871,6 @@ impl Relaxer<'_> {
             let [retained, _] = bisected([0.0, 1.0], RETAINED_HALVINGS, clear);
             retained
         })
-        .collect()
     }
 
     /// Enlarges the smallest retained domain, and shrinks no other, by warm-started plans.
