@@ -545,6 +545,9 @@ impl Relaxer<'_> {
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
     /// turning radius.
     fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
+        if self.time_left().is_zero() && self.scenario.memory.remainder.is_empty() {
+            return None;
+        }
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));
         let hard = level_sets(&whole, risk);
@@ -752,11 +755,14 @@ impl Relaxer<'_> {
         let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
         // along paths a few lines are tested all the same
         let is_skipped = is_late && !facts.follows_paths && !facts.relaxes_domains_only;
-        let (whole, reductions) = match is_skipped {
-            // these are there; others take time
-            true => self.asked(&self.scales(0.0)),
-            false => self.asked(scales),
-        };
+        if is_skipped {
+            // the hard sets are there; others take time
+            let (whole, reductions) = self.asked(&self.scales(0.0));
+            let none = Planned::of(Outcome::Deadline(None));
+            let risk = self.scenario.max_risk;
+            return Attempt::of(level, whole.clone(), reductions, whole, risk, none);
+        }
+        let (whole, reductions) = self.asked(scales);
         let obstacles = planner.outer_sets(level_sets(&whole, risk));
         let mut problem = self.problem(&obstacles);
         let mut encounters = Vec::new();
@@ -765,17 +771,13 @@ impl Relaxer<'_> {
             problem.under_way = self.scenario.memory.under_way;
         }
         problem.encountered = &encounters;
-        let planned = if is_skipped {
-            Planned::of(Outcome::Deadline(None))
-        } else {
-            planner.plan(&PlanRequest {
-                problem,
-                whole: &whole,
-                max_risk: risk,
-                may_wait: level == RelaxationLevel::Waiting,
-                settings: &self.scenario.settings,
-            })
-        };
+        let planned = planner.plan(&PlanRequest {
+            problem,
+            whole: &whole,
+            max_risk: risk,
+            may_wait: level == RelaxationLevel::Waiting,
+            settings: &self.scenario.settings,
+        });
         if planned.is_cut_short {
             self.is_cut_short.set(true);
         }
