@@ -22,9 +22,13 @@ const WORTH_FINDING: f64 = 200_000.0;
 /// Maximum ratio of J to that of the dense search.
 const WORST_RATIO: f64 = 1.10;
 
+/// Multiple of the cost below which the dense search looks. Where it finds nothing, its cost is taken
+/// to be that.
+const ABOVE: f64 = 1.25;
+
 /// Maximum ratios among several targets, of A* and of the thorough search: 90th percentile, worst.
-/// With 60 scenes of four targets: 1.02 and 1.16, and 1.00 and 1.16.
-const AMONG_SEVERAL: [[f64; 2]; 2] = [[1.06, 1.25], [1.04, 1.25]];
+/// With 60 scenes of four targets: 0.97 and 1.17, and 0.97 and 1.14.
+const AMONG_SEVERAL: [[f64; 2]; 2] = [[1.03, 1.25], [1.02, 1.2]];
 
 /// Runs the coarse search, then the fine search below its cost; the fine one takes ten times as
 /// long.
@@ -42,7 +46,7 @@ fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
 }
 
 /// Plans of A* and of the thorough search among several targets; of the latter the cheaper of the
-/// two is kept, as the pipeline does. The coarse search alone is run, below the least cost.
+/// two is kept, as the pipeline does. The coarse search alone is run, below [`ABOVE`] times the cost.
 pub fn run_among(targets: usize, seeds: Seeds) -> Report {
     let seeds: Vec<u64> = seeds.collect();
     let compared = seeds.par_iter().filter_map(|&seed| {
@@ -60,16 +64,17 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         };
         let quick = cost(SearchKind::AStar)?;
         let thorough = cost(SearchKind::Thorough).map_or(quick, |cost| cost.min(quick));
-        let answer = DenseSearch::coarse(thorough).cheaper_than(&problem, thorough);
-        let least = answer.cheaper.map_or(thorough, |found| found.cost);
-        Some((seed, [quick, thorough], least, answer.complete))
+        let most = ABOVE * (quick + TINY);
+        let answer = DenseSearch::coarse(thorough).cheaper_than(&problem, most);
+        let dense = answer.cheaper.map_or(most, |found| found.cost);
+        Some((seed, [quick, thorough], dense, answer.complete))
     });
     let mut compared: Vec<_> = compared.collect();
     compared.sort_by_key(|(seed, ..)| *seed);
     let mut report = Report::default();
-    for (seed, [quick, thorough], least, _) in &compared {
+    for (seed, [quick, thorough], dense, _) in &compared {
         println!(
-            "{targets} targets {seed}: a-star {quick:.0} m², thorough {thorough:.0} m², least of all {least:.0} m²"
+            "{targets} targets {seed}: a-star {quick:.0} m², thorough {thorough:.0} m², dense search {dense:.0} m²"
         );
     }
     for (k, name) in ["a-star", "thorough"].into_iter().enumerate() {
@@ -77,7 +82,7 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         let ratios: Vec<f64> = compared.iter().map(over).collect();
         let [half, most, worst] = [0.5, 0.9, 1.0].map(|share| quantile(&ratios, share));
         println!(
-            "{name}: J over the least that any search found: median {half:.3}, 90 % {most:.3}, worst {worst:.3}"
+            "{name}: J over that of the dense search: median {half:.3}, 90 % {most:.3}, worst {worst:.3}"
         );
         let [most_allowed, worst_allowed] = AMONG_SEVERAL[k];
         report.require(most <= most_allowed && worst <= worst_allowed, || {
@@ -87,7 +92,9 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
     let short = compared.iter().filter(|c| !c.3).count();
     let (all, found) = (seeds.len(), compared.len());
     println!("{found} scenes with a plan; {short} searches cut short");
-    report.require(20 * found >= 19 * all, || {
+    // among ten, own ship often starts in a set
+    let (most, of) = if targets <= 4 { (20, 19) } else { (2, 1) };
+    report.require(most * found >= of * all, || {
         format!("{found} of {all} have a plan")
     });
     report.require(2 * short <= found, || {
@@ -111,7 +118,8 @@ pub fn run(seeds: Seeds) -> Report {
             let problem = problem(scenario, &record.obstacles, LandObstacle::none());
             let cost = record.plan.map_or(f64::INFINITY, |p| p.1);
             let thorough = thorough && cost.is_finite();
-            let answer = searched(&problem, cost.min(WORTH_FINDING), thorough);
+            let most = (ABOVE * (cost + TINY)).min(WORTH_FINDING);
+            let answer = searched(&problem, most, thorough);
             if let Some(found) = &answer.cheaper {
                 recheck(&problem, found);
             }
@@ -132,9 +140,8 @@ pub fn run(seeds: Seeds) -> Report {
             continue;
         }
         cut_short += usize::from(!answer.complete);
-        let cheaper = found.unwrap_or(*cost);
-        let alike = cost - cheaper <= TINY;
-        let ratio = if alike { 1.0 } else { cost / cheaper };
+        let dense = found.unwrap_or(ABOVE * (cost + TINY) - TINY);
+        let ratio = (cost + TINY) / (dense + TINY);
         ratios.push(ratio);
         if ratio > 1.0 || !thorough {
             println!(
@@ -143,13 +150,13 @@ pub fn run(seeds: Seeds) -> Report {
             );
         }
         report.require(ratio <= WORST_RATIO, || {
-            format!("{name}: {cost:.1} m², {cheaper:.1} m² found")
+            format!("{name}: {cost:.1} m², {dense:.1} m² found")
         });
     }
     let [half, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(&ratios, share));
     println!(
-        "J over dense search (1 where nothing cheaper is found): {} scenes, median {half:.3}, \
-         95 % {most:.3}, worst {worst:.3}; {} above 1.05; {cut_short} searches cut short",
+        "J over that of the dense search: {} scenes, median {half:.3}, 95 % {most:.3}, \
+         worst {worst:.3}; {} above 1.05; {cut_short} searches cut short",
         ratios.len(),
         ratios.iter().filter(|r| **r > 1.05).count(),
     );

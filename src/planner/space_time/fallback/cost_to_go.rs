@@ -39,8 +39,13 @@ pub(crate) struct CostToGoGrid {
 impl CostToGoGrid {
     /// Backward recursion from the horizon over all positions that lie on some path within the
     /// horizon. O(cells x instants x (moves + legs)); some milliseconds. `None` where the time is up
-    /// before.
-    pub(crate) fn of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Option<Self> {
+    /// before. `smaller` is by how many cells the sets are smaller.
+    pub(crate) fn of(
+        problem: &Problem,
+        proxies: &[Proxy],
+        smaller: f64,
+        clock: Clock,
+    ) -> Option<Self> {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
         let half = 0.5 * top * problem.horizon;
@@ -77,7 +82,7 @@ impl CostToGoGrid {
             let time = step * layer as f64;
             let mut blocked = on_land.clone();
             for proxy in proxies {
-                grid.block(&mut blocked, proxy, time);
+                grid.block(&mut blocked, proxy, time, smaller * cell);
             }
             for row in 0..CELLS {
                 let within = grid.reached(start, layer, row);
@@ -148,8 +153,8 @@ impl CostToGoGrid {
         }
     }
 
-    /// Marks the cells whose centres are in a set.
-    fn block(&self, blocked: &mut [bool], proxy: &Proxy, time: f64) {
+    /// Marks the cells whose centres are in a set, deeper than `depth` metres.
+    fn block(&self, blocked: &mut [bool], proxy: &Proxy, time: f64, depth: f64) {
         if let Some(window) = &proxy.window
             && !(time >= window.start && time <= window.end)
         {
@@ -164,7 +169,11 @@ impl CostToGoGrid {
         };
         for row in range(Vector::new(0.0, 1.0), self.corner.y) {
             let mut within = range(Vector::new(1.0, 0.0), self.corner.x);
-            let inside = |column: &usize| section.contains(self.middle(row * CELLS + column));
+            let inside = |column: &usize| {
+                let distance = section.signed_distance(self.middle(row * CELLS + column));
+                // negated on purpose: a NaN is inside
+                !(distance > -depth)
+            };
             // a convex set is one run of cells in a row
             if let Some(first) = within.find(inside) {
                 let last = within.rfind(inside).unwrap_or(first);
@@ -251,7 +260,7 @@ mod tests {
         let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
         let own = own_ship(&[5.0]);
         let problem = Problem::new(&own, &desired, &[], 400.0);
-        let within = |time| CostToGoGrid::of(&problem, &[], Clock::new(time));
+        let within = |time| CostToGoGrid::of(&problem, &[], 0.0, Clock::new(time));
         assert!(within(Duration::ZERO).is_none());
         let grid = within(Duration::from_secs(60)).expect("a grid");
         assert!(grid.from(Vector::zeros(), 0.0).is_finite());
@@ -281,7 +290,7 @@ mod tests {
         let pieces = pieces(&obstacles, 400.0);
         let proxies = within_reach(&problem, &pieces);
         let clock = Clock::new(Duration::from_secs(60));
-        let grid = CostToGoGrid::of(&problem, &proxies, clock).expect("a grid");
+        let grid = CostToGoGrid::of(&problem, &proxies, 0.0, clock).expect("a grid");
         let path = grid.path_from(Vector::zeros(), end);
         let (time, last) = path[path.len() - 1];
         assert!((last - end).norm() <= grid.cell && time < 300.0, "{time} s");

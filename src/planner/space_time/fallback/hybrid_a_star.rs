@@ -102,7 +102,7 @@ impl State {
 pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Plan> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
-    let grid = CostToGoGrid::of(problem, &proxies, clock)?;
+    let grid = CostToGoGrid::of(problem, &proxies, 0.0, clock)?;
     let motion = [COARSE, FINE].into_iter().find_map(|resolution| {
         let limit = f64::INFINITY;
         searched(problem, &proxies, &grid, (resolution, limit), clock)

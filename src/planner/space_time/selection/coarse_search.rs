@@ -6,7 +6,6 @@
 
 use crate::frame::Vector;
 use crate::parallel;
-use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::fallback::hybrid_a_star;
@@ -16,6 +15,7 @@ use crate::planner::space_time::selection::conflict_search::{
     Corner, MAX_CORNERS, SHORTEST_M, through,
 };
 use crate::planner::space_time::selection::warm_start::initial_guess_from;
+use crate::planner::{Problem, SearchKind};
 use crate::trajectory::Segment;
 
 /// Refinement steps of a guess.
@@ -37,6 +37,9 @@ const OF_USE: f64 = 1.5;
 /// cells.
 const TOO_CHEAP: f64 = 0.01;
 
+/// Cells by which sets are smaller in the other grid: half a cell closes no gap that is there.
+const SMALLER: f64 = 0.5;
+
 /// Coarse search for one problem.
 #[derive(Debug)]
 pub(crate) struct CoarseSearch<'a> {
@@ -55,7 +58,7 @@ impl<'a> CoarseSearch<'a> {
         Some(Self {
             context,
             nominal_motion,
-            grid: CostToGoGrid::of(context.problem, context.proxies, clock)?,
+            grid: CostToGoGrid::of(context.problem, context.proxies, 0.0, clock)?,
         })
     }
 
@@ -67,30 +70,59 @@ impl<'a> CoarseSearch<'a> {
         self.refined(self.along(path, GRID_TOLERANCE), clock)
     }
 
-    /// Motion of a hybrid A* that costs not much more than `least`, m², and the refined manoeuvres
-    /// along it. Nothing where no plan is known: wide detours are for the relaxation to choose.
+    /// Motions of a hybrid A* that cost not much more than `least`, m², and the refined manoeuvres
+    /// along them. Nothing where no plan is known: wide detours are for the relaxation to choose.
+    ///
+    /// A thorough search has another grid, with smaller sets: the cells of the first one are too
+    /// large for narrow gaps between the sets.
     pub(crate) fn along_hybrid(
-        &self,
+        self,
         least: f64,
         clock: Clock,
-    ) -> Option<(Vec<Segment>, Vec<Refinement>)> {
+    ) -> (Vec<Vec<Segment>>, Vec<Refinement>) {
+        let mut found = (Vec::new(), Vec::new());
         if !least.is_finite() || least < TOO_CHEAP * self.grid.cell.powi(2) {
-            return None;
+            return found;
         }
+        let limit = OF_USE * least;
+        let Context {
+            problem, proxies, ..
+        } = self.context;
+        self.add_along_hybrid(limit, clock, &mut found);
+        if problem.search == SearchKind::Thorough
+            && let Some(grid) = CostToGoGrid::of(problem, proxies, SMALLER, clock)
+        {
+            let smaller = Self { grid, ..self };
+            found.1.extend(smaller.along_grid(clock));
+            smaller.add_along_hybrid(limit, clock, &mut found);
+        }
+        found
+    }
+
+    fn add_along_hybrid(
+        &self,
+        limit: f64,
+        clock: Clock,
+        (motions, refined): &mut (Vec<Vec<Segment>>, Vec<Refinement>),
+    ) {
         let Context {
             problem,
             proxies,
             route,
             ..
         } = self.context;
-        let within = (hybrid_a_star::COARSE, OF_USE * least);
-        let motion = hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)?;
+        let within = (hybrid_a_star::COARSE, limit);
+        let Some(motion) = hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)
+        else {
+            return;
+        };
         let path = motion.iter().map(|s| (s.start_time, s.start.position));
         let end = motion.last().map(|s| (s.end_time(), s.end().position));
         let mut along = self.along(path.chain(end).collect(), HYBRID_TOLERANCE);
         let guess = initial_guess_from(problem, route, &motion);
         along.extend(guess.and_then(|guess| Refinement::fitting(&self.context, guess)));
-        Some((motion, self.refined(along, clock)))
+        motions.push(motion);
+        refined.extend(self.refined(along, clock));
     }
 
     fn refined(&self, mut fitting: Vec<Refinement>, clock: Clock) -> Vec<Refinement> {

@@ -229,8 +229,10 @@ impl<'a> Selection<'a> {
             }
         }
         let (grid, least) = (self.coarse_search.take(), self.least(&running));
-        if let Some((motion, along)) = grid.and_then(|g| g.along_hybrid(least, clock)) {
-            self.add_candidate(motion);
+        if let Some((motions, along)) = grid.map(|g| g.along_hybrid(least, clock)) {
+            for motion in motions {
+                self.add_candidate(motion);
+            }
             running.extend(along);
         }
         if let Some((tidy, guesses)) = tidy {
