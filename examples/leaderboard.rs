@@ -8,6 +8,8 @@
 
 #[path = "../tests/campaigns/encounter_generator.rs"]
 mod encounter_generator;
+#[path = "shared/growth.rs"]
+mod growth;
 #[path = "shared/new_york.rs"]
 mod new_york;
 
@@ -31,16 +33,16 @@ const RUNS: usize = 5;
 /// Safety margin in metres of Imazu's cases, which have none.
 const IMAZU_MARGIN: f64 = 500.0;
 
-/// [`RANDOM`] and [`RUNS`] with `--quick`.
-const QUICK: (u64, usize) = (4, 1);
+/// [`RANDOM`], [`RUNS`] and scenes of each size with `--quick`.
+const QUICK: (u64, usize, u64) = (4, 1, 2);
 
 /// Deadline in seconds, so long that outcomes do not depend on the clock.
 const DEADLINE: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let thresholds = Thresholds::standard();
-    let (random, runs) = match std::env::args().nth(1).as_deref() {
-        None => (RANDOM, RUNS),
+    let (random, runs, growth) = match std::env::args().nth(1).as_deref() {
+        None => (RANDOM, RUNS, growth::SCENES),
         Some("--quick") => QUICK,
         Some(other) => return Err(format!("{other}: nothing, or --quick").into()),
     };
@@ -83,7 +85,7 @@ cargo run --release --no-default-features --example leaderboard > docs/benchmark
 | judged | of those, plans along which own ship is at risk and so has a role toward a target |
 | complies | of the clear plans, those without rule violations or violated monitors ([rules.md](rules.md)), by the profile `searoom` |
 | score | mean over targets of their least score |
-| ms | planning time on one core: the median of {runs} plans for a scene, then statistics over scenes |
+| ms | planning time: the median of {runs} plans for a scene, then statistics over scenes |
 
 Only the times depend on the machine. [measured.md](measured.md) measures plans by the rules on more
 random encounters, and what is sailed.
@@ -109,7 +111,7 @@ random encounters, and what is sailed.
             );
         }
     }
-    Ok(())
+    growth::print(growth)
 }
 
 /// Scenarios of a folder below `scenarios/`, in order of file names.
