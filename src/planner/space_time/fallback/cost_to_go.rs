@@ -298,6 +298,13 @@ mod tests {
         assert!(path.iter().all(|(_, p)| !inside(p)), "{path:?}");
         let aside = path.iter().map(|(_, p)| p.y.abs()).fold(0.0, f64::max);
         assert!((100.0..150.0).contains(&aside), "{aside} m");
+        // around a smaller square the way is cheaper, but none leads through it
+        let around = CostToGoGrid::of(&problem, &proxies, 1.0, clock).expect("a grid");
+        let [cheaper, cost] = [&around, &grid].map(|grid| grid.from(Vector::zeros(), 0.0));
+        assert!(cheaper < 0.9 * cost, "{cheaper} {cost}");
+        let path = around.path_from(Vector::zeros(), end);
+        let deep = |p: &Vector| 100.0 - (p.x - 500.0).abs().max(p.y.abs());
+        assert!(path.iter().all(|(_, p)| deep(p) <= grid.cell), "{path:?}");
         for far in [Vector::new(5e3, 0.0), Vector::new(1e12, f64::NAN)] {
             assert!(grid.path_from(far, end).is_empty(), "{far}");
         }
