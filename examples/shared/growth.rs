@@ -27,7 +27,7 @@ const LENGTH: f64 = 10_000.0;
 const SPEED: f64 = 5.0;
 const HORIZON: f64 = 3600.0;
 
-/// Half-width in metres of the square with the targets: own ship can meet each of them.
+/// Half-width in metres of the square with the targets. Own ship can meet most of them.
 const WITHIN: f64 = 40_000.0;
 
 /// Targets beside the legs, or beside the map.
@@ -39,13 +39,14 @@ pub fn print(scenes: u64) -> Result<()> {
         "
 ## Growth
 
-A mission of 10 km among ships at random places within 40 km and on random courses, up to 9 m/s, with
-spreads of ±0.3 m/s and ±5°, `compliance = \"none\"`, horizon one hour: own ship can meet each of
-them. The legs, at most 100 in a file, are those of a winding river, among {FEW} ships. The map is one ragged ring with a
-vertex every 30 m, beside the mission and {FEW} ships; reading it is not part of the planning time.
-{scenes} scenes of each size. The exponent is that of the median over the last factor of ten.
+A mission of 10 km among ships at random places and on random courses, up to 9 m/s, with spreads of
+±0.3 m/s and ±5°, `compliance = \"none\"`, horizon one hour. They are in a square of 80 km, so own ship
+can meet most of them. The legs, at most 100 in a file, are those of a winding river, among {FEW}
+ships. The map is one ragged ring with a vertex every 30 m, beside the mission and {FEW} ships; reading
+it is not part of the planning time. {scenes} scenes of each size. The exponent is that of the median
+over the last factor of ten.
 
-| size | scenes with a plan | ms, median | ms, worst | exponent |
+| size | verified plans | ms, median | ms, worst | exponent |
 | --- | --- | --- | --- | --- |"
     );
     type Build = fn(usize, u64) -> Result<Scenario>;
@@ -80,7 +81,7 @@ vertex every 30 m, beside the mission and {FEW} ships; reading it is not part of
     Ok(())
 }
 
-/// Among so many targets, on one leg.
+/// A scene with this many ships and one leg.
 fn among(targets: usize, seed: u64) -> Result<Scenario> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let settings = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin);
@@ -114,7 +115,7 @@ fn among(targets: usize, seed: u64) -> Result<Scenario> {
     })
 }
 
-/// Along so many legs of a river that winds 300 m to either side.
+/// A scene with this many legs, of a river that winds 300 m to either side.
 fn along(legs: usize, seed: u64) -> Result<Scenario> {
     let waypoint = |k: usize| {
         let east = LENGTH * k as f64 / legs as f64;
@@ -128,7 +129,7 @@ fn along(legs: usize, seed: u64) -> Result<Scenario> {
     })
 }
 
-/// Beside a land with so many vertices, some 30 m apart. Its ragged coast is 2 km off the mission.
+/// A scene with land of this many vertices, some 30 m apart. Its ragged coast is 2 km off the mission.
 fn beside(vertices: usize, seed: u64) -> Result<Scenario> {
     let mean = 30.0 * vertices as f64 / TAU;
     let vertex = |k: usize| {

@@ -252,8 +252,8 @@ pub struct ImportArgs {
          or a folder"
     )),
     mut_arg("figure", |arg| arg.value_name("FILE").help(
-        "Draw trajectories, distances, in a sweep cost over risk, and cost over planning time where \
-         a thorough search found several plans: a file ending in .svg, .png or .pdf"
+        "Draw trajectories, distances, in a sweep cost over risk, else cost over planning time where \
+         a thorough search found several answers: a file ending in .svg, .png or .pdf"
     )),
 )]
 pub struct CompareArgs {

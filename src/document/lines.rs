@@ -118,7 +118,7 @@ pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str
     lines
 }
 
-/// The planning time, and when a thorough search found better answers.
+/// The planning time, and when a thorough search found cheaper answers.
 fn time_words(timing: &TimingDocument) -> String {
     let whole = format!("{:.2} ms", 1e3 * timing.plan_s);
     let step = |step: &ImprovementDocument| {
@@ -207,7 +207,9 @@ fn relaxed(
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
             let role = role.map_or("unknown", |e| &e.role);
-            format!("the rules: no plan complies with them toward '{target}' (own ship: {role})")
+            format!(
+                "the rules: no plan was found that complies with them toward '{target}' (own ship: {role})"
+            )
         }
     };
     ("relaxes", text)

@@ -112,16 +112,17 @@ pub struct CostDocument {
     pub min_land_distance_m: Option<f64>,
 }
 
-/// Planning time, the only value that differs between two runs.
+/// Planning times: they alone differ between two runs, unless a deadline ended one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimingDocument {
     pub plan_s: f64,
-    /// The answers of a thorough search; empty for others.
+    /// The best answers of a thorough search so far that give up as much as the plan, which is the
+    /// last. Absent for other searches.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub improvements: Vec<ImprovementDocument>,
 }
 
-/// An answer that was the best for some time.
+/// The best answer so far, from when one of the searches was complete.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ImprovementDocument {
     pub after_s: f64,

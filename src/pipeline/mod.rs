@@ -156,7 +156,7 @@ fn deadline(scenario: &Scenario) -> Duration {
 ///
 /// Where no plan satisfies the whole request, requirements are given up level by level
 /// (`docs/relaxation.md`), and the run reports which. The clock is read around planning alone. It
-/// enters no result but `plan_time`, unless the deadline ends the search.
+/// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
 pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let begun = Instant::now();
@@ -187,17 +187,20 @@ pub fn run(scenario: Scenario) -> Run {
             }
         })
     });
-    let mut relaxations = outcome::relaxations(
-        &sets,
-        &answer.reductions,
-        &risks,
-        &answer.released,
-        not_arrived(&answer),
-    );
-    let is_by_rules = answer.level <= RelaxationLevel::Rules
-        || (answer.trajectory()).is_some_and(|plan| rules::breaks(&scenario, plan) == 0);
-    if scenario.compliance == Compliance::Rules && !is_by_rules {
-        relaxations.extend(relaxed_rules(&scenario, &sets));
+    let mut relaxations = Vec::new();
+    if let Some(plan) = answer.trajectory() {
+        relaxations = outcome::relaxations(
+            &sets,
+            &answer.reductions,
+            &risks,
+            &answer.released,
+            not_arrived(&answer),
+        );
+        let is_by_rules =
+            answer.level <= RelaxationLevel::Rules || rules::breaks(&scenario, plan) == 0;
+        if scenario.compliance == Compliance::Rules && !is_by_rules {
+            relaxations.extend(relaxed_rules(&scenario, &sets));
+        }
     }
     let evaluation = answer
         .trajectory()

@@ -4,6 +4,7 @@
 //! set and miss it for a smaller one. So some levels also plan against more than they require.
 
 use std::cell::Cell;
+use std::cmp::Ordering;
 use std::time::{Duration, Instant};
 
 use super::entered;
@@ -111,13 +112,12 @@ impl Attempt {
         self.planned.outcome.plan().map(|plan| &plan.trajectory)
     }
 
-    /// True where this answer relaxes less than another, or as much at a lower cost. Compares
-    /// level, number of entered sets, risk, largest reduction of a domain, and cost, in this order.
-    pub(super) fn is_better_than(&self, other: &Self) -> bool {
-        let (Some(plan), Some(others)) =
-            (self.planned.outcome.plan(), other.planned.outcome.plan())
-        else {
-            return self.planned.outcome.plan().is_some();
+    /// Whether this answer relaxes less than another, more, or as much. Compares level, number of
+    /// entered sets, risk and largest reduction of a domain, in this order.
+    pub(super) fn relaxation_cmp(&self, other: &Self) -> Ordering {
+        let plans = [self, other].map(|of| of.planned.outcome.plan());
+        let [Some(plan), Some(others)] = plans else {
+            return plans[0].is_none().cmp(&plans[1].is_none());
         };
         let entered = |of: &Self| of.released.iter().flatten().count();
         let level = |of: &Self, plan: &Plan| match plan.arrives() {
@@ -126,19 +126,25 @@ impl Attempt {
         };
         let reduced = |of: &Self| of.reductions.iter().copied().fold(0.0, f64::max);
         let discrete = (level(self, plan), entered(self));
-        let discrete = discrete.cmp(&(level(other, others), entered(other)));
-        if discrete.is_ne() {
-            return discrete.is_lt();
-        }
+        let mut order = discrete.cmp(&(level(other, others), entered(other)));
         for (own, others, same) in [
             (self.risk, other.risk, RISK_STEP),
             (reduced(self), reduced(other), SAME_REDUCTION_M),
         ] {
             if (own - others).abs() > same {
-                return own < others;
+                order = order.then(own.total_cmp(&others));
             }
         }
-        plan.cost < others.cost
+        order
+    }
+
+    /// True where this answer relaxes less than another, or as much at a lower cost.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        let cost = |of: &Self| of.planned.outcome.plan().map_or(f64::INFINITY, |p| p.cost);
+        match self.relaxation_cmp(other) {
+            Ordering::Equal => cost(self) < cost(other),
+            order => order.is_lt(),
+        }
     }
 
     fn is_infeasible(&self) -> bool {
@@ -545,14 +551,15 @@ impl Relaxer<'_> {
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
     /// turning radius.
     fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
-        if self.time_left().is_zero() && self.scenario.memory.remainder.is_empty() {
-            return None;
-        }
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));
         let hard = level_sets(&whole, risk);
         let problem = self.problem(&hard);
         let (why, desired) = self.scenario.planner.short_of_end(&problem)?;
+        let needs_time = desired.is_some() && self.scenario.memory.remainder.is_empty();
+        if needs_time && self.time_left().is_zero() {
+            return None;
+        }
         let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
         let away = |short: &DesiredTrajectory| (short.end() - own.pose.position).norm();
         let is_near = desired.as_ref().map_or(0.0, away) <= own.turning_radius;
@@ -756,11 +763,10 @@ impl Relaxer<'_> {
         // along paths a few lines are tested all the same
         let is_skipped = is_late && !facts.follows_paths && !facts.relaxes_domains_only;
         if is_skipped {
-            // the hard sets are there; others take time
-            let (whole, reductions) = self.asked(&self.scales(0.0));
-            let none = Planned::of(Outcome::Deadline(None));
-            let risk = self.scenario.max_risk;
-            return Attempt::of(level, whole.clone(), reductions, whole, risk, none);
+            // out of time: there is no plan, so nothing is given up, and no set is scaled for it
+            let (whole, _) = self.scaled(&self.scales(0.0));
+            let (kept, none) = (self.scales(0.0), Planned::of(Outcome::Deadline(None)));
+            return Attempt::of(level, whole.clone(), kept, whole, risk, none);
         }
         let (whole, reductions) = self.asked(scales);
         let obstacles = planner.outer_sets(level_sets(&whole, risk));
@@ -813,8 +819,9 @@ impl Relaxer<'_> {
     /// The sets with domains of these scale factors, and metres by which each domain is reduced.
     fn scaled(&self, scales: &[f64]) -> (Vec<Obstacle>, Vec<f64>) {
         let scaled = |index: usize, sets: &TargetSets| sets.scaled(scales[index]);
-        let is_work = scales.iter().any(|scale| *scale > 0.0 && *scale < 1.0);
-        let scaled = match is_work {
+        // a thread costs more than copies of the hard sets or of the full domains
+        let is_built = scales.iter().any(|scale| *scale > 0.0 && *scale < 1.0);
+        let scaled = match is_built {
             true => parallel::map(self.sets, scaled),
             false => (self.sets.iter().enumerate())
                 .map(|(index, sets)| scaled(index, sets))

@@ -23,7 +23,7 @@ impl Relaxer<'_> {
         let is_late = |of: &Attempt| matches!(of.planned.outcome, Outcome::Deadline(_));
         let quick = with_search(self.scenario, SearchKind::AStar);
         let mut best = self.of(&quick, self.sets).answer_of_one_search();
-        self.note(&mut best);
+        self.record(&mut best);
         let costs_nothing = |plan: &Plan| plan.cost < NOTHING_M2;
         let is_free = best.planned.outcome.plan().is_some_and(costs_nothing);
         if is_late(&best) || is_free && best.level == RelaxationLevel::Compliant {
@@ -32,7 +32,7 @@ impl Relaxer<'_> {
         let larger = self.answer_of_one_search();
         let mut late = is_late(&larger);
         if !best.is_better_than(&larger) {
-            self.keep(larger, &mut best);
+            self.replace(&mut best, larger);
         }
         let others = match best.planned.is_remainder {
             true => Vec::new(),
@@ -46,7 +46,7 @@ impl Relaxer<'_> {
             if let Some(found) = self.candidate(&other)
                 && found.is_better_than(&best)
             {
-                self.keep(found, &mut best);
+                self.replace(&mut best, found);
             }
         }
         match late || self.time_left().is_zero() {
@@ -55,22 +55,24 @@ impl Relaxer<'_> {
         }
     }
 
-    /// Puts a better answer in the place of the best one.
-    fn keep(&self, mut better: Attempt, best: &mut Attempt) {
-        better.planned.improvements = std::mem::take(&mut best.planned.improvements);
+    /// Replaces the best answer. The improvements begin anew where less is relaxed.
+    fn replace(&self, best: &mut Attempt, mut better: Attempt) {
+        if better.relaxation_cmp(best).is_eq() {
+            better.planned.improvements = std::mem::take(&mut best.planned.improvements);
+        }
         *best = better;
-        self.note(best);
+        self.record(best);
     }
 
-    /// Notes what an answer costs, unless it is as much as before.
-    fn note(&self, best: &mut Attempt) {
+    /// Records the cost of the best answer if it changed.
+    fn record(&self, best: &mut Attempt) {
         let Some(cost) = best.planned.outcome.plan().map(|plan| plan.cost) else {
             return;
         };
-        let noted = &mut best.planned.improvements;
-        if noted.last().is_none_or(|last| last.cost != cost) {
+        let recorded = &mut best.planned.improvements;
+        if recorded.last().is_none_or(|last| last.cost != cost) {
             let after = self.begun.elapsed();
-            noted.push(Improvement { after, cost });
+            recorded.push(Improvement { after, cost });
         }
     }
 

@@ -406,16 +406,17 @@ pub struct Planned {
     pub is_remainder: bool,
     /// True where a part of the search was given up to leave time for others.
     pub is_cut_short: bool,
-    /// The answers of a thorough search, each better than the one before; else empty.
+    /// The best answers of a thorough search so far that give up as much as the plan, which is the
+    /// last; else empty.
     pub improvements: Vec<Improvement>,
 }
 
-/// An answer that was the best for some time.
+/// The best answer of a thorough search so far, from when one of its searches was complete.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Improvement {
-    /// Planning time when it was found.
+    /// Planning time.
     pub after: Duration,
-    /// Its [`Plan::cost`], m². An answer that gives up less may cost more than the one before.
+    /// Its [`Plan::cost`], m².
     pub cost: f64,
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Window};
 use crate::scenario::Fault;
 
 /// All keys of a set. An untagged enum is read from these so that an error names the wrong key.
@@ -87,18 +87,16 @@ macro_rules! set_document {
                 }
             }
 
-            /// Centre and radius of a disc around the set, without its construction.
+            /// Centre and radius of a disc that contains the set, which is not checked: NaN without
+            /// vertices.
             pub(in crate::document) fn disc(&self) -> (Vector, f64) {
                 match self {
                     Self::Polygon { $vertices } => {
-                        let corners = $vertices.iter().map(|p| Vector::from(*p));
-                        let extreme = |f: fn(f64, f64) -> f64, from: f64| {
-                            let from = Vector::new(from, from);
-                            corners.clone().fold(from, |m, p| m.zip_map(&p, f))
-                        };
-                        let low = extreme(f64::min, f64::INFINITY);
-                        let high = extreme(f64::max, f64::NEG_INFINITY);
-                        (0.5 * (low + high), 0.5 * (high - low).norm())
+                        let corners: Vec<Vector> = $vertices.iter().map(|p| (*p).into()).collect();
+                        let around = Window::around(&corners);
+                        around.map_or((Vector::repeat(f64::NAN), f64::NAN), |window| {
+                            (window.center(), 0.5 * window.size().norm())
+                        })
                     }
                     Self::Ellipse { $center, $shape } => {
                         let [[a, _], [_, b]] = $shape;

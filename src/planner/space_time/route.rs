@@ -25,9 +25,6 @@ const LONGEST_TANGENT_RADII: f64 = 3.0;
 /// skipped.
 const SKIPPED_RADII: f64 = 4.0;
 
-/// What is added to the cost of a route that is too late for the horizon, m².
-const LATE_M2: f64 = 1e12;
-
 /// Least distance between two changes of speed, metres. Shorter remainders of a piece would vanish
 /// in rounding.
 const SHORTEST_M: f64 = 1e-3;
@@ -108,38 +105,50 @@ pub(crate) struct Route {
     speed_time: f64,
 }
 
+/// Order of routes: those in time first, then by cost.
+struct Rank {
+    /// True where the route is too long for the horizon.
+    is_late: bool,
+    /// Space-time error with the price of odd turns, m².
+    cost: f64,
+}
+
+impl Rank {
+    /// True where this route is better by more than rounding.
+    fn is_less_than(&self, other: &Self) -> bool {
+        match self.is_late == other.is_late {
+            true => self.cost < other.cost * (1.0 - 1e-9) - 1e-9,
+            false => other.is_late,
+        }
+    }
+}
+
 impl Route {
     /// Cheapest route of those that join the path at [`JOINS`] at each speed. Corners are rounded
     /// with the turning radius where the legs are long enough; otherwise the mean course leads
-    /// through them. `None` only when nothing is finite. After the deadline, the best route so far,
-    /// or the shortest where that is late.
+    /// through them. `None` only when nothing is finite. After the deadline, the best route so far
+    /// or the shortest, which is at the greatest speed until it joins the path.
     pub(crate) fn new(problem: &Problem, clock: Clock) -> Option<Self> {
-        let own = problem.own;
-        let desired = problem.desired;
-        let mut best: Option<(f64, Self)> = None;
+        let mut best: Option<(Rank, Self)> = None;
         for (leg, along) in joins(problem) {
-            for speed in own.moving_speeds() {
-                if clock.is_up() {
-                    let in_time = best.filter(|(rank, _)| *rank < LATE_M2);
-                    return in_time.map_or_else(|| Self::shortest(problem), |b| Some(b.1));
+            for speed in problem.own.moving_speeds() {
+                if clock.is_up()
+                    && let Some(first) = best
+                {
+                    let others = Self::shortest(problem).into_iter();
+                    let others = others.map(|(leg, route)| (route.rank(problem, leg), route));
+                    let better = others
+                        .filter(|(rank, _)| rank.is_less_than(&first.0))
+                        .next();
+                    return Some(better.unwrap_or(first).1);
                 }
                 let Some(route) = Self::joining(problem, leg, along, speed) else {
                     continue;
                 };
                 let route = route.before_horizon(problem);
-                let cost = problem.error_to_end(&route.follow(0.0, 0.0));
-                let late = route.arrival(0.0, 0.0) > problem.horizon;
-                let unplain = route.joins_by_odd_turns() || !route.joins_at(desired, leg);
-                let price = match asks_for_plain(problem) && unplain {
-                    true => ODD_TURNS_PRICE,
-                    false => 1.0,
-                };
-                let rank = if late { cost + LATE_M2 } else { cost * price };
-                if rank.is_finite()
-                    && best
-                        .as_ref()
-                        .is_none_or(|(b, _)| rank < b * (1.0 - 1e-9) - 1e-9)
-                {
+                let rank = route.rank(problem, leg);
+                let is_less = best.as_ref().is_none_or(|(b, _)| rank.is_less_than(b));
+                if rank.cost.is_finite() && is_less {
                     let direct = route.pieces.first().is_some_and(|p| p.leg.is_some());
                     best = Some((rank, route));
                     // already on the path: every joining point is the same
@@ -152,13 +161,29 @@ impl Route {
         best.map(|(_, route)| route)
     }
 
-    /// Shortest route of those that join the path at the greatest speed: it takes no search.
-    fn shortest(problem: &Problem) -> Option<Self> {
+    /// Shortest route of those that join the path at the greatest speed, and the leg that it joins.
+    fn shortest(problem: &Problem) -> Option<(usize, Self)> {
         let speed = problem.own.max_speed();
-        let routes = joins(problem).into_iter();
-        let routes = routes.filter_map(|(leg, along)| Self::joining(problem, leg, along, speed));
-        let shortest = routes.min_by(|a, b| a.length().total_cmp(&b.length()))?;
-        Some(shortest.before_horizon(problem))
+        let routes = joins(problem).into_iter().filter_map(|(leg, along)| {
+            let route = Self::joining(problem, leg, along, speed)?;
+            route.length().is_finite().then_some((leg, route))
+        });
+        let (leg, shortest) = routes.min_by(|a, b| a.1.length().total_cmp(&b.1.length()))?;
+        Some((leg, shortest.before_horizon(problem)))
+    }
+
+    fn rank(&self, problem: &Problem, leg: usize) -> Rank {
+        let cost = problem.error_to_end(&self.follow(0.0, 0.0));
+        let unplain = self.joins_by_odd_turns() || !self.joins_at(problem.desired, leg);
+        let is_late = self.arrival(0.0, 0.0) > problem.horizon;
+        let price = match asks_for_plain(problem) && unplain && !is_late {
+            true => ODD_TURNS_PRICE,
+            false => 1.0,
+        };
+        Rank {
+            is_late,
+            cost: cost * price,
+        }
     }
 
     /// This route with a faster schedule where the desired one is too late for the horizon.

@@ -1,5 +1,5 @@
-//! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
-//! risk. Methods with equal motions share a curve.
+//! Figure of a comparison: tracks, distances to targets, and the cost over accepted risk or over
+//! planning time. Methods with equal motions share a curve.
 
 use super::outline::{marks, sampled_boundary};
 use super::panel::{name_lines, window_around};
@@ -11,6 +11,7 @@ use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::{Needed, Window};
 use crate::obstacle::Obstacle;
+use crate::planner::Minimises;
 use crate::report::comparison::joined;
 use crate::scenario::Scenario;
 use crate::study::compare::{Candidate, Entry, Method};
@@ -24,9 +25,12 @@ const STEP: f64 = 2.0;
 /// Maximum of the distance axis as a multiple of the largest minimum distance.
 const SHOWN: f64 = 4.0;
 
+/// Cost below which plans are alike, m².
+const LEAST_COST_M2: f64 = 1e-6;
+
 /// Draws one row of panels per scenario: the chart, the distance to the nearest target over time,
-/// in a sweep the cost over the accepted risk, and, where a thorough search found several answers, the
-/// cost over the planning time.
+/// in a sweep the cost over the accepted risk, else the cost over the planning time where a thorough
+/// search found several answers. A small figure has two panels in a row.
 pub fn comparison_figure(
     compared: &[(&Scenario, &[Entry])],
     options: &FigureOptions,
@@ -34,19 +38,17 @@ pub fn comparison_figure(
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
     let ends = compared.iter().map(|(scenario, _)| scenario.horizon);
     let is_improved = |(_, entries): &(_, &[Entry])| entries.iter().any(|e| steps(e).len() > 1);
-    let improved = compared.iter().any(is_improved);
+    let improved = !sweep && compared.iter().any(is_improved);
     options.draw(ends.fold(f64::INFINITY, f64::min), |style| {
         let rows = compared.iter().flat_map(|(scenario, entries)| {
             let mut panels = comparison_panels(scenario, entries, sweep, style);
             if improved {
-                panels.push(anytime(scenario, entries, style));
+                panels.push(cost_over_time(scenario, entries, style));
             }
             panels
         });
-        let columns = match style.is_small() {
-            true => 2,
-            false => 2 + usize::from(sweep) + usize::from(improved),
-        };
+        let third = (sweep || improved) && !style.is_small();
+        let columns = if third { 3 } else { 2 };
         let figure = Figure::new(columns, rows.collect());
         // titles tell the scenarios apart
         if compared.len() > 1 {
@@ -262,12 +264,15 @@ fn distances(scenario: &Scenario, curves: &[Curve]) -> Panel {
     panel
 }
 
-/// Seconds of planning and cost of each answer that led to a verified plan within the risk, in order
-/// of time.
+/// Seconds of planning and cost of the answers that led to a verified plan within the risk, in order
+/// of time; empty for a planner with another objective.
 fn steps(entry: &Entry) -> Vec<Vector> {
     let (Some(run), Some(_)) = (entry.run.as_deref(), cost_within_risk(entry)) else {
         return Vec::new();
     };
+    if run.scenario.planner.facts().minimises != Minimises::SpaceTimeError {
+        return Vec::new();
+    }
     let improvements = run.planned.improvements.iter();
     let mut steps: Vec<Vector> = improvements
         .map(|improvement| Vector::new(improvement.after.as_secs_f64(), improvement.cost))
@@ -280,37 +285,47 @@ fn steps(entry: &Entry) -> Vec<Vector> {
 
 /// Draws the cost over planning time, relative to the least: a step for each answer of a thorough
 /// search, until it ended, and a point for each other one.
-fn anytime(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
-    let of = |entry: &Entry| Some((entry.run.as_deref()?.plan_time, steps(entry)));
-    let found: Vec<_> = (entries.iter())
-        .filter_map(|entry| Some((Stroke::of(entry.candidate.method), entry, of(entry)?)))
-        .filter(|(.., (_, steps))| !steps.is_empty())
+fn cost_over_time(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
+    let curves = curves(entries, style);
+    // that of the curve with the same motion
+    let stroke = |entry: &Entry| {
+        let is_same = |e: &&Entry| e.trajectory() == entry.trajectory();
+        let curve = curves
+            .iter()
+            .find(|curve| curve.entries.iter().any(is_same));
+        curve.map_or_else(|| Stroke::of(entry.candidate.method), |curve| curve.stroke)
+    };
+    let entries = entries.iter();
+    let entries = entries.map(|entry| (stroke(entry), steps(entry), entry.run.as_deref()));
+    let lines: Vec<(Stroke, Vec<Vector>, f64)> = entries
+        .filter(|(_, steps, _)| !steps.is_empty())
+        .filter_map(|(stroke, steps, run)| Some((stroke, steps, run?.plan_time.as_secs_f64())))
         .collect();
-    let costs = found
+    let costs = lines
         .iter()
-        .flat_map(|(.., (_, steps))| steps.iter().map(|p| p.y));
-    let least = costs.clone().fold(f64::INFINITY, f64::min);
+        .flat_map(|(_, steps, _)| steps.iter().map(|p| p.y));
+    let least = costs
+        .clone()
+        .fold(f64::MAX / 2.0, f64::min)
+        .max(LEAST_COST_M2);
     let most = costs.fold(1.01 * least, f64::max) / least;
-    let ends = found.iter().map(|(.., (end, _))| end.as_secs_f64());
-    let end = 1.05 * ends.fold(f64::MIN_POSITIVE, f64::max);
+    let end = lines.iter().map(|(.., end)| *end).fold(1e-3, f64::max);
     let edge = 0.1 * (most - 1.0);
-    let window = Window::new(Vector::new(0.0, 1.0 - edge), Vector::new(end, most + edge));
+    let low = Vector::new(-0.02 * end, 1.0 - edge);
+    let window = Window::new(low, Vector::new(1.05 * end, most + edge));
     let title = format!("{}: cost over planning time", scenario.title);
-    let axes = ["Planning time [s]", "J / least J [-]"];
-    let mut panel = Panel::free(title, axes, window);
-    for (stroke, _, (end, steps)) in found.iter().rev() {
-        let steps: Vec<Vector> = (steps.iter())
-            .map(|p| Vector::new(p.x, p.y / least))
-            .collect();
+    let mut panel = Panel::free(title, ["Planning time [s]", "J / least J [-]"], window);
+    for (stroke, steps, end) in lines.iter().rev() {
+        let relative = |p: &Vector| Vector::new(p.x, p.y / least);
+        let steps: Vec<Vector> = steps.iter().map(relative).collect();
         let before = steps
             .windows(2)
             .map(|pair| Vector::new(pair[1].x, pair[0].y));
-        let corners = steps
+        let corners = steps[1..]
             .iter()
-            .skip(1)
             .zip(before)
             .flat_map(|(p, corner)| [corner, *p]);
-        let last = Vector::new(end.as_secs_f64(), steps[steps.len() - 1].y);
+        let last = Vector::new(*end, steps[steps.len() - 1].y);
         let line: Vec<Vector> = [steps[0]]
             .into_iter()
             .chain(corners)
@@ -318,13 +333,6 @@ fn anytime(scenario: &Scenario, entries: &[Entry], style: &Style) -> Panel {
             .collect();
         panel.curve(&line, false, *stroke);
         panel.plots.push(marks(&steps, stroke.colour));
-    }
-    for (stroke, entry, (_, steps)) in found.iter().filter(|_| !style.is_small()) {
-        let cost = steps[steps.len() - 1].y;
-        panel.line_key(
-            &format!("{}: {cost:.0} m²", entry.candidate.method),
-            *stroke,
-        );
     }
     panel
 }

@@ -22,9 +22,9 @@ const WORTH_FINDING: f64 = 200_000.0;
 /// Maximum ratio of J to that of the dense search.
 const WORST_RATIO: f64 = 1.10;
 
-/// Multiple of the cost below which the dense search looks. Where it finds nothing, its cost is taken
-/// to be that.
-const ABOVE: f64 = 1.25;
+/// Multiple of the cost below which the dense search looks. Where it looks at everything and finds
+/// nothing, its cost counts as that.
+const SEARCHED_FACTOR: f64 = 1.25;
 
 /// Maximum ratios among several targets, of A* and of the thorough search: 90th percentile, worst.
 /// With 60 scenes of four targets: 0.97 and 1.17, and 0.97 and 1.14.
@@ -45,8 +45,16 @@ fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
     }
 }
 
+/// Cost of the dense search below `most`, which counts where nothing was found; `None` where it was
+/// cut short before.
+fn dense_cost(answer: &Answer, most: f64) -> Option<f64> {
+    let found = answer.cheaper.as_ref().map(|found| found.cost);
+    found.or(answer.complete.then_some(most))
+}
+
 /// Plans of A* and of the thorough search among several targets; of the latter the cheaper of the
-/// two is kept, as the pipeline does. The coarse search alone is run, below [`ABOVE`] times the cost.
+/// two is kept, as the pipeline does. The coarse search alone is run, below
+/// [`SEARCHED_FACTOR`] times the cost.
 pub fn run_among(targets: usize, seeds: Seeds) -> Report {
     let seeds: Vec<u64> = seeds.collect();
     let compared = seeds.par_iter().filter_map(|&seed| {
@@ -64,22 +72,29 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
         };
         let quick = cost(SearchKind::AStar)?;
         let thorough = cost(SearchKind::Thorough).map_or(quick, |cost| cost.min(quick));
-        let most = ABOVE * (quick + TINY);
+        let most = SEARCHED_FACTOR * (quick + TINY);
         let answer = DenseSearch::coarse(thorough).cheaper_than(&problem, most);
-        let dense = answer.cheaper.map_or(most, |found| found.cost);
-        Some((seed, [quick, thorough], dense, answer.complete))
+        Some((
+            seed,
+            [quick, thorough],
+            dense_cost(&answer, most),
+            answer.complete,
+        ))
     });
     let mut compared: Vec<_> = compared.collect();
     compared.sort_by_key(|(seed, ..)| *seed);
     let mut report = Report::default();
     for (seed, [quick, thorough], dense, _) in &compared {
+        let dense = dense.map_or("cut short".to_owned(), |dense| format!("{dense:.0} m²"));
         println!(
-            "{targets} targets {seed}: a-star {quick:.0} m², thorough {thorough:.0} m², dense search {dense:.0} m²"
+            "{targets} targets {seed}: a-star {quick:.0} m², thorough {thorough:.0} m², dense search {dense}"
         );
     }
     for (k, name) in ["a-star", "thorough"].into_iter().enumerate() {
-        let over = |c: &(u64, [f64; 2], f64, bool)| (c.1[k] + TINY) / (c.2 + TINY);
-        let ratios: Vec<f64> = compared.iter().map(over).collect();
+        let over = |(_, costs, dense, _): &(u64, [f64; 2], Option<f64>, bool)| {
+            Some((costs[k] + TINY) / ((*dense)? + TINY))
+        };
+        let ratios: Vec<f64> = compared.iter().filter_map(over).collect();
         let [half, most, worst] = [0.5, 0.9, 1.0].map(|share| quantile(&ratios, share));
         println!(
             "{name}: J over that of the dense search: median {half:.3}, 90 % {most:.3}, worst {worst:.3}"
@@ -93,8 +108,8 @@ pub fn run_among(targets: usize, seeds: Seeds) -> Report {
     let (all, found) = (seeds.len(), compared.len());
     println!("{found} scenes with a plan; {short} searches cut short");
     // among ten, own ship often starts in a set
-    let (most, of) = if targets <= 4 { (20, 19) } else { (2, 1) };
-    report.require(most * found >= of * all, || {
+    let least = if targets <= 4 { 0.95 } else { 0.5 };
+    report.require(found as f64 >= least * all as f64, || {
         format!("{found} of {all} have a plan")
     });
     report.require(2 * short <= found, || {
@@ -118,17 +133,17 @@ pub fn run(seeds: Seeds) -> Report {
             let problem = problem(scenario, &record.obstacles, LandObstacle::none());
             let cost = record.plan.map_or(f64::INFINITY, |p| p.1);
             let thorough = thorough && cost.is_finite();
-            let most = (ABOVE * (cost + TINY)).min(WORTH_FINDING);
+            let most = (SEARCHED_FACTOR * (cost + TINY)).min(WORTH_FINDING);
             let answer = searched(&problem, most, thorough);
             if let Some(found) = &answer.cheaper {
                 recheck(&problem, found);
             }
-            (kind, seed, cost, answer)
+            (kind, seed, cost, most, answer)
         })
         .collect();
     let mut report = Report::default();
     let (mut ratios, mut cut_short) = (Vec::new(), 0);
-    for (kind, seed, cost, answer) in &compared {
+    for (kind, seed, cost, most, answer) in &compared {
         let name = format!("{} {seed}", kind.name());
         let found = answer.cheaper.as_ref().map(|f| f.cost);
         if cost.is_infinite() {
@@ -140,7 +155,9 @@ pub fn run(seeds: Seeds) -> Report {
             continue;
         }
         cut_short += usize::from(!answer.complete);
-        let dense = found.unwrap_or(ABOVE * (cost + TINY) - TINY);
+        let Some(dense) = dense_cost(answer, *most) else {
+            continue;
+        };
         let ratio = (cost + TINY) / (dense + TINY);
         ratios.push(ratio);
         if ratio > 1.0 || !thorough {
