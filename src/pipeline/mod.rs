@@ -113,10 +113,14 @@ impl Run {
     pub fn reason(&self) -> Option<String> {
         match &self.planned.outcome {
             Outcome::Infeasible(reason) => Some(reason.to_string()),
-            Outcome::Deadline(_) => Some(format!(
-                "the budget of {} s ran out",
-                self.scenario.deadline
-            )),
+            Outcome::Deadline(_) => {
+                let budget = self.scenario.deadline;
+                let part = match self.plan_time < deadline(&self.scenario) {
+                    true => " for a part of the search, which has a share of it",
+                    false => "",
+                };
+                Some(format!("the budget of {budget} s ran out{part}"))
+            }
             Outcome::Solved(_) => self.why.as_ref().map(ToString::to_string),
         }
     }

@@ -268,10 +268,7 @@ impl Relaxer<'_> {
 
     /// The answer of the first of [`Self::ATTEMPTS`] that has one.
     fn relaxed(&self, first: Attempt, why: &NoPlan, with_domain: bool) -> Attempt {
-        if matches!(
-            why,
-            NoPlan::StartInside { .. } | NoPlan::StartCovered { .. }
-        ) {
+        if is_inside(why) {
             return self.leaving_sets(first);
         }
         if !why.is_for_the_sets() {
@@ -650,8 +647,8 @@ impl Relaxer<'_> {
         Some(best)
     }
 
-    /// [`RelaxationLevel::Inside`]: the motion with the least harm. Without a motion the
-    /// attempt is returned unchanged.
+    /// [`RelaxationLevel::Inside`]: the motion with the least harm. Without a motion the attempt is
+    /// returned, with the reason why there is no plan without any set where that is so.
     fn leaving_sets(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let mut problem = self.problem(&hard);
@@ -668,7 +665,14 @@ impl Relaxer<'_> {
         let found = self.scenario.planner.leaving_sets(&problem, &nominal);
         let found = found.and_then(|planned| Some((planned.outcome.plan()?.clone(), planned)));
         let Some((plan, planned)) = found else {
+            // the sets are not the reason where there is no plan without any
+            let alone = self.of(self.scenario, &[]);
+            let alone = alone.attempt(RelaxationLevel::Compliant, &[], 0.0);
             return match is_up() {
+                _ if alone.is_infeasible() => Attempt {
+                    planned: alone.planned,
+                    ..attempt
+                },
                 true => out_of_time(attempt),
                 false => attempt,
             };
@@ -912,15 +916,23 @@ impl Relaxer<'_> {
     }
 }
 
-/// Marks an answer as one that the deadline kept from being improved.
+/// Marks an answer as one that the deadline kept from being improved. More time changes nothing where
+/// the sets are not the reason.
 pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
     attempt.planned.outcome = match attempt.planned.outcome {
         Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
-        Outcome::Infeasible(why) => {
+        Outcome::Infeasible(why) if why.is_for_the_sets() || is_inside(&why) => {
             attempt.why = Some(why);
             Outcome::Deadline(None)
         }
-        deadline => deadline,
+        other => other,
     };
     attempt
+}
+
+fn is_inside(why: &NoPlan) -> bool {
+    matches!(
+        why,
+        NoPlan::StartInside { .. } | NoPlan::StartCovered { .. }
+    )
 }

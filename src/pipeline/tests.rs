@@ -572,6 +572,22 @@ fn out_of_time_a_start_inside_is_not_called_infeasible() {
     assert!(matches!(run(in_time).planned.outcome, Outcome::Solved(_)));
 }
 
+/// Own ship starts in a set, but without any set the horizon would be too short as well.
+#[test]
+fn the_reason_is_the_horizon_where_no_set_could_be_away() {
+    let file = fault("inside-with-a-short-horizon.toml");
+    for deadline in [0.0, 20.0] {
+        let run = run(Scenario {
+            deadline,
+            ..file.clone()
+        });
+        let outcome = &run.planned.outcome;
+        let is_horizon = matches!(outcome, Outcome::Infeasible(NoPlan::HorizonTooShort { .. }));
+        assert!(is_horizon, "{outcome:?}");
+        assert!(run.relaxations.is_empty(), "{:?}", run.relaxations);
+    }
+}
+
 /// A thorough search notes its answers, the last of which is the plan.
 #[test]
 fn a_thorough_search_notes_what_it_found_and_when() {

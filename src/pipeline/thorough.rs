@@ -64,9 +64,11 @@ impl Relaxer<'_> {
         self.record(best);
     }
 
-    /// Records the cost of the best answer if it changed.
+    /// Records the cost of the best answer if it changed. That of a plan that does not arrive is
+    /// against another mission.
     fn record(&self, best: &mut Attempt) {
-        let Some(cost) = best.planned.outcome.plan().map(|plan| plan.cost) else {
+        let plan = best.planned.outcome.plan().filter(|plan| plan.arrives());
+        let Some(cost) = plan.map(|plan| plan.cost) else {
             return;
         };
         let recorded = &mut best.planned.improvements;
