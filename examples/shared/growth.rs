@@ -46,8 +46,8 @@ ships. The map is one ragged ring with a vertex every 30 m, beside the mission a
 it is not part of the planning time. {scenes} scenes of each size. The exponent is that of the median
 over the last factor of ten.
 
-| size | verified plans | ms, median | ms, worst | exponent |
-| --- | --- | --- | --- | --- |"
+| of | number | verified plans | ms, median | ms, worst | exponent |
+| --- | --- | --- | --- | --- | --- |"
     );
     type Build = fn(usize, u64) -> Result<Scenario>;
     let kinds: [(&str, &[usize], Build); 3] = [
@@ -73,7 +73,7 @@ over the last factor of ten.
             let exponent =
                 before.map_or("–".to_owned(), |b| format!("{:.1}", (median / b).log10()));
             println!(
-                "| {size} {name} | {planned} of {scenes} | {median:.1} | {worst:.1} | {exponent} |"
+                "| {name} | {size} | {planned} of {scenes} | {median:.1} | {worst:.1} | {exponent} |"
             );
             before = Some(median);
         }
