@@ -135,11 +135,9 @@ impl Route {
                 if clock.is_up()
                     && let Some(first) = best
                 {
-                    let others = Self::shortest(problem).into_iter();
-                    let others = others.map(|(leg, route)| (route.rank(problem, leg), route));
-                    let better = others
-                        .filter(|(rank, _)| rank.is_less_than(&first.0))
-                        .next();
+                    let shortest = Self::shortest(problem);
+                    let shortest = shortest.map(|(leg, r)| (r.rank(problem, leg), r));
+                    let better = shortest.filter(|(rank, _)| rank.is_less_than(&first.0));
                     return Some(better.unwrap_or(first).1);
                 }
                 let Some(route) = Self::joining(problem, leg, along, speed) else {

@@ -2,6 +2,9 @@
 
 use super::*;
 use crate::frame::Vector;
+use crate::vessel::OwnShip;
+use crate::vessel::fixtures::own_ship;
+use std::time::Duration;
 
 /// A ship that may stop, on a line.
 fn line(slowness: f64, length: f64) -> Route {
@@ -70,4 +73,26 @@ fn a_ship_that_is_little_early_keeps_its_speed() {
     };
     assert_eq!(speeds(20.0), [4.0]);
     assert_eq!(speeds(40.0), [0.0, 4.0]);
+}
+
+/// Out of time, a ship on its path follows it; one that would have to turn right round to join it where
+/// it begins takes a shorter way.
+#[test]
+fn out_of_time_the_route_is_direct_or_short() {
+    let ends = [Vector::zeros(), Vector::new(6000.0, 0.0)];
+    let desired = DesiredTrajectory::new(&ends, &[4.0]).expect("valid");
+    let route = |heading: f64, seconds: u64| {
+        let own = OwnShip {
+            pose: Pose::new(Vector::zeros(), heading),
+            ..own_ship(&[2.0, 4.0])
+        };
+        let problem = Problem::new(&own, &desired, &[], 3600.0);
+        Route::new(&problem, Clock::new(Duration::from_secs(seconds))).expect("a route")
+    };
+    let on_path = [0, 60].map(|seconds| route(0.0, seconds).follow(0.0, 0.0));
+    assert_eq!(on_path[0], on_path[1]);
+    let [late, in_time] = [0, 60].map(|seconds| route(1.5, seconds));
+    let radius = own_ship(&[2.0]).turning_radius;
+    assert!(late.length() < 6000.0 + 2.0 * radius, "{}", late.length());
+    assert!(in_time.length() < 6000.0 + 6.0 * radius);
 }
