@@ -32,7 +32,7 @@ macro_rules! example {
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
 /// Exit status; the highest of a run wins:
-///   0    every scenario is planned and verified
+///   0    every scenario has a plan that is verified and safe
 ///   1    a scenario has no safe plan, or `verify` rejects a plan
 ///   2    bad input or usage, or a result that cannot be written
 ///   3    a fault of the program

@@ -201,7 +201,7 @@ fn relaxed(
         "arrival" => {
             let left = significant(*amount);
             format!(
-                "the arrival: {left} m are left at the end of the plan, '{target}' is in the way"
+                "the arrival: {left} m are left at the end of the plan because '{target}' is in the way"
             )
         }
         _ => {

@@ -162,7 +162,7 @@ pub fn open_one(file: &Path, assumed: &AssumedArgs, output: &Output) -> Result<S
         (Some(Err(refused)), 0) => Err(refused.error),
         (None, _) => Err(format!("{name}: no scenario in it")),
         (_, more) => Err(format!(
-            "{name}: {} situations; `searoom suite` runs them",
+            "{name}: {} situations; `searoom suite` runs them, `searoom import` makes a file of each",
             more + 1
         )),
     }
