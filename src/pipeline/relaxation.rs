@@ -546,7 +546,7 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
     /// its end, or else where the last plan ends, each within a share of the time. It keeps the level
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius.
+    /// turning radius. Out of time no plan is made, and only a remainder is asked.
     fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));
