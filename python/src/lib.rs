@@ -14,7 +14,7 @@ use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::replanning::remember;
 use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint};
-use searoom::study::compare::{Entry, candidates, methods};
+use searoom::study::compare::{Entry, candidates, methods, without_repeats};
 use searoom::verification::{is_simulation, verified_plan, verify, verify_simulations};
 
 use campaign::{_replay, Specification, py_merge, py_summarise};
@@ -170,6 +170,7 @@ fn py_compare<'py>(
         entries.push(detached(py, run)?);
         py.check_signals()?;
     }
+    let entries = without_repeats(entries);
     let (file, others) = (String::new(), &found.inapplicable);
     let document = ScenarioComparisonDocument::of(file, scenario, &entries, others);
     objects(py, &document)

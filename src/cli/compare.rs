@@ -9,7 +9,9 @@ use searoom::report::page::HtmlReport;
 use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
 use searoom::scenario::Scenario;
 use searoom::scenario::import::Imported;
-use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
+use searoom::study::compare::{
+    Candidate, Entry, Inapplicable, Method, candidates, methods, without_repeats,
+};
 
 use super::args::CompareArgs;
 use super::input::files::{Refused, shown};
@@ -150,6 +152,9 @@ fn run(asked: &mut [Result<Compared, Refused>], bound: bool, output: &Output) {
             // only scenarios are run
             (Err(_), _) => {}
         }
+    }
+    for compared in asked.iter_mut().flatten() {
+        compared.entries = without_repeats(std::mem::take(&mut compared.entries));
     }
 }
 

@@ -140,6 +140,7 @@ impl Contents {
             verified: field("verified"),
             safe: field("safe"),
             cost: field("cost"),
+            method: field("method"),
             search_stats: field("search_stats"),
             escape: field("escape"),
             targets: names.cloned().collect(),

@@ -70,6 +70,7 @@ pub struct InspectionDocument {
     #[schemars(with = "Option<CostDocument>")]
     pub cost: Value,
     #[schemars(with = "Option<SearchStatsDocument>")]
+    pub method: Value,
     pub search_stats: Value,
     /// Escape; null unless own ship stands on.
     #[schemars(with = "Option<EscapeDocument>")]

@@ -40,12 +40,21 @@ pub struct EntryDocument {
     pub lower_bound: Option<LowerBoundDocument>,
     /// The manoeuvre in brief; null without one.
     pub departure: Option<Departure>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<HeldVelocityDocument>,
     pub breaks: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collision: Option<CollisionDocument>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
     pub track: Vec<TrackPointDocument>,
+}
+
+/// The velocity that a baseline holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeldVelocityDocument {
+    pub course_deg: f64,
+    pub speed_mps: f64,
 }
 
 /// The first contact of a motion that collides, to a second.

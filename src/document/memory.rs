@@ -93,7 +93,7 @@ impl MemoryDocument {
         let known = !memory.sailed.is_empty() || !memory.targets.is_empty();
         let targets = run.scenario.targets.iter().zip(&memory.targets);
         known.then(|| Self {
-            keeps_plan: run.planned.is_remainder,
+            keeps_plan: run.planned.is_remainder(),
             off_plan_m: memory.off_plan,
             outside_velocities: memory.outside_velocities.clone(),
             outside_places: memory.outside_places.clone(),

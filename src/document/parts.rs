@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::targets::sets::{InitialSetDocument, VelocitySetDocument};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
-pub use crate::planner::SearchStats as SearchStatsDocument;
+pub use crate::planner::PlanMethod;
+use crate::planner::SearchStats;
 use crate::trajectory::Segment;
 
 /// Point in the plane.
@@ -78,6 +79,28 @@ pub struct EscapeDocument {
 pub struct ViolationDocument {
     pub what: String,
     pub t_s: Option<f64>,
+}
+
+/// Statistics of the search that made a plan; null where no graph was searched for it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SearchStatsDocument {
+    pub expanded: Option<usize>,
+    pub generated: Option<usize>,
+    pub edges_checked: Option<usize>,
+    /// Absent in an old document.
+    #[serde(default)]
+    pub heuristic_weight: Option<f64>,
+}
+
+impl SearchStatsDocument {
+    pub(crate) fn of(stats: Option<SearchStats>) -> Self {
+        Self {
+            expanded: stats.map(|s| s.expanded),
+            generated: stats.map(|s| s.generated),
+            edges_checked: stats.map(|s| s.edges_checked),
+            heuristic_weight: stats.map(|s| s.heuristic_weight),
+        }
+    }
 }
 
 /// A space-time error that no motion can be below, and the grid on which it was found.

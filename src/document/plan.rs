@@ -18,9 +18,9 @@ use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::parts::{
     CostDocument, EscapeDocument, ImprovementDocument, LowerBoundDocument, MissionDocument,
-    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
-    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
-    TrajectoryDocument, ViolationDocument,
+    NodeDocument, ObstacleDocument, OwnShipDocument, PlanMethod, PositionDocument,
+    RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument,
+    TimingDocument, TrajectoryDocument, ViolationDocument,
 };
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
@@ -54,6 +54,9 @@ pub struct PlanDocument {
     pub scenario: String,
     pub planner: String,
     pub search: String,
+    /// What made the plan; null without one, absent in an old document.
+    #[serde(default)]
+    pub method: Option<PlanMethod>,
     pub compliance: String,
     #[serde(default)]
     pub thresholds: String,
@@ -122,6 +125,7 @@ impl PlanDocument {
             scenario: scenario.title.clone(),
             planner: scenario.planner.facts().name.to_owned(),
             search: scenario.search.word().to_owned(),
+            method: run.planned.method(),
             compliance: scenario.compliance.word().to_owned(),
             thresholds: scenario.judged_by().name.to_string(),
             objective: objective(scenario).to_owned(),
@@ -147,7 +151,7 @@ impl PlanDocument {
             violations: (run.evaluation.as_ref())
                 .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
             cost: cost(run),
-            search_stats: run.planned.stats,
+            search_stats: SearchStatsDocument::of(run.planned.stats),
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             escape: escape(run),

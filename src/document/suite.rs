@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::encounter::{EncounterDocument, breaks};
-use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
+use super::parts::{
+    CostDocument, PlanMethod, RelaxationDocument, SearchStatsDocument, TimingDocument,
+};
 use super::plan::PlanDocument;
 use super::plan::departure::Departure;
 use crate::evaluation::{NOT_BY_THE_RULES, outcome_word};
@@ -34,6 +36,9 @@ pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
+    /// What made the plan; null without one.
+    #[serde(default)]
+    pub method: Option<PlanMethod>,
     pub outcome: String,
     pub verdict: String,
     pub error: Option<String>,
@@ -145,6 +150,7 @@ impl SuiteRunDocument {
             departure: plan.departure_of_motion(),
             encounters: plan.encounters.clone(),
             targets: Some(plan.targets.len()),
+            method: plan.method,
             search_stats: Some(plan.search_stats),
             timing: Some(plan.timing.clone()),
             notes,

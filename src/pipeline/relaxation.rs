@@ -14,7 +14,7 @@ use super::sets::TargetSets;
 use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::parallel;
-use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Problem, SearchKind};
+use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Planner, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Trajectory};
@@ -473,13 +473,14 @@ impl Relaxer<'_> {
         let risk = self.scenario.max_risk;
         let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let obstacles = level_sets(&whole, risk);
-        let wide = planner.wide_detour(&self.problem(&obstacles))?;
-        let refined = planner.warm_started(&self.problem(&obstacles), &wide.trajectory);
+        let mut planned = planner.wide_detour(&self.problem(&obstacles))?;
+        let wide = planned.outcome.plan()?;
+        let refined = warm_started(planner, &self.problem(&obstacles), wide);
         let plan = match refined.as_ref().and_then(Outcome::plan) {
             Some(refined) if refined.cost < wide.cost => refined.clone(),
-            _ => wide,
+            _ => wide.clone(),
         };
-        let outcome = match refined {
+        planned.outcome = match refined {
             Some(Outcome::Deadline(_)) => Outcome::Deadline(Some(plan)),
             _ => Outcome::Solved(plan),
         };
@@ -489,7 +490,6 @@ impl Relaxer<'_> {
             RelaxationLevel::Compliant
         };
         let reductions = vec![0.0; whole.len()];
-        let planned = Planned::of(outcome);
         let found = Attempt::of(level, whole, reductions, obstacles, risk, planned);
         if !with_domain {
             return Some(self.clear_of(&found, &self.scales(0.0), level));
@@ -704,6 +704,7 @@ impl Relaxer<'_> {
             released,
             planned: Planned {
                 outcome,
+                stats: planned.stats,
                 path_time: planned.path_time,
                 ..attempt.planned
             },
@@ -805,7 +806,7 @@ impl Relaxer<'_> {
     fn warm_started(&self, attempt: &Attempt, risk: f64) -> Option<Attempt> {
         let obstacles = level_sets(&attempt.whole, risk);
         let (planner, problem) = (self.scenario.planner, self.problem(&obstacles));
-        let outcome = planner.warm_started(&problem, attempt.trajectory()?)?;
+        let outcome = warm_started(planner, &problem, attempt.planned.outcome.plan()?)?;
         let mut refined = Attempt {
             obstacles,
             risk,
@@ -896,8 +897,8 @@ impl Relaxer<'_> {
             let scales: Vec<f64> = retained.iter().map(|k| k.max(scale)).collect();
             let obstacles = level_sets(&self.scaled(&scales).0, best.risk);
             let problem = self.problem(&obstacles);
-            let refined = |from| self.scenario.planner.warm_started(&problem, from);
-            let Some(outcome) = best.trajectory().and_then(refined) else {
+            let refined = |from| warm_started(self.scenario.planner, &problem, from);
+            let Some(outcome) = best.planned.outcome.plan().and_then(refined) else {
                 return best;
             };
             if matches!(outcome, Outcome::Deadline(_)) {
@@ -928,6 +929,15 @@ pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
         other => other,
     };
     attempt
+}
+
+/// A plan refined against other sets, by a planner that can.
+fn warm_started(planner: &dyn Planner, problem: &Problem, from: &Plan) -> Option<Outcome> {
+    let mut outcome = planner.warm_started(problem, &from.trajectory)?;
+    if let Some(plan) = outcome.plan_mut() {
+        plan.method = from.method.warm_started();
+    }
+    Some(outcome)
 }
 
 fn is_inside(why: &NoPlan) -> bool {

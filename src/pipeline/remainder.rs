@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::relaxation::Attempt;
 use super::rules;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{Minimises, Outcome, Plan, Planned, PlannedManoeuvre, Problem};
+use crate::planner::{Minimises, Outcome, Plan, PlanMethod, Planned, PlannedManoeuvre, Problem};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -71,7 +71,6 @@ pub(super) fn better_remainder(
             _ => memory.escape.filter(|_| attempt.planned.escape.is_some()),
         },
         manoeuvres: memory.manoeuvres.clone(),
-        is_remainder: true,
         ..Planned::of(Outcome::Solved(plan))
     };
     keep.then_some(Remainder { planned, broken })
@@ -106,6 +105,6 @@ fn remainder(scenario: &Scenario, problem: &Problem, obstacles: &[Obstacle]) -> 
         && last.end_time() <= problem.horizon
         && !obstacles.iter().any(enters)
         && !motion.iter().any(land);
-    fits.then(|| Plan::measured(problem, motion, None))
+    fits.then(|| Plan::measured(problem, motion, PlanMethod::Remainder))
         .flatten()
 }

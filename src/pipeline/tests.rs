@@ -499,7 +499,7 @@ fn out_of_time_own_ship_keeps_a_plan_that_is_clear_of_the_hard_sets() {
     scenario.deadline = 0.0;
     let after = run(scenario);
     assert!(matches!(after.planned.outcome, Outcome::Deadline(Some(_))));
-    assert!(after.planned.is_remainder && after.safe());
+    assert!(after.planned.is_remainder() && after.safe());
     assert_eq!(after.level, RelaxationLevel::ReducedDomains);
 }
 

@@ -3,7 +3,7 @@
 use super::relaxation::{Attempt, RelaxationLevel, Relaxer, out_of_time};
 use super::sets;
 use crate::obstacle::{SpaceTimeObstacle, level_sets};
-use crate::planner::{Improvement, Outcome, Plan, Planned, SearchKind};
+use crate::planner::{Improvement, Outcome, Plan, PlanMethod, Planned, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation};
 use crate::tolerance::TOUCH_M;
@@ -34,7 +34,7 @@ impl Relaxer<'_> {
         if !best.is_better_than(&larger) {
             self.replace(&mut best, larger);
         }
-        let others = match best.planned.is_remainder {
+        let others = match best.planned.is_remainder() {
             true => Vec::new(),
             false => stricter(self.scenario),
         };
@@ -49,6 +49,10 @@ impl Relaxer<'_> {
                 self.replace(&mut best, found);
             }
         }
+        let plan = best.planned.outcome.plan_mut();
+        if let Some(plan) = plan.filter(|plan| plan.method.is_by_search()) {
+            plan.method = PlanMethod::Thorough;
+        }
         match late || self.time_left().is_zero() {
             true => out_of_time(best),
             false => best,
@@ -57,6 +61,8 @@ impl Relaxer<'_> {
 
     /// Replaces the best answer. The improvements begin anew where less is relaxed.
     fn replace(&self, best: &mut Attempt, mut better: Attempt) {
+        // a manoeuvre for stricter sets may come from no graph: the search among all is reported
+        better.planned.stats = better.planned.stats.or(best.planned.stats);
         if better.relaxation_cmp(best).is_eq() {
             better.planned.improvements = std::mem::take(&mut best.planned.improvements);
         }
@@ -93,8 +99,9 @@ impl Relaxer<'_> {
         let planned = Planned {
             stats: planned.stats,
             explored: planned.explored,
-            // that of other sets
+            // the cost on the graph is that of other sets
             ..Planned::of(Outcome::Solved(Plan {
+                method: PlanMethod::Thorough,
                 graph_cost: None,
                 ..plan
             }))

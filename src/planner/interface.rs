@@ -1,6 +1,6 @@
 //! Interface between planners and the rest of the program: facts and requests.
 
-use super::{NoPlan, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
+use super::{NoPlan, Outcome, PLANNERS, Planned, PlannerSettings, Problem, SearchKind};
 use crate::obstacle::Obstacle;
 use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::Hull;
@@ -28,7 +28,7 @@ pub trait Planner: Sync {
 
     /// A plan by a wider search, without refinement: use it only where nothing else is found. Ten
     /// to several hundred milliseconds.
-    fn wide_detour(&self, _problem: &Problem) -> Option<Plan> {
+    fn wide_detour(&self, _problem: &Problem) -> Option<Planned> {
         None
     }
 

@@ -6,6 +6,7 @@ pub mod cost;
 mod explored;
 mod interface;
 mod line_error;
+mod method;
 mod no_plan;
 pub mod optimal_control;
 pub mod path_time;
@@ -15,6 +16,7 @@ pub use crate::search::Counts as SearchStats;
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
+pub use method::PlanMethod;
 pub use no_plan::NoPlan;
 pub use optimal_control::WarmStart;
 
@@ -251,6 +253,8 @@ pub struct Plan {
     pub trajectory: Trajectory,
     /// Minimised quantity, in the objective's unit.
     pub cost: f64,
+    /// What made it.
+    pub method: PlanMethod,
     /// Cost of the first plan on the graph before refinement, in the same unit. For one target it
     /// is the graph's optimum; for several it is at most four times that. `None` where the graph
     /// had no plan.
@@ -269,20 +273,17 @@ impl Plan {
     /// Plan that ends where own ship is, after no time.
     pub(crate) fn staying(problem: &Problem) -> Option<Self> {
         let stay = Segment::straight(problem.own.pose, 0.0, 0.0, problem.own.max_speed());
-        Self::measured(problem, vec![stay], None)
+        Self::measured(problem, vec![stay], PlanMethod::Stay)
     }
 
     /// Plan that arrives, with its space-time error, which is integrated anew: searches use coarser
     /// quadrature. `None` for an invalid trajectory.
-    pub fn measured(
-        problem: &Problem,
-        motion: Vec<Segment>,
-        graph_cost: Option<f64>,
-    ) -> Option<Self> {
+    pub fn measured(problem: &Problem, motion: Vec<Segment>, method: PlanMethod) -> Option<Self> {
         Some(Self {
             cost: cost::whole_space_time_error(problem.desired, &motion, problem.time_weight),
             trajectory: Trajectory::new(motion).ok()?,
-            graph_cost,
+            method,
+            graph_cost: None,
             to_go: 0.0,
         })
     }
@@ -376,7 +377,7 @@ impl Outcome {
         }
     }
 
-    fn plan_mut(&mut self) -> Option<&mut Plan> {
+    pub(crate) fn plan_mut(&mut self) -> Option<&mut Plan> {
         match self {
             Self::Solved(plan) => Some(plan),
             Self::Deadline(plan) => plan.as_mut(),
@@ -390,8 +391,9 @@ impl Outcome {
 pub struct Planned {
     /// The result.
     pub outcome: Outcome,
-    /// Search statistics up to the cheapest plan on the graph.
-    pub stats: SearchStats,
+    /// Search statistics up to the cheapest plan on the graph; `None` where no graph was searched for
+    /// this result.
+    pub stats: Option<SearchStats>,
     /// All nodes and edges that the search generated.
     pub explored: ExploredGraph,
     /// Path-time diagram of the path-time planner; boxed because most plans have none.
@@ -402,8 +404,6 @@ pub struct Planned {
     pub escape: Option<Escape>,
     /// The manoeuvres of a plan by the rules, in order of time.
     pub manoeuvres: Vec<PlannedManoeuvre>,
-    /// True for the remainder of the plan that own ship follows.
-    pub is_remainder: bool,
     /// True where a part of the search was given up to leave time for others.
     pub is_cut_short: bool,
     /// The best answers of a thorough search so far that give up as much as the plan, which is the
@@ -425,15 +425,24 @@ impl Planned {
     pub fn of(outcome: Outcome) -> Self {
         Self {
             outcome,
-            stats: SearchStats::default(),
+            stats: None,
             explored: ExploredGraph::new(),
             path_time: None,
             control: None,
             escape: None,
             manoeuvres: Vec::new(),
-            is_remainder: false,
             is_cut_short: false,
             improvements: Vec::new(),
         }
+    }
+
+    /// What made the plan; `None` without one.
+    pub fn method(&self) -> Option<PlanMethod> {
+        self.outcome.plan().map(|plan| plan.method)
+    }
+
+    /// True for the remainder of the plan that own ship follows.
+    pub fn is_remainder(&self) -> bool {
+        self.method() == Some(PlanMethod::Remainder)
     }
 }

@@ -434,7 +434,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
     let entities = read(&path);
     for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
         let method = entry.candidate.method;
-        let name = EntityPathPart::new(method.to_string()).escaped_string();
+        let name = EntityPathPart::new(entry.name()).escaped_string();
         let mut parts = vec![
             format!("/chart/map/methods/{name}/way"),
             format!("/chart/map/methods/{name}/own_ship/hull"),

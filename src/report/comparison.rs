@@ -8,7 +8,7 @@ use crate::document::{
 use crate::evaluation::risk_figure;
 use crate::obstacle::LAND;
 use crate::report::plan::manoeuvre;
-use crate::text::{signed, significant, square_metres, tenths};
+use crate::text::{knots, signed, significant, square_metres, tenths};
 
 pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
@@ -132,10 +132,21 @@ pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     grid
 }
 
+/// The manoeuvre in brief. A baseline that turns may also have another speed from the start.
+fn departure(entry: &EntryDocument) -> String {
+    let brief = manoeuvre(entry.departure);
+    match (entry.departure, entry.velocity) {
+        (Some(Departure::Course { .. }), Some(held)) => {
+            format!("{brief} at {}", knots(held.speed_mps))
+        }
+        _ => brief,
+    }
+}
+
 fn row(group: &[&EntryDocument]) -> Vec<Styled> {
     let entry = group[0];
     let methods: Vec<&str> = group.iter().map(|entry| entry.method.as_str()).collect();
-    let nodes = |entry: &&EntryDocument| Some(entry.search_stats?.expanded.to_string());
+    let nodes = |entry: &&EntryDocument| Some(entry.search_stats?.expanded?.to_string());
     let cost = entry.cost.as_ref();
     let figure = |value: fn(&CostDocument) -> f64, text: fn(f64) -> String| {
         or_dash(cost.map(value).filter(|v| v.is_finite()).map(text))
@@ -154,7 +165,7 @@ fn row(group: &[&EntryDocument]) -> Vec<Styled> {
     vec![
         plain(joined(&methods)),
         verdict(&entry.verdict),
-        or_dash(cost.map(|_| manoeuvre(entry.departure))),
+        or_dash(cost.map(|_| departure(entry))),
         error_of(|c| Some(c.space_time_error_m2)),
         error_of(|c| c.space_time_error_arc_length_m2),
         figure(|c| c.duration_s, tenths),
@@ -183,8 +194,9 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     let mut lines = Vec::new();
     if entries.iter().any(|e| e.cost.is_some()) {
         lines.push(
-            "J is counted until own ship's length from the last waypoint; a motion that does not \
-             come so near is counted to the end of the desired time"
+            "J is counted as in `plan`: to the end at the last waypoint; a motion that need not end \
+             there, until own ship's length from it; one that does not come so near, to the end of \
+             the desired time"
                 .to_owned(),
         );
         lines.push(CLEARANCE.to_owned());
@@ -278,7 +290,8 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         optional(turn.map(|(degrees, _)| degrees)),
         turn.map_or_else(String::new, |(_, side)| side.to_string()),
         (entry.breaks.as_ref()).map_or_else(String::new, |b| b.join(" ")),
-        (entry.search_stats).map_or_else(String::new, |stats| stats.expanded.to_string()),
+        (entry.search_stats.and_then(|stats| stats.expanded))
+            .map_or_else(String::new, |expanded| expanded.to_string()),
         optional(entry.timing.as_ref().map(|timing| 1e3 * timing.plan_s)),
         entry.reason.clone().unwrap_or_default(),
     ]

@@ -40,10 +40,10 @@ pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
 
 pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
     let header = "scenario, outcome, encounter, manoeuvre, passing, J\n[m²], delay\n[s], \
-                  clearance\n[m], risk, breaks, nodes, time\n[ms], verified, safe";
+                  clearance\n[m], risk, breaks, method, nodes, time\n[ms], verified, safe";
     let rows = runs.iter().zip(row_names(runs));
     let rows = rows.map(|(run, name)| suite_row(run, name));
-    Grid::new(header, 5..12, rows).breaking("breaks", 14)
+    Grid::new(header, 5..13, rows).breaking("breaks", 14)
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -105,7 +105,12 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
         or_dash(risks.max_by(f64::total_cmp).map(risk_figure)),
         rules_broken(breaks(&run.encounters)),
-        or_dash(run.search_stats.map(|stats| stats.expanded.to_string())),
+        or_dash(run.method.map(|method| method.label().to_owned())),
+        or_dash(
+            run.search_stats
+                .and_then(|s| s.expanded)
+                .map(|n| n.to_string()),
+        ),
         or_dash(run.timing.as_ref().map(milliseconds)),
         verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
         yes_or_no(cost.map(|_| run.safe)),

@@ -187,7 +187,7 @@ pub(super) fn conduct_lines(
     let (sailed, timing) = (&simulation.conduct, &simulation.timing);
     let first = sailed.first_plan_cost_m2;
     let share = first
-        .filter(|first| *first > 0.0)
+        .filter(|first| *first >= LEAST_COST_M2)
         .map_or(String::new(), |first| {
             format!(", {:.2} of the first plan's", sailed.cost_m2 / first)
         });
@@ -232,8 +232,8 @@ pub(super) fn conduct_lines(
         (
             "Plans",
             format!(
-                "{plans}, {kept} kept from the one before{given_up}; manoeuvres replaced {}, to the \
-                 other side {}; remainders lost {}, unsafe {}, without a plan {}",
+                "{plans}, {kept} kept from the one before{given_up}; manoeuvres by the rules replaced \
+                 {}, to the other side {}; remainders lost {}, unsafe {}, without a plan {}",
                 sailed.replaced_manoeuvres,
                 sailed.side_switches,
                 sailed.lost_remainders,
@@ -298,6 +298,9 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
     let header = "target, scores, rules broken, monitors satisfied, monitors violated";
     Grid::new(header, 0..0, rows)
 }
+
+/// Space-time error of the first plan below which no ratio to it is shown, m²: it hardly deviates.
+const LEAST_COST_M2: f64 = 1.0;
 
 /// Degrees. A smaller difference between the turns of two plans does not count.
 const OTHER_TURN_DEG: f64 = 5.0;

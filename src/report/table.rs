@@ -9,9 +9,12 @@ use crate::text::{broken, printable_lines};
 const CARD_WIDTH: usize = 80;
 
 /// Columns that a table drops first where it is too wide, in this order. Cards have none of them.
-const DETAILS: [&str; 9] = [
-    "arc J", "nodes", "time", "risk", "delay", "duration", "length", "to", "leg",
+const DETAILS: [&str; 10] = [
+    "arc J", "nodes", "time", METHOD, "risk", "delay", "duration", "length", "to", "leg",
 ];
+
+/// Column of what made a plan. In a comparison it names the rows, and is not dropped.
+const METHOD: &str = "method";
 
 /// Columns that a table drops next, in this order.
 const FURTHER: [&str; 8] = [
@@ -82,7 +85,8 @@ impl Grid {
     /// Removes the column whose name has this first line, if there is one.
     pub fn without(mut self, name: &str) -> Self {
         let is_it = |header: &&str| header.lines().next() == Some(name);
-        if let Some(column) = self.header.iter().position(is_it) {
+        let found = self.header.iter().position(is_it);
+        if let Some(column) = found.filter(|column| *column > 0 || name != METHOD) {
             self.header.remove(column);
             self.numbers.start -= usize::from(column < self.numbers.start);
             self.numbers.end -= usize::from(column < self.numbers.end);

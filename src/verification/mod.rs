@@ -143,6 +143,7 @@ fn verified(claim: &Claim) -> Verification {
     violations.extend(coverage::check(claim));
     violations.extend(outcome::releases(claim));
     violations.extend(outcome::check(claim));
+    violations.extend(outcome::method(claim));
     violations.extend(outcome::safety(claim, evaluation.as_ref()));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());

@@ -2,7 +2,7 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::mismatch;
-use crate::document::RelaxationDocument;
+use crate::document::{PlanMethod, RelaxationDocument};
 use crate::evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use crate::tolerance;
 
@@ -103,6 +103,58 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
                 "given up once",
             ));
         }
+    }
+    found
+}
+
+/// Checks what the document says made its plan against its planner, its search, its statistics and
+/// its memory. An old document does not say it.
+pub(super) fn method(claim: &Claim) -> Vec<Violation> {
+    let file = &claim.file;
+    let Some(method) = file.method else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    let mut check = |is_so: bool, so: &str| {
+        if !is_so {
+            found.push(mismatch("method", method.word(), so));
+        }
+    };
+    check(claim.motion.is_some(), "none without a plan");
+    let made_by = match method {
+        PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
+        PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
+        PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
+        _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
+    };
+    check(made_by, &format!("another with planner '{}'", file.planner));
+    let searches: &[&str] = match method {
+        PlanMethod::AStar => &["a-star", "thorough"],
+        PlanMethod::Dijkstra => &["dijkstra"],
+        PlanMethod::Thorough => &["thorough"],
+        _ => &[],
+    };
+    let asked = searches.is_empty() || searches.contains(&file.search.as_str());
+    check(asked, &format!("another with search '{}'", file.search));
+    if let Some(searched) = method.has_statistics() {
+        let so = match searched {
+            true => "another without search_stats",
+            false => "another with search_stats",
+        };
+        check(file.search_stats.expanded.is_some() == searched, so);
+    }
+    if method == PlanMethod::Rules {
+        let gives_up = file.relaxations.iter().any(|r| r.kind == "compliance");
+        let by_rules = file.compliance == "rules" && !gives_up;
+        check(
+            by_rules,
+            "another where the rules are not asked or given up",
+        );
+    }
+    if let Some(memory) = &file.memory {
+        let is_kept = method == PlanMethod::Remainder;
+        let so = format!("another with memory.keeps_plan {}", memory.keeps_plan);
+        check(is_kept == memory.keeps_plan, &so);
     }
     found
 }

@@ -19,11 +19,10 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     let asked = format!("compare scenarios/colregs --csv {csv} --figure {figure}");
     let written = format!("note: wrote {csv}\nnote: wrote {figure}\n");
     let shown = stdout(&run(&asked).success().stderr(written));
-    let methods =
-        "space-time, A* and Dijkstra, ellipsoids | hold course | COLLIDES | optimal control";
+    let methods = "space-time, by the rules, ellipsoids | hold course | COLLIDES | optimal control";
     says(&shown, &format!("Head-on\n | {methods}"));
     let rows = fs::read_to_string(&csv).expect("rows");
-    assert_eq!(rows.lines().count(), 1 + 4 * 9);
+    assert_eq!(rows.lines().count(), 1 + 4 * 7);
     assert!(rows.starts_with("file,scenario,method,max_risk,"));
     let drawn = fs::read_to_string(&figure).expect("a figure");
     // who rams is told, and of nobody else anything
@@ -50,15 +49,15 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     let found = json("1");
     assert_eq!(found, json("4"));
     let entries = list(&found["comparisons"][0]["entries"]);
-    assert_eq!(entries.len(), 8 * 2 + 1);
+    assert_eq!(entries.len(), 6 * 2 + 1);
     assert_eq!(entries[1]["max_risk"], 0.2);
     assert_eq!(entries[0]["departure"]["kind"], "course");
-    assert!(entries[14]["departure"].is_null());
-    assert_eq!(entries[14]["method"], "hold course");
-    assert_eq!(entries[14]["verified"], false);
+    assert!(entries[10]["departure"].is_null());
+    assert_eq!(entries[10]["method"], "hold course");
+    assert_eq!(entries[10]["verified"], false);
     // the first contact, before the centres would meet at 150 s
-    assert_eq!(entries[14]["collision"]["with"], "target");
-    let contact = number(&entries[14]["collision"]["t_s"]);
+    assert_eq!(entries[10]["collision"]["with"], "target");
+    let contact = number(&entries[10]["collision"]["t_s"]);
     assert!((145.0..150.0).contains(&contact), "{contact}");
     assert!(entries[0].get("collision").is_none());
     assert!(entries.iter().all(|e| list(&e["track"]).len() > 10));
@@ -139,4 +138,93 @@ fn a_plan_costs_at_least_its_bound() {
         &stdout(&run(asked).success()),
         "bound | bound: no motion of a point",
     );
+}
+
+/// Where no graph is searched, the search that is asked for changes nothing: one row, no node.
+#[test]
+fn a_search_that_did_not_run_has_no_row() {
+    let file = "scenarios/colregs/stand-on.toml";
+    let compared = |options: &str| {
+        let compared = json(&format!("compare {file} --json {options}"));
+        list(&compared["comparisons"][0]["entries"]).to_vec()
+    };
+    let names = |entries: &[Value]| -> Vec<String> {
+        let names = entries.iter().filter_map(|e| e["method"].as_str());
+        let space_time = names.filter(|name| name.starts_with("space-time"));
+        space_time.map(str::to_owned).collect()
+    };
+    let rules = [
+        "space-time, by the rules",
+        "space-time, by the rules, ellipsoids",
+    ];
+    for options in ["", "--search dijkstra", "--search a-star"] {
+        let entries = compared(options);
+        assert_eq!(names(&entries), rules, "{options}");
+        assert!(entries[0]["search_stats"]["expanded"].is_null());
+    }
+    let searched = compared("--compliance shape");
+    let all = "space-time, A*; space-time, Dijkstra; space-time, A*, ellipsoids; space-time, \
+               Dijkstra, ellipsoids";
+    assert_eq!(names(&searched).join("; "), all);
+    assert!(number(&searched[0]["search_stats"]["expanded"]) > 0.0);
+    let table = stdout(&run(&format!("compare {file}")).success());
+    says(&table, "space-time, by the rules");
+    assert!(
+        !table.contains("A*") && !table.contains("Dijkstra"),
+        "{table}"
+    );
+}
+
+/// J of one plan is one number.
+#[test]
+fn a_plan_costs_the_same_in_every_command() {
+    for name in [
+        "colregs/stand-on",
+        "forces/give-way",
+        "harbour/alternative-path",
+    ] {
+        let file = format!("scenarios/{name}.toml");
+        let plan = json(&format!("plan {file} --json"));
+        let planner = plan["planner"].as_str().expect("a planner");
+        let compared = json(&format!(
+            "compare {file} --planner {planner} --search a-star --json"
+        ));
+        let of_planner = planner.replace('-', " ");
+        let entries = list(&compared["comparisons"][0]["entries"]).iter();
+        let mut entries = entries.filter(|e| {
+            let method = e["method"].as_str().unwrap_or_default().replace('-', " ");
+            method.starts_with(&of_planner)
+        });
+        let entry = entries
+            .next()
+            .unwrap_or_else(|| panic!("{name}: {compared}"));
+        for key in ["space_time_error_m2", "space_time_error_until_s"] {
+            assert_eq!(entry["cost"][key], plan["cost"][key], "{name} {key}");
+        }
+    }
+}
+
+/// A velocity has a speed.
+#[test]
+fn a_baseline_that_turns_says_its_speed() {
+    let mut slower = 0;
+    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
+        let file = format!("scenarios/colregs/{name}.toml");
+        let compared = json(&format!("compare {file} --planner path-time --json"));
+        let entries = list(&compared["comparisons"][0]["entries"]);
+        let held = entries.iter().find(|e| e["method"] == "constant velocity");
+        let held = held.expect("one");
+        if held["departure"]["kind"] != "course" {
+            continue;
+        }
+        let speed = number(&held["velocity"]["speed_mps"]) * 3600.0 / 1852.0;
+        let table = stdout(&run(&format!("compare {file} --planner path-time")));
+        let row = table
+            .lines()
+            .find(|line| line.starts_with("constant velocity"));
+        let row = row.expect("a row");
+        assert!(row.contains(&format!(" at {speed:.1} kn")), "{row}");
+        slower += 1;
+    }
+    assert!(slower > 0);
 }

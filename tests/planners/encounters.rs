@@ -104,7 +104,9 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
         let cost = planned
             .each_ref()
             .map(|p| p.outcome.plan().and_then(|p| p.graph_cost));
-        let [weight, unweighted] = planned.each_ref().map(|p| p.stats.heuristic_weight);
+        let [weight, unweighted] = planned
+            .each_ref()
+            .map(|p| p.stats.map_or(1.0, |s| s.heuristic_weight));
         assert_eq!(unweighted, 1.0, "{title}");
         match cost {
             [Some(a), Some(b)] => {
@@ -123,7 +125,7 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
             [Some(_), None] => assert!(several || land, "{title}"),
             other => assert_eq!(other[0], other[1], "{title}"),
         }
-        let [a, b] = planned.map(|p| p.stats.expanded);
+        let [a, b] = planned.map(|p| p.stats.map_or(0, |s| s.expanded));
         assert!(a <= b, "{title}: {a} {b}");
         expanded += a;
         blind += b;

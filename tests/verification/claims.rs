@@ -185,6 +185,17 @@ shape | domain 1, domain 2 | 'domain' twice
 shape | domain 0 | reduced by 0
 "#;
 
+/// Another word for what made a plan by the rules.
+const METHODS: &str = r#"
+by a search that did not run | /method = "a-star" | method
+by another search | /method = "dijkstra" | method
+by the other planner | /method = "path-time-graph"; /search_stats/expanded = 3 | method
+by nothing known | /method = "magic" |
+by the rules and a search | /search_stats/expanded = 3 | method
+by rules that are not asked | /compliance = "shape" | method
+without a plan | /trajectory = null | method
+"#;
+
 /// Checks that the words of a document agree with its content, and that figures independent of the
 /// motion are recomputed.
 #[test]
@@ -216,6 +227,10 @@ fn every_claim_of_a_document_is_held() {
         }
         assert_word(&document, word, word);
     }
+    assert_rejected(&clear, METHODS);
+    let mut old = clear.clone();
+    alter(&mut old, "/method remove");
+    assert!(!is_caught(&old));
     let mut late = clear;
     for outcome in ["solved", "deadline"] {
         alter(

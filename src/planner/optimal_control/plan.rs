@@ -16,7 +16,9 @@ use super::solver::{Settings, SolverStatus};
 use super::task::{Controls, Profile, Task};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
+use crate::planner::{
+    ControlSettings, NoPlan, Outcome, Plan, PlanMethod, Planned, Problem, space_time,
+};
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 use crate::vessel::{CyberShip2, Manoeuvring, StateVector, VesselKind};
@@ -296,6 +298,7 @@ impl<'a, V: Manoeuvring> Planning<'a, V> {
                 .map(|motion| Plan {
                     trajectory: Trajectory::from(motion),
                     cost: grid.found.objective,
+                    method: PlanMethod::OptimalControl,
                     graph_cost: None,
                     // no arrival is required
                     to_go: 0.0,

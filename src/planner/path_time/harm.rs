@@ -19,7 +19,7 @@ use crate::obstacle::{Obstacle, PathTime, SpaceTimeObstacle};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::NominalHulls;
 use crate::planner::space_time::piece::pieces;
-use crate::planner::{NominalTarget, Outcome, Planned, Problem};
+use crate::planner::{NominalTarget, Outcome, PlanMethod, Planned, Problem};
 use crate::trajectory::PathNetwork;
 
 /// Candidate speeds as fractions of the maximum speed.
@@ -89,8 +89,9 @@ pub fn least_harm(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planne
                 deadline: clock.left(),
                 ..problem.clone()
             };
-            let onward = search(&rest, scene, &begun, 1.0);
-            if onward.outcome.plan().is_some() {
+            let mut onward = search(&rest, scene, &begun, 1.0);
+            if let Some(plan) = onward.outcome.plan_mut() {
+                plan.method = PlanMethod::LeastHarm;
                 return Some(onward);
             }
         }
@@ -98,6 +99,7 @@ pub fn least_harm(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planne
     let found = Found {
         to_go: best.profile.to_go(scene),
         profile: best.profile,
+        method: PlanMethod::LeastHarm,
         graph_cost: None,
     };
     let plan = finished(problem, scene, &found, 1.0)?;

@@ -29,8 +29,8 @@ use petgraph::graph::NodeIndex;
 use super::clock::Clock;
 use super::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
-    NominalTarget, Objective, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts, Problem,
-    SearchKind,
+    NominalTarget, Objective, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner,
+    PlannerFacts, Problem, SearchKind,
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -222,7 +222,7 @@ fn search_for(
         };
         return Planned { outcome, ..quick };
     }
-    let stats = search.counts();
+    let stats = Some(search.counts());
     let found = goal.map(|goal| {
         let mut profile = begun.clone();
         for index in &search.way_to(goal)[1..] {
@@ -255,6 +255,7 @@ fn search_for(
         Found {
             profile,
             to_go,
+            method: PlanMethod::PathTimeGraph,
             graph_cost: Some(search.nodes()[goal].cost),
         }
     });
@@ -279,6 +280,7 @@ struct Found {
     profile: Profile,
     /// Remaining distance in metres to the last waypoint.
     to_go: f64,
+    method: PlanMethod,
     graph_cost: Option<f64>,
 }
 
@@ -294,6 +296,7 @@ fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Optio
     Some(Plan {
         trajectory,
         cost,
+        method: found.method,
         graph_cost: found.graph_cost.map(|_| cost),
         to_go: found.to_go,
     })

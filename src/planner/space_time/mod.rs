@@ -33,8 +33,8 @@ pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
 use super::{
-    ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanRequest, Planned, Planner,
-    PlannerFacts, Problem, SearchKind, SearchStats,
+    ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanMethod, PlanRequest,
+    Planned, Planner, PlannerFacts, Problem, SearchKind, SearchStats,
 };
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::parallel;
@@ -88,16 +88,16 @@ impl Planner for SpaceTimePlanner {
         Some(warm_started(problem, from).outcome)
     }
 
-    fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
+    fn wide_detour(&self, problem: &Problem) -> Option<Planned> {
         let clock = Clock::new(problem.deadline);
         let planned = plan_normalised(problem, clock, |problem, proxies, _| {
             if let Some(covered) = end_covered(problem, proxies) {
                 return Planned::of(Outcome::Infeasible(covered));
             }
-            let wide = hybrid_a_star::hybrid_a_star(problem, clock);
-            Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
+            hybrid_a_star::hybrid_a_star(problem, clock)
+                .unwrap_or_else(|| Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory)))
         });
-        planned.outcome.into_plan()
+        planned.outcome.plan().is_some().then_some(planned)
     }
 
     fn short_of_end(&self, problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
@@ -105,8 +105,7 @@ impl Planner for SpaceTimePlanner {
     }
 
     fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
-        let plan = fallback::escape::escape(problem, nominal)?;
-        Some(Planned::of(Outcome::Solved(plan)))
+        fallback::escape::escape(problem, nominal)
     }
 }
 
@@ -245,7 +244,7 @@ fn plan_with(
     let has_duty = !problem.duty().is_none() && first_conflict.is_some();
     if has_duty || problem.under_way.is_some() {
         if let Some(kept) = groups::by_the_rules(&context, &nominal_motion, clock) {
-            let plan = Plan::measured(problem, kept.motion, None);
+            let plan = Plan::measured(problem, kept.motion, PlanMethod::Rules);
             let outcome = match plan {
                 Some(plan) if clock.is_up() => Outcome::Deadline(Some(plan)),
                 Some(plan) => Outcome::Solved(plan),
@@ -287,7 +286,7 @@ fn plan_with(
     };
     Planned {
         is_cut_short: best.is_cut_short,
-        stats: best.stats,
+        stats: Some(best.stats),
         explored: best.explored,
         ..Planned::of(outcome)
     }

@@ -408,6 +408,7 @@ impl Similarity {
         Some(Plan {
             trajectory: Trajectory::new(segments.map(|s| self.segment(s)).collect()).ok()?,
             cost: self.cost(plan.cost),
+            method: plan.method,
             graph_cost: plan.graph_cost.map(|c| self.cost(c)),
             to_go: plan.to_go * self.length,
         })

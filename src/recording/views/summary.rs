@@ -99,7 +99,10 @@ fn graph(drawn: DrawnGraph) -> String {
     } else {
         format!("All {} tested edges that take time are", drawn.tested)
     };
-    format!("{shown} in the recording under `explored`, hidden on the chart.")
+    match drawn.tested {
+        0 => "No graph was searched for this plan.".to_owned(),
+        _ => format!("{shown} in the recording under `explored`, hidden on the chart."),
+    }
 }
 
 fn claim(model: &ViewModel) -> String {

@@ -163,9 +163,9 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
         let [r, g, b] = style.rgb();
         let color = Color::from_rgb(r, g, b);
         let name = if all.len() > 1 {
-            format!("{} at risk {}", candidate.method, candidate.max_risk)
+            format!("{} at risk {}", entry.name(), candidate.max_risk)
         } else {
-            candidate.method.to_string()
+            entry.name()
         };
         let own = DrawnShip {
             motion,

@@ -99,7 +99,9 @@ fn curves<'a>(entries: &'a [Entry], style: &Style) -> Vec<Curve<'a>> {
             };
             other.len() == all.len() && other.iter().zip(&all).all(equal)
         };
-        let name = of_one[0].candidate.method.to_string();
+        let mut name: Vec<String> = of_one.iter().map(Entry::name).collect();
+        name.dedup();
+        let name = joined(&name.iter().map(String::as_str).collect::<Vec<_>>());
         match groups.iter_mut().find(same) {
             Some((names, _)) => names.push(name),
             None => groups.push((vec![name], all)),
@@ -121,11 +123,12 @@ fn curves<'a>(entries: &'a [Entry], style: &Style) -> Vec<Curve<'a>> {
 pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
     let diagram = |entry: &Entry| {
         let Candidate { method, max_risk } = entry.candidate;
+        let name = entry.name();
         let title = match max_risk {
-            risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
-            _ => format!("Path and time: {method}"),
+            risk if risk > 0.0 => format!("Path and time: {name} at risk {risk}"),
+            _ => format!("Path and time: {name}"),
         };
-        let label = named(&method.to_string(), [entry]);
+        let label = named(&name, [entry]);
         run_panel(&title, entry.run.as_deref()?, &label, Stroke::of(method))
     };
     entries.iter().filter_map(diagram).collect()

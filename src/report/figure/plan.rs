@@ -275,6 +275,7 @@ fn traffic(run: &Run, encounters: &[EncounterDocument], style: &Style) -> Traffi
         }
     });
     let pose = |time: &f64| trajectory.map(|t| t.pose_at(*time));
+    let method = run.planned.method();
     Traffic {
         targets: targets.collect(),
         own: times.iter().filter_map(pose).collect(),
@@ -282,7 +283,12 @@ fn traffic(run: &Run, encounters: &[EncounterDocument], style: &Style) -> Traffi
             .map(|pose| pose.position)
             .collect(),
         times,
-        words: ["planned", "nominal tracks"],
+        words: [
+            method.map_or("planned".to_owned(), |made| {
+                format!("planned, {}", made.label())
+            }),
+            "nominal tracks".to_owned(),
+        ],
     }
 }
 
@@ -352,7 +358,7 @@ pub(super) struct Traffic {
     pub own: Vec<Pose>,
     pub targets: Vec<Charted>,
     /// The legend's words for own ship's track and for those of the targets.
-    pub words: [&'static str; 2],
+    pub words: [String; 2],
 }
 
 impl Traffic {
@@ -562,7 +568,7 @@ pub(super) fn traffic_chart(
         }
     }
     if !traffic.track.is_empty() {
-        panel.line_key(traffic.words[0], PLANNED);
+        panel.line_key(&traffic.words[0], PLANNED);
     }
     panel.line_key("desired", DESIRED);
     let colour = target_colour(0);
@@ -570,7 +576,7 @@ pub(super) fn traffic_chart(
         let word = if style.is_small() {
             "targets"
         } else {
-            traffic.words[1]
+            traffic.words[1].as_str()
         };
         panel.line_key(word, Stroke::solid(colour, 1.2));
     }

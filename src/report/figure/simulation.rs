@@ -106,7 +106,7 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
             .map(|pose| pose.position)
             .collect(),
         own: times.iter().filter_map(own).collect(),
-        words: ["sailed", "targets"],
+        words: ["sailed", "targets"].map(str::to_owned),
         times,
     }
 }

@@ -126,7 +126,7 @@ impl Simulation {
             verdict: run.word(),
             safe: run.safe(),
             followed: plan.is_some() && !late,
-            keeps_plan: run.planned.is_remainder,
+            keeps_plan: run.planned.is_remainder(),
             left_out_m,
             cost_m2: plan.and_then(|plan| {
                 // the stage cost of forces has another unit

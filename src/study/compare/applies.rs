@@ -62,7 +62,7 @@ fn reason_against(method: Method, scenario: &Scenario) -> Option<String> {
         return None;
     };
     if search == SearchKind::Thorough && scenario.targets.len() < 2 {
-        return Some("with one target it finds the plan of A*".to_owned());
+        return Some("with one target it finds no other plan".to_owned());
     }
     let faults = method.asked(scenario).unfit();
     let faults: Vec<String> = faults

@@ -1,7 +1,7 @@
 //! Two baselines without a planner: constant course and speed, and one constant velocity outside
 //! every velocity obstacle.
 
-use crate::evaluation::{Evaluation, Safety};
+use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::{Pose, direction};
 use crate::obstacle::{Obstacle, PeakRisk, level_sets};
 use crate::pipeline::{self, Run, TargetSets};
@@ -132,7 +132,12 @@ pub(super) fn baseline(
     );
     let trajectory = Trajectory::from(segment);
     let mut evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
-    super::count_alike(&mut evaluation, scenario, &trajectory);
+    if !evaluation.counted.arrived {
+        // as for motions under forces, which need not end at the last waypoint either
+        let (desired, within) = (&scenario.desired, own.hull.length);
+        (evaluation.space_time_error, evaluation.counted) =
+            counted_error(&trajectory, desired, scenario.time_weight, within);
+    }
     let risk = |set| pipeline::peak_risk(set, &trajectory, scenario.max_risk);
     let risks = sets.whole.iter().map(risk).collect();
     ComparedMotion {

@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    CollisionDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
-    TrackPointDocument, cost_of, departure, finite, minimised, objective, position, samples,
-    timing,
+    CollisionDocument, EntryDocument, HeldVelocityDocument, InapplicableDocument,
+    ScenarioComparisonDocument, SearchStatsDocument, TrackPointDocument, cost_of, departure,
+    finite, minimised, objective, position, samples, timing,
 };
 use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
+use crate::frame::course_deg_from_heading;
 use crate::obstacle::LAND;
 use crate::pipeline::{Run, Verdict};
 use crate::scenario::Scenario;
@@ -72,7 +73,7 @@ impl EntryDocument {
         let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
         let broken = broken.into_iter().map(str::to_owned).collect();
         Self {
-            method: entry.candidate.method.to_string(),
+            method: entry.name(),
             max_risk,
             objective: run.map(|run| objective(&run.scenario).to_owned()),
             outcome: outcome.to_owned(),
@@ -100,13 +101,24 @@ impl EntryDocument {
             }),
             lower_bound: entry.lower_bound,
             departure,
+            velocity: velocity(entry),
             breaks: (!conduct.is_empty()).then_some(broken),
             collision: collision(scenario, entry),
-            search_stats: run.map(|run| run.planned.stats),
+            search_stats: run.map(|run| SearchStatsDocument::of(run.planned.stats)),
             timing: run.map(timing),
             track: track(entry),
         }
     }
+}
+
+/// The velocity of a baseline, which is one segment.
+fn velocity(entry: &Entry) -> Option<HeldVelocityDocument> {
+    let held = entry.trajectory().filter(|_| entry.run.is_none())?;
+    let held = held.segments().first()?;
+    Some(HeldVelocityDocument {
+        course_deg: course_deg_from_heading(held.start.heading),
+        speed_mps: held.speed,
+    })
 }
 
 /// What own ship's hull meets first: a ship that keeps to its expected motion, or land.

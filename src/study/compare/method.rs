@@ -1,7 +1,7 @@
 //! Methods of a comparison and their names.
 
 use super::applies::has_choice;
-use crate::planner::{Minimises, Objective, PLANNERS, Planner, SearchKind};
+use crate::planner::{Minimises, Objective, PLANNERS, PlanMethod, Planner, SearchKind};
 use crate::scenario::Scenario;
 use crate::target::Representation;
 
@@ -71,6 +71,30 @@ impl Method {
     }
 }
 
+/// Name of a method: the planner, its search where it has several and `search` ran, what made the
+/// plan where the planner and the search do not say it, and ellipsoids.
+pub(super) fn named(
+    planner: &dyn Planner,
+    search: Option<SearchKind>,
+    made: Option<PlanMethod>,
+    representation: Option<Representation>,
+) -> String {
+    let facts = planner.facts();
+    let search = search.filter(|_| facts.searches.len() > 1);
+    let made = made.filter(|made| {
+        let is_own = matches!(made, PlanMethod::OptimalControl | PlanMethod::PathTimeGraph);
+        !is_own && !made.is_by_search()
+    });
+    let parts = [
+        Some(facts.label),
+        search.map(SearchKind::label),
+        made.map(PlanMethod::label),
+        (representation == Some(Representation::Ellipsoid)).then_some("ellipsoids"),
+    ];
+    let parts: Vec<&str> = parts.into_iter().flatten().collect();
+    parts.join(", ")
+}
+
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -78,17 +102,7 @@ impl std::fmt::Display for Method {
                 planner,
                 search,
                 representation,
-            } => {
-                let facts = planner.facts();
-                f.write_str(facts.label)?;
-                if facts.searches.len() > 1 {
-                    write!(f, ", {}", search.label())?;
-                }
-                match representation {
-                    Some(Representation::Ellipsoid) => f.write_str(", ellipsoids"),
-                    Some(Representation::Polytope) | None => Ok(()),
-                }
-            }
+            } => f.write_str(&named(*planner, Some(*search), None, *representation)),
             Self::HoldCourse => f.write_str("hold course"),
             Self::ConstantVelocity => f.write_str("constant velocity"),
         }

@@ -13,13 +13,15 @@ mod stroke;
 pub use applies::{Inapplicable, Methods, methods};
 pub use baseline::{ComparedMotion, constant_velocity, hold_course};
 pub use method::Method;
+use method::named;
 pub use stroke::Stroke;
 
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::LowerBoundDocument;
-use crate::evaluation::{Evaluation, Safety, counted_error};
+use crate::evaluation::Safety;
 use crate::frame::Vector;
 use crate::pipeline::{self, Run};
+use crate::planner::PlanMethod;
 use crate::scenario::Scenario;
 use crate::study::bound::lower_bound;
 use crate::trajectory::Trajectory;
@@ -63,27 +65,30 @@ pub fn candidates(methods: &[Method], risks: &[f64]) -> Vec<Candidate> {
         .collect()
 }
 
-/// Counts the space-time error of all methods alike, until the distance to the last waypoint is own
-/// ship's length. For motions that stay farther away see [`Counted`](crate::evaluation::Counted).
-fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Trajectory) {
-    let (desired, q) = (&scenario.desired, scenario.time_weight);
-    let within = scenario.own_ship.hull.length;
-    (evaluation.space_time_error, evaluation.counted) =
-        counted_error(trajectory, desired, q, within);
+/// Leaves out plans that do not depend on the search that was asked for: that of the first search
+/// stands for the same plan of the others.
+pub fn without_repeats(entries: Vec<Entry>) -> Vec<Entry> {
+    let mut kept: Vec<Entry> = Vec::with_capacity(entries.len());
+    for entry in entries {
+        let repeats = |other: &Entry| {
+            other.candidate.max_risk == entry.candidate.max_risk
+                && other.name() == entry.name()
+                && other.trajectory() == entry.trajectory()
+        };
+        if !kept.iter().any(repeats) {
+            kept.push(entry);
+        }
+    }
+    kept
 }
 
 impl Candidate {
-    /// Plans and evaluates the candidate. The space-time error of all methods is counted alike.
-    /// Results are deterministic except for the planning time. Candidates may run in parallel.
+    /// Plans and evaluates the candidate, as a run of its own would. Results are deterministic except for the planning time. Candidates may run in parallel.
     pub fn run(self, scenario: &Scenario) -> Entry {
         let asked = self.scenario(scenario);
         let (run, motion) = match self.method {
             Method::Planner { .. } => {
-                let mut run = pipeline::run(asked);
-                if let (Some(plan), Some(found)) = (run.planned.outcome.plan(), &mut run.evaluation)
-                {
-                    count_alike(found, scenario, &plan.trajectory);
-                }
+                let run = pipeline::run(asked);
                 let motion = ComparedMotion::of(&run);
                 (Some(Box::new(run)), motion)
             }
@@ -113,6 +118,27 @@ impl Entry {
     pub fn with_bound(mut self) -> Self {
         self.lower_bound = self.run.as_deref().and_then(lower_bound);
         self
+    }
+
+    /// Name of the row: the planner, the search if one ran, and what made the plan where that was no
+    /// search of this planner; or the baseline.
+    pub fn name(&self) -> String {
+        match (self.candidate.method, self.run.as_deref()) {
+            (
+                Method::Planner {
+                    planner,
+                    search,
+                    representation,
+                },
+                Some(run),
+            ) => {
+                let made = run.planned.method();
+                let is_asked = made.is_none_or(|m| m.is_by_search() || m == PlanMethod::LeastHarm);
+                let ran = run.planned.stats.is_some() && is_asked;
+                named(planner, ran.then_some(search), made, representation)
+            }
+            (method, _) => method.to_string(),
+        }
     }
 
     /// Trajectory; `None` without a motion.
@@ -157,10 +183,8 @@ impl Entry {
 /// Runs every candidate sequentially.
 pub fn compare(scenario: &Scenario, risks: &[f64]) -> Vec<Entry> {
     let found = methods(scenario);
-    candidates(&found.methods, risks)
-        .into_iter()
-        .map(|candidate| candidate.run(scenario))
-        .collect()
+    let all = candidates(&found.methods, risks).into_iter();
+    without_repeats(all.map(|candidate| candidate.run(scenario)).collect())
 }
 
 #[cfg(test)]

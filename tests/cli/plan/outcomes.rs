@@ -277,3 +277,80 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
     // far more than is left over, for a machine with other things to do
     assert!((0.4..1.2).contains(&took), "{took}");
 }
+
+/// Text, document and table say what made the plan, and have nodes where a graph was searched.
+#[test]
+fn a_plan_says_what_made_it() {
+    for (asked, method, words) in [
+        (
+            "scenarios/colregs/head-on.toml",
+            "rules",
+            "space-time, by the rules",
+        ),
+        (
+            "scenarios/colregs/head-on.toml --search dijkstra",
+            "rules",
+            "space-time, by the rules",
+        ),
+        (
+            "scenarios/colregs/head-on.toml --compliance shape",
+            "a-star",
+            "space-time, A*",
+        ),
+        (
+            "scenarios/colregs/head-on.toml --compliance shape --search dijkstra",
+            "dijkstra",
+            "space-time, Dijkstra",
+        ),
+        (
+            "scenarios/harbour/alternative-path.toml",
+            "path-time-graph",
+            "path-time, path-time graph",
+        ),
+        (
+            "scenarios/forces/give-way.toml",
+            "optimal-control",
+            "optimal-control",
+        ),
+        (
+            "tests/faults/least-harm-at-anchor.toml",
+            "least-harm",
+            "escape with the least harm",
+        ),
+    ] {
+        let searched = !["rules", "optimal-control", "least-harm"].contains(&method);
+        let [plan, text] = ["--json", ""].map(|json| run(&format!("plan {asked} {json}")));
+        let plan = document(&plan);
+        assert_eq!(plan["method"], method, "{asked}");
+        let expanded = &plan["search_stats"]["expanded"];
+        if method != "least-harm" {
+            assert_eq!(expanded.is_number(), searched, "{asked}: {expanded}");
+        }
+        let text = stdout(&text);
+        let planner = text.lines().find(|line| line.trim().starts_with("planner"));
+        assert!(planner.expect("a line").contains(words), "{text}");
+        let is_asked_of_claims = text.contains("V, which is assumed");
+        assert!(
+            is_asked_of_claims && text.contains("83, 57 and 45 %"),
+            "{text}"
+        );
+        let table = stdout(&run(&format!("suite {asked}")));
+        let label = words.rsplit(", ").next().expect("a word").replace('-', " ");
+        let row = table.lines().find(|line| line.contains(&label));
+        assert!(row.is_some(), "{asked}: {table}");
+        if method == "rules" {
+            assert!(row.is_some_and(|row| row.contains(" – ")), "{table}");
+            assert!(!text.contains("A*") && !text.contains("Dijkstra"), "{text}");
+        }
+    }
+    // nothing was searched, so no search is named
+    let folder = Folder::new();
+    let head_on = fs::read_to_string("scenarios/colregs/head-on.toml").expect("text");
+    let short = head_on.replace("horizon_s = 400.0", "horizon_s = 100.0");
+    let file = folder.write("short.toml", short);
+    let plan = run(&format!("plan {file}")).code(1);
+    let text = stdout(&plan);
+    assert!(text.contains("planner      space-time\n"), "{text}");
+    let plan = document(&run(&format!("plan {file} --json")));
+    assert!(plan["method"].is_null(), "{}", plan["method"]);
+}

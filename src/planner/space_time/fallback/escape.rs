@@ -8,6 +8,8 @@
 //! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
 //! instead.
 
+use std::cell::Cell;
+
 use crate::frame::{Pose, Side, Vector};
 use crate::numerics::bisected;
 use crate::obstacle::Obstacle;
@@ -19,7 +21,7 @@ use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::{has_arrived, plan};
-use crate::planner::{NominalTarget, Plan, Problem};
+use crate::planner::{NominalTarget, Outcome, Plan, PlanMethod, Planned, Problem};
 use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
@@ -63,10 +65,10 @@ const MIN_COMPARED: usize = 12;
 ///
 /// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
 /// deadline.
-pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
+pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
     let clock = Clock::new(problem.deadline);
     if has_arrived(problem) {
-        return Plan::staying(problem);
+        return Some(Planned::of(Outcome::Solved(Plan::staying(problem)?)));
     }
     let pieces = parts_of(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -96,13 +98,22 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
     }
     let (leaving, exits) = leaving;
     let mut exit_motions = exit_motions(&exits);
+    let measured = |motion| Plan::measured(problem, motion, PlanMethod::LeastHarm);
     for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
-        let motion = append(leaving, beginning, |rest| planned(rest, clock));
-        if let Some(plan) = motion.and_then(|motion| Plan::measured(problem, motion, None)) {
-            return Some(plan);
+        let stats = Cell::new(None);
+        let motion = append(leaving, beginning, |rest| {
+            let planned = planned(rest, clock);
+            stats.set(planned.stats);
+            Some(planned.outcome.plan()?.trajectory.segments().to_vec())
+        });
+        if let Some(plan) = motion.and_then(measured) {
+            return Some(Planned {
+                stats: stats.get(),
+                ..Planned::of(Outcome::Solved(plan))
+            });
         }
     }
     if exits.is_empty() {
@@ -112,7 +123,7 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
         exit_motions.push(Vec::new());
     }
     let motion = continue_to_end(problem, &exit_motions, &nominal_hulls, clock)?;
-    Plan::measured(problem, motion, None)
+    Some(Planned::of(Outcome::Solved(measured(motion)?)))
 }
 
 /// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
@@ -194,18 +205,21 @@ pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
 /// Plan that holds a motion until a time and is clear of every set from then on.
 pub fn after_holding(problem: &Problem, motion: &[Segment], time: f64) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    let motion = append(problem, &until(motion, time), |rest| planned(rest, clock))?;
-    Plan::measured(problem, motion, None)
+    let method = Cell::new(PlanMethod::Stay);
+    let motion = append(problem, &until(motion, time), |rest| {
+        let plan = planned(rest, clock).outcome.into_plan()?;
+        method.set(plan.method);
+        Some(plan.trajectory.segments().to_vec())
+    })?;
+    Plan::measured(problem, motion, method.get())
 }
 
 /// Runs the planner in the remaining time.
-fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
-    let planned = plan(&Problem {
+fn planned(problem: &Problem, clock: Clock) -> Planned {
+    plan(&Problem {
         deadline: clock.left(),
         ..problem.clone()
-    });
-    let plan = planned.outcome.plan()?;
-    Some(plan.trajectory.segments().to_vec())
+    })
 }
 
 /// Motion that is outside the sets from a time on, for as long as it is held.
@@ -451,7 +465,6 @@ fn append(
 mod tests {
     use super::*;
     use crate::vessel::fixtures::own_ship;
-    use std::cell::Cell;
 
     #[test]
     fn every_turn_is_tried_once_and_few_after_the_deadline() {

@@ -15,7 +15,7 @@ use crate::planner::space_time::graph::intercept::Interceptor;
 use crate::planner::space_time::land;
 use crate::planner::space_time::piece::pieces;
 use crate::planner::space_time::proxy::{Proxy, first_met, within_reach};
-use crate::planner::{Plan, Problem};
+use crate::planner::{Outcome, Plan, PlanMethod, Planned, Problem, SearchStats};
 use crate::search::{Search, Space, Stop};
 use crate::trajectory::Segment;
 
@@ -99,18 +99,24 @@ impl State {
 /// Plan that is clear of every set and of land, by a coarse search over position, course and time.
 /// `None` where none was found within the budget. The plan is not refined. Ten to several hundred
 /// milliseconds.
-pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Plan> {
+pub(crate) fn hybrid_a_star(problem: &Problem, clock: Clock) -> Option<Planned> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let grid = CostToGoGrid::of(problem, &proxies, 0.0, clock)?;
-    let motion = [COARSE, FINE].into_iter().find_map(|resolution| {
+    let found = [COARSE, FINE].into_iter().find_map(|resolution| {
         let limit = f64::INFINITY;
         searched(problem, &proxies, &grid, (resolution, limit), clock)
     });
-    Plan::measured(problem, motion?, None)
+    let (motion, stats) = found?;
+    let plan = Plan::measured(problem, motion, PlanMethod::HybridAStar)?;
+    Some(Planned {
+        stats: Some(stats),
+        ..Planned::of(Outcome::Solved(plan))
+    })
 }
 
-/// Motion to the end, clear of every set and of land, that costs at most `limit`, m². The limit
+/// Motion to the end, clear of every set and of land, that costs at most `limit`, m², and the
+/// statistics of the search. The limit
 /// bounds the search: what costs more with its cost to go by the grid is not followed.
 pub(crate) fn searched(
     problem: &Problem,
@@ -118,7 +124,7 @@ pub(crate) fn searched(
     grid: &CostToGoGrid,
     (resolution, limit): (Resolution, f64),
     clock: Clock,
-) -> Option<Vec<Segment>> {
+) -> Option<(Vec<Segment>, SearchStats)> {
     let mut lattice = Lattice {
         problem,
         proxies,
@@ -144,7 +150,7 @@ pub(crate) fn searched(
     let states = search.way_to(end).into_iter();
     let states = states.map(|index| search.nodes()[index].state);
     let motion = states.flat_map(|state| state.motion(problem.own.turning_radius));
-    Some(motion.collect())
+    Some((motion.collect(), search.counts()))
 }
 
 /// Graph of motion primitives.

@@ -112,7 +112,8 @@ impl<'a> CoarseSearch<'a> {
             ..
         } = self.context;
         let within = (hybrid_a_star::COARSE, limit);
-        let Some(motion) = hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)
+        let Some((motion, _)) =
+            hybrid_a_star::searched(problem, proxies, &self.grid, within, clock)
         else {
             return;
         };

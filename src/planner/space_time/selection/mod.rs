@@ -10,7 +10,6 @@ pub(crate) mod warm_start;
 
 use crate::frame::Side;
 use crate::parallel;
-use crate::planner::Plan;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
@@ -25,6 +24,7 @@ use crate::planner::space_time::selection::initial_guess::{
     Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
 };
 use crate::planner::space_time::selection::tidy::Prices;
+use crate::planner::{Plan, PlanMethod};
 use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: useful in every conflict.
@@ -380,7 +380,11 @@ impl<'a> Selection<'a> {
     /// Cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
-        Plan::measured(self.context.problem, best.motion, self.graph_cost)
+        let method = PlanMethod::of(self.context.problem.search);
+        Some(Plan {
+            graph_cost: self.graph_cost,
+            ..Plan::measured(self.context.problem, best.motion, method)?
+        })
     }
 }
 

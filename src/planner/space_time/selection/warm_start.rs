@@ -13,7 +13,7 @@ use crate::planner::space_time::route::Route;
 use crate::planner::space_time::selection::Selection;
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{InitialGuessBuilder, ManoeuvreSpeeds};
-use crate::planner::{NoPlan, Outcome, Planned, Problem};
+use crate::planner::{NoPlan, Outcome, Plan, PlanMethod, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
@@ -52,7 +52,11 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
         let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], &[], clock);
-        Some((selection.plan(), timed_out))
+        let plan = selection.plan().map(|plan| Plan {
+            method: PlanMethod::WarmStart,
+            ..plan
+        });
+        Some((plan, timed_out))
     });
     let outcome = match found {
         Some((plan, true)) => Outcome::Deadline(plan),
