@@ -6,6 +6,7 @@ use super::program::{Folder, document, json, list, number, run, says, searoom, s
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
+use serde_json::Value;
 
 #[test]
 fn every_planner_is_compared_on_the_same_scenarios() {

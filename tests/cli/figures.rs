@@ -303,7 +303,7 @@ fn equal_motions_of_a_comparison_share_a_curve() {
     let folder = Folder::new();
     let file = folder.at("a.svg");
     run(&format!(
-        "compare {GIVE_WAY_FILE} --quiet --size 120x90 --figure {file}"
+        "compare {GIVE_WAY_FILE} --compliance shape --quiet --size 120x90 --figure {file}"
     ))
     .success();
     let svg = fs::read_to_string(&file).expect("written");

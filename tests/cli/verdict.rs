@@ -79,7 +79,9 @@ fn a_plan_that_is_not_safe_says_so_in_every_view() {
         let asked = ["--planner", "space-time", "--search", "a-star"];
         let args = [&["compare", file.as_str()], asked.as_slice()].concat();
         let table = stdout(&searoom(&args).code(1));
-        let row = table.lines().find(|line| line.contains("space-time, A* "));
+        let row = table
+            .lines()
+            .find(|line| line.contains("space-time, A*, escape with the least harm "));
         let row = row.expect("a row");
         assert!(row.contains(word) && row.contains(" NO "), "{table}");
         let compared = document(&searoom(&[args.as_slice(), &["--json"]].concat()).code(1));
@@ -93,7 +95,7 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     let folder = Folder::new();
     let file = folder.write("a.toml", overlapping());
     let table = stdout(&searoom(&["compare", &file]).code(1));
-    for method in ["space-time, A* ", "path-time ", "hold course "] {
+    for method in ["space-time, A* ", "path-time, escape", "hold course "] {
         let row = table.lines().find(|line| line.contains(method));
         assert!(row.expect("a row").contains("COLLIDES"), "{table}");
     }

@@ -444,6 +444,6 @@ mod tests {
         let svg = svg.expect("drawn").svg();
         assert!(svg.contains("path-time: none within the risk"));
         // sorted from the least risk, independent of the requested order
-        assert!(svg.contains(&format!("space-time, A*: {clear:.0} to {risked:.0} m²")));
+        assert!(svg.contains(&format!("by the rules: {clear:.0} to {risked:.0} m²")));
     }
 }
