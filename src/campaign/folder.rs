@@ -5,10 +5,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::part::{Header, Part, PartError};
 use super::row::Cell;
-use super::specification::Specification;
+use super::specification::{Specification, hex};
 use crate::input::{Fault, InputError, read_text};
 use crate::output::{WriteError, write_atomically};
 use crate::scenario::FILE_MEBIBYTES;
@@ -52,6 +53,19 @@ pub struct Index {
     pub specification: String,
     /// Where the files that it names are, seen from this folder.
     pub folder: PathBuf,
+    /// Hash of the keys before `folder`; absent in a folder of an earlier version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
+}
+
+impl Index {
+    /// Hash of what describes the campaign. Where its files are may change.
+    fn digest_of_content(&self) -> String {
+        let content = (&self.name, &self.hash, self.rows, &self.strata);
+        let mut hash = Sha256::new();
+        hash.update(format!("{content:?}{}", self.specification));
+        hex(hash)
+    }
 }
 
 /// A folder with an index.
@@ -82,6 +96,18 @@ impl Folder {
         if index.format != INDEX_FORMAT {
             return Err(wrong(format!("format {:?}", index.format)));
         }
+        let digest = index.digest_of_content();
+        if let Some(kept) = index.digest.as_ref().filter(|kept| **kept != digest) {
+            let found = format!(
+                "a specification, or its hash, that has changed since the campaign began: {}",
+                short(&digest)
+            );
+            let allowed = format!(
+                "the index of {}: put it back, or run the campaign in another folder",
+                short(kept)
+            );
+            return Err(CampaignError::refused(&file, found, &allowed));
+        }
         Ok(Self {
             path: path.to_owned(),
             index,
@@ -109,7 +135,7 @@ impl Folder {
         let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let (from, to) = (absolute(path), absolute(&beside));
         let strata = specification.strata.iter();
-        let index = Index {
+        let mut index = Index {
             format: INDEX_FORMAT.to_owned(),
             name: specification.name.clone(),
             hash: specification.hash.clone(),
@@ -119,7 +145,9 @@ impl Folder {
                 .collect(),
             specification: specification.text.clone(),
             folder: pathdiff::diff_paths(&to, &from).unwrap_or(to),
+            digest: None,
         };
+        index.digest = Some(index.digest_of_content());
         let text = crate::document::json(&index).unwrap_or_default();
         write_atomically(&path.join(INDEX), text.as_bytes())?;
         Ok(Self {

@@ -285,6 +285,40 @@ fn foreign_missing_and_double_rows_are_named() {
 }
 
 #[test]
+fn a_changed_index_is_refused() {
+    let folder = folder();
+    sail(&folder, "out", 1, 20);
+    let file = folder.path().join("out/campaign.json");
+    let whole = fs::read_to_string(&file).expect("an index");
+    run(&format!("campaign summarise {folder}/out")).success();
+    let index: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
+    let text = index["specification"].as_str().expect("text").to_owned();
+    for (key, value) in [
+        ("hash", "0123456789abcdef".into()),
+        ("specification", text.replace("seed = 5", "seed = 6").into()),
+        ("rows", 41.into()),
+    ] {
+        let mut changed = index.clone();
+        changed[key] = value;
+        fs::write(&file, changed.to_string()).expect("written");
+        for command in ["summarise", "merge", "replay --row 0"] {
+            let (name, options) = command.split_once(' ').unwrap_or((command, ""));
+            let refused = run(format!("campaign {name} {folder}/out {options}").trim()).code(2);
+            says(
+                &stderr(&refused),
+                "campaign.json: 1 fault | that has changed since the campaign began | allowed: \
+                 the index of | put it back",
+            );
+        }
+    }
+    // a folder of an earlier version says nothing of its index
+    let mut old = index;
+    old.as_object_mut().expect("an object").remove("digest");
+    fs::write(&file, old.to_string()).expect("written");
+    run(&format!("campaign summarise {folder}/out")).success();
+}
+
+#[test]
 fn a_replayed_row_has_the_numbers_of_its_part() {
     let folder = folder();
     sail(&folder, "out", 1, 2);
