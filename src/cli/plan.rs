@@ -51,7 +51,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 time_of_no_return_s: no_return.map(NoReturn::time),
                 ..PlanDocument::of(&run)
             };
-            let shown = output.show(args.shared.written.json, &document, || {
+            let text = || {
                 let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
                 let text = plan_document_text(&document, output.display);
                 let legs = legs_text(&document, output.display);
@@ -61,7 +61,11 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                     bound.unwrap_or_default(),
                     line.unwrap_or_default()
                 )
-            });
+            };
+            let shown = match args.shared.written.json {
+                true => output.verifiable(&document),
+                false => output.result(&text()),
+            };
             let written = output.written(write(&products, &scene.found, &run, &document));
             let undated = run.scenario.start.is_none()
                 && (route.as_ref()).is_some_and(|route| route.format == RouteFormat::Rtz);

@@ -18,7 +18,7 @@ use super::input::files::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
 use super::output::status::ExitStatus;
-use super::output::{Output, json};
+use super::output::{Output, beyond_verify, json};
 use super::runner::guarded_on;
 
 /// Sails every file, one after another; a broken one does not stop the others.
@@ -95,7 +95,7 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                 })
             }
         };
-        status = status.max(output.document(&document));
+        status = status.max(output.verifiable(&document));
     } else if several && sailed {
         status = status.max(output.result(&simulations_line(&documents, failed)));
     }
@@ -179,7 +179,11 @@ fn write_plans(
 ) -> anyhow::Result<()> {
     let file = |index: usize| folder.join(format!("{stem}-{index:03}.json"));
     for (index, plan) in simulation.plans().iter().enumerate() {
-        write_atomically(&file(index), json(plan)?.as_bytes())?;
+        let text = json(plan)?;
+        write_atomically(&file(index), text.as_bytes())?;
+        if let Some(note) = beyond_verify(text.len()) {
+            output.note(&format_args!("{}: {note}", shown(&file(index))));
+        }
     }
     let next = file(simulation.plans().len());
     if next.exists() {

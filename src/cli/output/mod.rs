@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use comfy_table::Table;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use searoom::document::PLAN_MEBIBYTES;
 use searoom::report::{Display, broken, printable_lines};
 use serde::Serialize;
 use textwrap::core::display_width;
@@ -120,6 +121,19 @@ impl Output {
     pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
             Ok(text) => self.print(text.trim_end()),
+            Err(error) => self.fault(&format_args!("{error:#}")),
+        }
+    }
+
+    /// Prints a document that `verify` checks; a note says where it is too large for that.
+    pub fn verifiable(&self, document: &impl Serialize) -> ExitStatus {
+        match json(document) {
+            Ok(text) => {
+                if let Some(note) = beyond_verify(text.len()) {
+                    self.note(&note);
+                }
+                self.print(text.trim_end())
+            }
             Err(error) => self.fault(&format_args!("{error:#}")),
         }
     }
@@ -269,6 +283,19 @@ fn in_front(names: &[&str], text: String) -> String {
     }
 }
 
+/// The note on a document of more bytes than `verify` reads.
+pub fn beyond_verify(bytes: usize) -> Option<String> {
+    const MEBIBYTE: u64 = 1 << 20;
+    let bytes = bytes as u64;
+    (bytes > PLAN_MEBIBYTES * MEBIBYTE).then(|| {
+        let size = bytes.div_ceil(MEBIBYTE);
+        format!(
+            "the document has {size} MiB, and `searoom verify` reads {PLAN_MEBIBYTES} MiB: it \
+             cannot be verified"
+        )
+    })
+}
+
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
 }
@@ -289,4 +316,15 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     } else {
         ExitStatus::Good.into()
     }
+}
+
+#[test]
+fn a_document_that_verify_does_not_read_is_noted() {
+    let limit = PLAN_MEBIBYTES as usize * (1 << 20);
+    assert_eq!(beyond_verify(limit), None);
+    let note = beyond_verify(limit + 1).expect("a note");
+    assert!(
+        note.contains("65 MiB") && note.contains("reads 64 MiB"),
+        "{note}"
+    );
 }
