@@ -125,6 +125,7 @@
 //! assert!((plan.trajectory.end().position - run.scenario.desired.end()).norm() < 1e-5);
 //! ```
 
+#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 // the random encounters of the tests name the crate as its users do

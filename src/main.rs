@@ -1,5 +1,7 @@
 //! The program: arguments in, exit status out.
 
+#![forbid(unsafe_code)]
+
 mod cli;
 
 use std::process::ExitCode;
