@@ -12,6 +12,11 @@ pub const DEPTH_M: f64 = 1e-6;
 /// [`DEPTH_M`], so that the checker accepts what a planner accepts.
 pub const TOUCH_M: f64 = 1e-7;
 
+/// Metres. A point this near to a set is on its edge, and the edge belongs to the set. It is several
+/// times the rounding error of a place that is reached after 1,000,000 s at 100 m/s, and fifty times
+/// that of coordinates up to 10,000 km.
+pub const EDGE_M: f64 = 1e-7;
+
 /// Standard deviations of a target's position, speed and course that its sets cover.
 pub const SIGMAS: f64 = 3.0;
 

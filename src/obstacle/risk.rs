@@ -76,12 +76,13 @@ impl FaceSpread {
 }
 
 /// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, docs/theory.md
-/// section 4. O(n + m).
+/// section 4. Faces that the point exceeds by at most `edge` metres do not count. O(n + m).
 pub(super) fn polytope_alpha(
     faces: &[HalfSpace],
     spreads: &[FaceSpread],
     position: Vector,
     time: f64,
+    edge: f64,
 ) -> f64 {
     if time < 0.0 {
         return f64::INFINITY;
@@ -92,7 +93,7 @@ pub(super) fn polytope_alpha(
         if beyond.is_nan() {
             return 0.0;
         }
-        if beyond > tolerance::FACE_M {
+        if beyond > edge {
             most = most.max(beyond * spread.per_rate);
         }
     }
@@ -158,7 +159,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     }
     let at = |time: f64| {
         let position = line.origin + line.velocity * time;
-        polytope_alpha(faces, spreads, position, time)
+        polytope_alpha(faces, spreads, position, time, tolerance::FACE_M)
     };
     if at(start) == 0.0 {
         return PeakRisk::new(1.0, start);

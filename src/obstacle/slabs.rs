@@ -514,9 +514,9 @@ impl SpaceTimeObstacle for Obstacle {
     }
 
     /// One alpha for all velocity sets, each about its own centre. O(faces).
-    fn alpha(&self, position: Vector, time: f64) -> f64 {
+    fn alpha_within(&self, position: Vector, time: f64, edge: f64) -> f64 {
         if let Some(convex) = self.as_convex() {
-            return convex.set().alpha(position, time);
+            return convex.set().alpha_within(position, time, edge);
         }
         if time < 0.0 {
             return f64::INFINITY;
@@ -530,7 +530,8 @@ impl SpaceTimeObstacle for Obstacle {
             // the section is that of one ellipsoid after a second, in which it moves by the displacement
             (_, Some(displacement), ConvexSet::Ellipse(initial)) if time.is_finite() => {
                 let displacement = displacement_after(displacement, velocities, elapsed);
-                return EllipsoidObstacle::new("", *initial, displacement).alpha(position, 1.0);
+                let whole = EllipsoidObstacle::new("", *initial, displacement);
+                return whole.alpha_within(position, 1.0, edge);
             }
             _ => return 0.0,
         };
@@ -541,7 +542,7 @@ impl SpaceTimeObstacle for Obstacle {
             if beyond.is_nan() {
                 return 0.0;
             }
-            if beyond > tolerance::FACE_M {
+            if beyond > edge {
                 let spread = face.spread_before + elapsed * face.spread_rate;
                 most = most.max(if spread > 0.0 {
                     beyond / spread

@@ -93,7 +93,13 @@ pub trait SpaceTimeObstacle {
     /// `O_alpha` is the set with velocities scaled by alpha about their centre. `alpha*` is at most
     /// 1 inside the set and may exceed 1 outside. It is infinite where no scaling reaches, and
     /// before t = 0.
-    fn alpha(&self, position: Vector, time: f64) -> f64;
+    fn alpha(&self, position: Vector, time: f64) -> f64 {
+        self.alpha_within(position, time, tolerance::FACE_M)
+    }
+
+    /// [`SpaceTimeObstacle::alpha`] of a point that may be beyond edges of the set by rounding: edges
+    /// that it exceeds by at most `edge` metres do not count.
+    fn alpha_within(&self, position: Vector, time: f64, edge: f64) -> f64;
 
     /// `risk = 1 - alpha*`, at least 0, paper eq. (25). It is 0 outside the set and 1 in the set of
     /// a target with the central velocity. Not a probability.

@@ -8,8 +8,11 @@ use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use searoom::study::assess::{Alteration, OwnSituation, Query, assess, least_alteration};
+use searoom::study::assess::{
+    Alteration, OwnSituation, Query, SpaceTimePoint, assess, least_alteration,
+};
 use searoom::target::{TimedVelocitySet, Uncertainty};
+use searoom::tolerance::EDGE_M;
 
 use super::generators::{Counter, angle, check, hull, obstacle, slabs, vector};
 
@@ -81,9 +84,12 @@ fn situation(
 
 fn is_free(s: &OwnSituation, heading: f64, speed: f64) -> bool {
     let velocity = direction(heading) * speed;
-    s.obstacles
-        .iter()
-        .all(|o| !o.in_velocity_obstacle(s.pose.position, velocity, s.horizon))
+    let away = |o: &Obstacle| {
+        o.closest_approach(s.pose.position, velocity, s.horizon)
+            .distance
+    };
+    // on the edge of a set it is not free
+    s.obstacles.iter().all(|o| away(o) > EDGE_M)
 }
 
 /// First free sample.
@@ -299,4 +305,146 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
     });
     inside.assert_above(1000);
     outside.assert_above(1000);
+}
+
+/// Places on the edge of a section, with the rounding of their coordinates.
+fn on_the_edge(section: &ConvexSet) -> Vec<Vector> {
+    match section {
+        ConvexSet::Polygon(polygon) => {
+            let corners = polygon.vertices();
+            let sides = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
+            sides
+                .flat_map(|(a, b)| [0.0, 0.3, 0.77].map(|share| a + (b - a) * share))
+                .collect()
+        }
+        ConvexSet::Ellipse(ellipse) => {
+            let [a, b] = ellipse.semi_axes();
+            let around = (0..8).map(|k| direction(0.7 * f64::from(k)));
+            around
+                .map(|z| ellipse.center() + a * z.x + b * z.y)
+                .collect()
+        }
+    }
+}
+
+/// The last velocity in the velocity obstacle on the way to one outside, and the first one outside.
+fn touching(s: &OwnSituation, inside: Vector, outside: Vector) -> Option<[Vector; 2]> {
+    let meets = |v: Vector| s.obstacles[0].in_velocity_obstacle(s.pose.position, v, s.horizon);
+    if !meets(inside) || meets(outside) {
+        return None;
+    }
+    let (mut inside, mut outside) = (inside, outside);
+    for _ in 0..80 {
+        let middle = (inside + outside) * 0.5;
+        match meets(middle) {
+            true => inside = middle,
+            false => outside = middle,
+        }
+    }
+    Some([inside, outside])
+}
+
+/// Points on edges are inside, and touching velocities are in the velocity obstacle, in every key of
+/// an answer alike, on whichever side of the edge the last digit is.
+#[test]
+fn the_edge_of_a_set_belongs_to_it_in_every_key() {
+    let [beyond, outside, touched] = [(); 3].map(|()| Counter::default());
+    let origin = select(std::vec![Vector::zeros(), Vector::new(5.1e5, 7.03e6)]);
+    let cases = (approaching(), motion(), 1.0..300.0, angle(), origin);
+    check(
+        6,
+        300,
+        cases,
+        |(obstacle, (heading, speed, _), time, way, origin)| {
+            let moved = obstacle.sets().initial.translated(origin);
+            let obstacles = [obstacle.with_initial(moved)];
+            let mut s = situation((heading, speed, 300.0), &obstacles);
+            s.pose.position = origin;
+            let section = obstacles[0].section(time);
+            let places = on_the_edge(&section);
+            let off = |p: &Vector| p + obstacles[0].signed_distance(*p, time).normal * 1e-6;
+            let all = places.iter().copied().chain(places.iter().map(off));
+            let points = all
+                .map(|position| SpaceTimePoint { position, time })
+                .collect();
+            let answer = assess(
+                "Edge",
+                "hard",
+                &s,
+                &Query {
+                    points,
+                    ..Query::default()
+                },
+            );
+            for (index, point) in answer.points.iter().enumerate() {
+                let found = &point.targets[0];
+                let position = Vector::new(point.east_m, point.north_m);
+                if index < places.len() {
+                    assert!(found.inside, "{position}: {found:?}");
+                    beyond.add(!obstacles[0].contains(position, time));
+                }
+                let alpha = found.alpha.unwrap_or(f64::INFINITY);
+                assert_eq!(found.inside, alpha <= 1.0, "{found:?}");
+                assert_eq!(found.risk, (1.0 - alpha).max(0.0), "{found:?}");
+                outside.add(!found.inside);
+            }
+            let toward = (section.center() - origin) / time;
+            let Some(velocities) = touching(&s, toward, toward + direction(way) * 60.0) else {
+                return;
+            };
+            for velocity in velocities {
+                s.pose.heading = velocity.y.atan2(velocity.x);
+                s.speed = velocity.norm();
+                let query = Query {
+                    velocities: std::vec![velocity],
+                    ..Query::default()
+                };
+                let answer = assess("Touch", "hard", &s, &query);
+                let (found, held) = (
+                    &answer.velocities[0].targets[0],
+                    &answer.hold_course.targets[0],
+                );
+                assert!(
+                    found.in_velocity_obstacle && found.dcpa_m == 0.0,
+                    "{found:?}"
+                );
+                assert_eq!(held.dcpa_m, 0.0, "{held:?}");
+                let there = SpaceTimePoint {
+                    position: origin + velocity * found.tcpa_s,
+                    time: found.tcpa_s,
+                };
+                let at_contact = Query {
+                    points: std::vec![there],
+                    ..Query::default()
+                };
+                let at_contact = assess("Contact", "hard", &s, &at_contact);
+                assert!(at_contact.points[0].targets[0].inside, "{at_contact:?}");
+                touched.add(true);
+                // what leaves every velocity obstacle is in none
+                let alterations = [
+                    answer
+                        .alteration
+                        .starboard_deg
+                        .map(|turn| (-turn.to_radians(), 0.0)),
+                    answer
+                        .alteration
+                        .port_deg
+                        .map(|turn| (turn.to_radians(), 0.0)),
+                    answer.alteration.speed_mps.map(|change| (0.0, change)),
+                ];
+                for (turn, change) in alterations.into_iter().flatten() {
+                    assert!(turn != 0.0 || change != 0.0, "{answer:?}");
+                    let mut altered = s;
+                    altered.pose.heading += turn;
+                    altered.speed += change;
+                    let free = assess("Altered", "hard", &altered, &Query::default());
+                    let held = &free.hold_course.targets[0];
+                    assert!(held.dcpa_m > 0.0 && held.max_risk == 0.0, "{held:?}");
+                }
+            }
+        },
+    );
+    beyond.assert_above(100);
+    outside.assert_above(300);
+    touched.assert_above(200);
 }

@@ -354,9 +354,9 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     /// The positive root of a cubic, in O(1): the sets `O_alpha` at `t` are the sections at `alpha
     /// t` about the centre of `t`, docs/theory.md section 4. With respect to the outer set, so
     /// never below that of the exact sum.
-    fn alpha(&self, position: Vector, time: f64) -> f64 {
+    fn alpha_within(&self, position: Vector, time: f64, edge: f64) -> f64 {
         if let Some(flat) = &self.flat {
-            return flat.alpha(position, time);
+            return flat.alpha_within(position, time, edge);
         }
         if time < 0.0 {
             return f64::INFINITY;
@@ -364,7 +364,12 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         if !is_number(position, time) {
             return 0.0;
         }
-        self.alpha_at(position - self.center(time), time)
+        let y = position - self.center(time);
+        let nominal = || self.initial.signed_distance(self.initial.center() + y);
+        if edge > tolerance::FACE_M && nominal().distance <= edge {
+            return 0.0;
+        }
+        self.alpha_at(y, time)
     }
 
     /// By bisection over contacts, to [`tolerance::RISK`]. Contacts are exact on lines and early by

@@ -297,8 +297,9 @@ impl SpaceTimeObstacle for PolytopeObstacle {
     }
 
     /// O(n + m).
-    fn alpha(&self, position: Vector, time: f64) -> f64 {
-        polytope_alpha(&self.shared.faces, &self.shared.spreads, position, time)
+    fn alpha_within(&self, position: Vector, time: f64, edge: f64) -> f64 {
+        let (faces, spreads) = (&self.shared.faces, &self.shared.spreads);
+        polytope_alpha(faces, spreads, position, time, edge)
     }
 
     /// Closed form on a line, O((n + m)²) at worst. On an arc bisection over exact contacts, to

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_8, PI};
 
 use super::OwnSituation;
 use crate::frame::{Side, Vector, heading_of, wrap, wrap_positive};
-use crate::obstacle::{Obstacle, SpaceTimeObstacle, VelocityObstacle};
+use crate::obstacle::{Obstacle, VelocityObstacle};
 use crate::tolerance;
 
 /// Maximum number of arc ends followed; each obstacle has a few.
@@ -36,8 +36,9 @@ pub struct Alteration {
 /// For half-planes, the solution is the angle or speed at which a boundary is crossed. For
 /// ellipses, arcs are bisected: an arc is covered if the convex region contains the corners of a
 /// triangle around it. The result lies outside the closed sets, beyond the boundary by
-/// [`tolerance::ALTERATION_RAD`] or [`tolerance::ALTERATION_MPS`]; for ellipses, by a few of them.
-/// Narrower gaps are ignored. Cost: O(half-planes) per arc; some hundred membership tests per arc
+/// [`tolerance::ALTERATION_RAD`] or [`tolerance::ALTERATION_MPS`]; for ellipses, by a few of them;
+/// and by more, at most three times what it takes, until own ship passes more than
+/// [`tolerance::EDGE_M`] from the set. Narrower gaps are ignored. Cost: O(half-planes) per arc; some hundred membership tests per arc
 /// for ellipses.
 ///
 /// Source: velocity obstacles, paper eq. (26).
@@ -71,10 +72,8 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn covered_by(&self, cover: &Cover, velocity: Vector) -> bool {
-        let OwnSituation { pose, horizon, .. } = self.situation;
-        cover
-            .target
-            .in_velocity_obstacle(pose.position, velocity, *horizon)
+        let nearest = self.situation.closest_approach(cover.target, velocity);
+        nearest.distance == 0.0
     }
 
     fn covering(&self, velocity: Vector) -> Option<&Cover<'_>> {
@@ -88,27 +87,31 @@ impl Search<'_> {
             self.situation
                 .velocity_on(pose.heading + sign * turn, speed)
         };
-        let mut turn = 0.0;
+        let (mut turn, mut beyond) = (0.0, tolerance::ALTERATION_RAD);
         for _ in 0..MAX_ENDS {
             let Some(cover) = self.covering(velocity(turn)) else {
                 return Some(turn);
             };
             let end = match &cover.regions {
-                // a region that does not contain the velocity differs by rounding only
-                Some(regions) => regions.iter().find(|r| r.contains(velocity(turn))).map_or(
-                    Some(turn),
-                    |region| {
+                Some(regions) => match regions.iter().find(|r| r.contains(velocity(turn))) {
+                    Some(region) => {
+                        beyond = tolerance::ALTERATION_RAD;
                         let clockwise = |angle: f64| sign * (angle - pose.heading);
                         turn_out_of(region, clockwise, speed, turn)
-                    },
-                ),
+                    }
+                    // beyond the region, but not yet off the edge of the set
+                    None => {
+                        beyond *= 2.0;
+                        Some(turn)
+                    }
+                },
                 None => {
                     let inside = |v| self.covered_by(cover, v);
                     let on_circle = |at: f64, factor: f64| velocity(at) * factor;
                     first_out(&on_circle, &inside, turn)
                 }
             };
-            turn = end? + tolerance::ALTERATION_RAD;
+            turn = end? + beyond;
             if turn > PI || speed == 0.0 {
                 return None;
             }
@@ -136,7 +139,7 @@ impl Search<'_> {
         let OwnSituation { pose, speed, .. } = *self.situation;
         let ahead = pose.ahead();
         let way = if limit < speed { -1.0 } else { 1.0 };
-        let mut at = speed;
+        let (mut at, mut beyond) = (speed, tolerance::ALTERATION_MPS);
         for _ in 0..MAX_ENDS {
             let Some(cover) = self.covering(ahead * at) else {
                 return Some(at);
@@ -145,13 +148,19 @@ impl Search<'_> {
                 return None;
             }
             let end = match &cover.regions {
-                Some(regions) => regions
-                    .iter()
-                    .find(|r| r.contains(ahead * at))
-                    .map_or(Some(at), |region| speed_out_of(region, ahead, way, at)),
+                Some(regions) => match regions.iter().find(|r| r.contains(ahead * at)) {
+                    Some(region) => {
+                        beyond = tolerance::ALTERATION_MPS;
+                        speed_out_of(region, ahead, way, at)
+                    }
+                    None => {
+                        beyond *= 2.0;
+                        Some(at)
+                    }
+                },
                 None => self.end_of_interval(cover, ahead, at, limit),
             };
-            let next = end? + way * tolerance::ALTERATION_MPS;
+            let next = end? + way * beyond;
             // the limit itself may be free
             at = if way * (next - limit) > 0.0 {
                 limit

@@ -6,7 +6,8 @@ use crate::document::{
     PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
 };
 use crate::frame::{Vector, deg_from_radians};
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::{ClosestApproach, Obstacle, SpaceTimeObstacle};
+use crate::tolerance::EDGE_M;
 
 /// Position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,11 +60,23 @@ pub fn assess(
     });
     let hold_course = obstacles.iter().map(|target| {
         let approach = approach(situation, target, situation.velocity());
+        // where the set is only touched, by rounding beyond its edge too
+        let touched = SpaceTimePoint {
+            position: held.pose_at(approach.tcpa_s).position,
+            time: approach.tcpa_s,
+        };
+        let max_risk = match approach.in_velocity_obstacle {
+            true => target
+                .peak_risk(&held)
+                .risk
+                .max(risk_at(target, &touched).risk),
+            false => 0.0,
+        };
         HeldDocument {
             name: approach.name,
             dcpa_m: approach.dcpa_m,
             tcpa_s: approach.tcpa_s,
-            max_risk: target.peak_risk(&held).risk,
+            max_risk,
         }
     });
     let velocities = query.velocities.iter().map(|velocity| VelocityDocument {
@@ -91,22 +104,42 @@ pub fn assess(
     }
 }
 
+/// Inside is what is within [`EDGE_M`] of the set: there alpha is at most 1, and beyond it is more.
 fn risk_at(target: &Obstacle, point: &SpaceTimePoint) -> PointRiskDocument {
+    let (position, time) = (point.position, point.time);
+    // both negated so that a NaN is inside
+    let inside = !(time < 0.0) && !(target.signed_distance(position, time).distance > EDGE_M);
+    let alpha = match inside {
+        true => target.alpha_within(position, time, EDGE_M).min(1.0),
+        false => target.alpha(position, time).max(1.0_f64.next_up()),
+    };
     PointRiskDocument {
         name: target.name().to_owned(),
-        inside: target.contains(point.position, point.time),
-        alpha: Some(target.alpha(point.position, point.time)).filter(|alpha| alpha.is_finite()),
-        risk: target.risk(point.position, point.time),
+        inside,
+        alpha: Some(alpha).filter(|alpha| alpha.is_finite()),
+        risk: (1.0 - alpha).max(0.0),
     }
 }
 
 fn approach(situation: &OwnSituation, target: &Obstacle, velocity: Vector) -> ApproachDocument {
-    let (from, horizon) = (situation.pose.position, situation.horizon);
-    let nearest = target.closest_approach(from, velocity, horizon);
+    let nearest = situation.closest_approach(target, velocity);
     ApproachDocument {
         name: target.name().to_owned(),
         dcpa_m: nearest.distance,
         tcpa_s: nearest.time,
-        in_velocity_obstacle: target.in_velocity_obstacle(from, velocity, horizon),
+        in_velocity_obstacle: nearest.distance == 0.0,
+    }
+}
+
+impl OwnSituation<'_> {
+    /// The closest approach to a target with a constant velocity; the distance is 0 where own ship
+    /// comes within [`EDGE_M`] of the set, so it is 0 in the velocity obstacle and only there.
+    pub(super) fn closest_approach(&self, target: &Obstacle, velocity: Vector) -> ClosestApproach {
+        let mut nearest = target.closest_approach(self.pose.position, velocity, self.horizon);
+        // negated so that a NaN is a contact
+        if !(nearest.distance > EDGE_M) {
+            nearest.distance = 0.0;
+        }
+        nearest
     }
 }
