@@ -150,6 +150,7 @@ mod output;
 mod parallel;
 pub mod pipeline;
 pub mod planner;
+mod publication;
 #[cfg(feature = "recording")]
 pub mod recording;
 pub mod replanning;

@@ -35,6 +35,7 @@ simulation: frame tolerance geometry trajectory vessel target colregs obstacle p
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
 study: parallel document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
+publication: document evaluation pipeline verification
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text
 report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
 recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text

@@ -530,7 +530,8 @@ impl Written {
 }
 
 impl Shared {
-    /// Exit status of a run: with `--strict`, a plan that breaks rules or gives them up is none.
+    /// Exit status of a run and its document: with `--strict`, a plan that breaks rules or gives
+    /// them up is none.
     pub fn status(&self, run: &Run, plan: &PlanDocument) -> ExitStatus {
         let broken = breaks(&plan.encounters).is_some_and(|broken| !broken.is_empty());
         let strict = if self.strict && (broken || run.gives_up_rules()) {
@@ -538,7 +539,11 @@ impl Shared {
         } else {
             ExitStatus::Good
         };
-        strict.max(ExitStatus::of(run))
+        let is_fault = plan.trajectory.is_some() && !plan.verified;
+        let fault = is_fault.then_some(ExitStatus::InternalFault);
+        strict
+            .max(ExitStatus::of(run))
+            .max(fault.unwrap_or_default())
     }
 
     /// Replaces settings of the scenario; fails where the planner cannot use them.

@@ -116,8 +116,8 @@ impl PlanDocument {
         self.safe == Some(true)
     }
 
-    /// Builds the document of a run.
-    pub fn of(run: &Run) -> Self {
+    /// The document of a run before its verification: nothing is verified, and `violations` is empty.
+    pub(crate) fn unverified(run: &Run) -> Self {
         let scenario = &run.scenario;
         let verdict = Verdict::of(run);
         let mut document = Self {
@@ -144,12 +144,11 @@ impl PlanDocument {
             verdict: run.word(),
             reason: run.reason(),
             relaxations: run.relaxations.iter().map(relaxation).collect(),
-            verified: verified(run),
+            verified: false,
             safe: Some(run.safe()),
             time_of_no_return_s: None,
             lower_bound: None,
-            violations: (run.evaluation.as_ref())
-                .map_or_else(Vec::new, |evaluation| violations(&evaluation.violations)),
+            violations: Vec::new(),
             cost: cost(run),
             search_stats: SearchStatsDocument::of(run.planned.stats),
             timing: timing(run),
@@ -192,10 +191,6 @@ pub(crate) fn planner_names() -> [&'static str; PLANNERS.len()] {
 
 fn plan(run: &Run) -> Option<&Plan> {
     run.planned.outcome.plan()
-}
-
-fn verified(run: &Run) -> bool {
-    run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
 pub(crate) fn finite(value: f64) -> Option<f64> {

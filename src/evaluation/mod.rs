@@ -29,8 +29,8 @@ pub(crate) use sets::moving_ellipse::shape_rounding;
 pub(crate) use sets::moving_slabs::MovingSlabs;
 pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};
-pub(crate) use words::risk_figure;
 pub use words::{NOT_BY_THE_RULES, facts, outcome_word, skipped_waypoints, without_rules};
+pub(crate) use words::{risk_figure, said_risk};
 
 use distance::least::Least;
 use distance::piece::Piece;

@@ -35,6 +35,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         let turn = wrap(first.start.heading - own.pose.heading).abs();
         found.limit("start heading", "rad from own ship's", turn, joint_rad);
     }
+    let (mut steps, mut pauses) = (0.0, 0.0);
     for (index, pair) in segments.windows(2).enumerate() {
         let (before, after) = (&pair[0], &pair[1]);
         found.time = after.start_time;
@@ -44,7 +45,14 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         };
         let end = before.end();
         let step = (end.position - after.start.position).norm();
-        joint("position", "m", step, tolerance::JOINT_M);
+        // a segment of no time only adds joints: nothing but rounding is allowed beside it
+        let lasts = before.duration > 0.0 && after.duration > 0.0;
+        let (beside, allowed) = match lasts {
+            true => ("position", tolerance::JOINT_M),
+            false => ("position beside a segment of no time", tolerance::EDGE_M),
+        };
+        joint(beside, "m", step, allowed);
+        steps += step;
         // On paths, own ship turns on the spot at the corners of the path.
         if let Freedom::Limits | Freedom::LimitsWithoutArrival = request.freedom {
             let turn = wrap(end.heading - after.start.heading).abs();
@@ -52,7 +60,12 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         }
         let pause = (before.end_time() - after.start_time).abs();
         joint("time", "s", pause, tolerance::TIME_S);
+        pauses += pause;
     }
+    // many joints together must not displace own ship either
+    found.limit("position at all joints", "m", steps, tolerance::JOINT_M);
+    let allowed = tolerance::TIME_S * (1.0 + last.end_time());
+    found.limit("time at all joints", "s", pauses, allowed);
     match request.freedom {
         Freedom::Limits | Freedom::LimitsWithoutArrival => limits(segments, own, &mut found),
         Freedom::Paths(paths) | Freedom::PathsToHorizon(paths) => {

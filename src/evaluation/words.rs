@@ -50,8 +50,16 @@ pub fn without_rules(word: String, gives_up_rules: bool) -> String {
     }
 }
 
+const AT_RISK: &str = "at risk ";
+
 fn at_risk(risk: f64) -> String {
-    format!("at risk {}", risk_figure(risk))
+    format!("{AT_RISK}{}", risk_figure(risk))
+}
+
+/// The risk in the displayed word of an outcome, if it has one.
+pub(crate) fn said_risk(word: &str) -> Option<f64> {
+    let figure = word.strip_prefix(AT_RISK)?.split(',').next()?;
+    figure.parse().ok()
 }
 
 /// Formats a risk with two decimals, rounded up. A positive risk is at least 0.01, and rounding

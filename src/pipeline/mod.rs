@@ -247,7 +247,9 @@ fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
             NoPlan::Barred { target, .. }
             | NoPlan::OutOfTime { target, .. }
             | NoPlan::StartCovered { target, .. }
-            | NoPlan::EndCovered { target, .. },
+            | NoPlan::EndCovered { target, .. }
+            | NoPlan::NoCandidate { target, .. }
+            | NoPlan::NoneComplies { target, .. },
         ) => Some(target.as_str()),
         _ => None,
     };

@@ -36,7 +36,7 @@ const OBJECTIVES: [&str; 5] = [
     "stage-cost",
 ];
 const OUTCOMES: [&str; 4] = ["solved", "relaxed", "infeasible", "deadline"];
-const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
+pub(super) const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
 pub(super) const ARRIVAL: &str = "arrival";
 
 /// Most keys listed in the error for a document of another format.
@@ -82,10 +82,10 @@ pub(super) enum ClaimedMotion {
     },
 }
 
-/// Content of a parsed document.
+/// Content of a document.
 #[derive(Debug)]
-pub(super) struct Claim {
-    pub file: PlanDocument,
+pub(super) struct Claim<'a> {
+    pub file: &'a PlanDocument,
     pub own: OwnShip,
     pub desired: DesiredTrajectory,
     /// Paths to which own ship is restricted, if any.
@@ -98,7 +98,7 @@ pub(super) struct Claim {
     pub faults: Vec<Violation>,
 }
 
-impl Claim {
+impl<'a> Claim<'a> {
     /// Returns true where the document reports that the plan does not arrive.
     pub fn gives_up_arrival(&self) -> bool {
         let mut relaxations = self.file.relaxations.iter();
@@ -111,9 +111,8 @@ impl Claim {
         cost.map_or(0.0, |cost| cost.arrival_hold_s)
     }
 
-    /// Parses a document; the error is the first field that is unreadable or invalid.
-    pub fn read(text: &str) -> Result<Self, ClaimError> {
-        let file: PlanDocument = parse(text)?;
+    /// Validates a document; the error is the first field that is invalid.
+    pub fn of(file: &'a PlanDocument) -> Result<Self, ClaimError> {
         if file.format != PLAN_FORMAT {
             return Err(fault("format", format!("'{}'", file.format), PLAN_FORMAT));
         }
@@ -163,7 +162,7 @@ impl Claim {
                 Polygon::new(&[ring]).map_err(|e| fault(&format!("land[{index}]"), e, "a polygon"))
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let motion = motion::read(&file, &mut faults)?;
+        let motion = motion::read(file, &mut faults)?;
         Ok(Self {
             own,
             desired,

@@ -195,8 +195,14 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let there = [Segment::straight(Pose::new(last, 0.0), horizon, 0.0, 0.0)];
     let mut sets = claim.sets.iter().filter(|s| s.name == given_up.target);
     let covers = |set: &SpaceTimeSet| set.least_distance(&there).value <= tolerance::LENGTH_M;
+    // a remainder may end on the way for what was found before
+    let is_kept = claim
+        .file
+        .memory
+        .as_ref()
+        .is_some_and(|memory| memory.keeps_plan);
     // the sets of a risk are smaller than those that are over it
-    if claim.paths.is_none() && claim.file.max_risk == 0.0 && !sets.any(covers) {
+    if claim.paths.is_none() && claim.file.max_risk == 0.0 && !is_kept && !sets.any(covers) {
         let so = "a target whose set is over the last waypoint at the horizon";
         return Some(mismatch(
             "relaxation of arrival, target",

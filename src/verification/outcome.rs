@@ -31,6 +31,15 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     found
 }
 
+/// Outcomes of an answer with a plan or without, by whether it gives up nothing.
+pub(super) fn outcomes(has_plan: bool, gives_up_nothing: bool) -> [&'static str; 2] {
+    match (has_plan, gives_up_nothing) {
+        (false, _) => ["infeasible", "deadline"],
+        (true, true) => ["solved", "deadline"],
+        (true, false) => ["relaxed", "deadline"],
+    }
+}
+
 /// Checks outcome, planner and relaxations against the content.
 ///
 /// The outcome must fit the presence of a motion and of relaxations. The planner must fit the parts
@@ -40,11 +49,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
     let outcome = file.outcome.as_str();
-    let allowed = match (&claim.motion, file.relaxations.is_empty()) {
-        (None, _) => ["infeasible", "deadline"],
-        (Some(_), true) => ["solved", "deadline"],
-        (Some(_), false) => ["relaxed", "deadline"],
-    };
+    let allowed = outcomes(claim.motion.is_some(), file.relaxations.is_empty());
     if !allowed.contains(&outcome) {
         found.push(mismatch("outcome", outcome, allowed.join(" or ")));
     }

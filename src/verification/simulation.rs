@@ -3,13 +3,17 @@
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::claim::{ClaimError, fault};
+use super::claim::{ClaimError, KINDS, fault};
 use super::mismatch;
+use super::outcome::outcomes;
 use crate::document::{
-    BEYOND_MARGIN, GroundSegmentDocument, SIMULATION_FORMAT, SailedLandDocument,
+    BEYOND_MARGIN, GroundSegmentDocument, ReplanDocument, SIMULATION_FORMAT, SailedLandDocument,
     SimulatedTargetDocument, SimulationDocument, SimulationsDocument, StateDocument,
 };
-use crate::evaluation::{Body, MovingSlabs, Violation, least_land_distance};
+use crate::evaluation::{
+    Body, MovingSlabs, Safety, Violation, least_land_distance, outcome_word, said_risk,
+    without_rules,
+};
 use crate::frame::{Pose, Vector, deg_from_radians, wrap};
 use crate::geometry::{ConvexPolygon, Polygon};
 use crate::target::Uncertainty;
@@ -114,20 +118,29 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
             violations,
         };
     }
+    if sailed.len() > 1
+        && let Some(index) = sailed.iter().position(|s| !(s.track.duration > 0.0))
+    {
+        let what = format!("sailed: segment {index} lasts no time");
+        violations.push(Violation::new(what, sailed[index].track.start_time));
+    }
+    // of all joints so far: each of many gaps may be a rounding, and together they are a motion
+    let [mut jumps, mut lates, mut turns] = [0.0; 3];
     for (index, pair) in sailed.windows(2).enumerate() {
         let [before, after] = [pair[0].track, pair[1].track];
-        let jump = (before.end().position - after.start.position).norm();
-        let late = (before.end_time() - after.start_time).abs();
+        jumps += (before.end().position - after.start.position).norm();
+        lates += (before.end_time() - after.start_time).abs();
         let heading = pair[0].pose_at(before.end_time()).heading;
-        let turned = wrap(heading - pair[1].pose_at(after.start_time).heading);
+        turns += wrap(heading - pair[1].pose_at(after.start_time).heading).abs();
         // negated so that a NaN is a gap
-        if !(late <= TIME_S && jump <= DISTANCE_M && turned.abs() <= TURNED_RAD) {
+        if !(lates <= TIME_S && jumps <= DISTANCE_M && turns <= TURNED_RAD) {
             let what = format!(
-                "sailed: a gap of {jump} m, {late} s, {}° before segment {}",
-                deg_from_radians(turned),
+                "sailed: gaps of {jumps} m, {lates} s, {}° in all up to segment {}",
+                deg_from_radians(turns),
                 index + 1
             );
             violations.push(Violation::new(what, after.start_time));
+            break;
         }
     }
     let covered = sailed.first().map_or(0.0, |s| s.track.start_time.abs())
@@ -148,11 +161,13 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
                 "from later",
             ));
         }
+        let mut jumps = 0.0;
         for pair in track.windows(2) {
-            let jump = (at(&pair[0], pair[1].at.t_s).position - pair[1].at.pose().position).norm();
-            if !(pair[1].at.t_s > pair[0].at.t_s && jump <= DISTANCE_M) {
-                let what = format!("track of '{name}': a gap of {jump} m");
+            jumps += (at(&pair[0], pair[1].at.t_s).position - pair[1].at.pose().position).norm();
+            if !(pair[1].at.t_s > pair[0].at.t_s && jumps <= DISTANCE_M) {
+                let what = format!("track of '{name}': gaps of {jumps} m in all");
                 violations.push(Violation::new(what, pair[1].at.t_s));
+                break;
             }
         }
         let least = least_distance(&sailed, &own, target);
@@ -215,7 +230,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
     if contact != document.contact {
         violations.push(mismatch("contact", document.contact, contact));
     }
-    let is_safe = |replan: &crate::document::ReplanDocument| replan.safe && replan.followed;
+    let is_safe = |replan: &ReplanDocument| replan.safe && replan.followed;
     let within = document.conduct.within_tracking_margin;
     let safe = !contact && within && document.replans.iter().all(is_safe);
     if safe != document.safe {
@@ -299,12 +314,9 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             "a plan that leaves out no length",
             last,
         );
-        let bad = ["NOT SAFE", "COLLIDES"].contains(&replan.verdict.as_str())
-            || replan.cost_m2.is_none()
-            || replan.relaxations.iter().any(|given_up| given_up == "risk");
         require(
-            !(bad && replan.safe),
-            "a plan that is not safe and is said to be",
+            has_its_verdict(replan),
+            "a plan with a verdict that does not fit what it gives up and whether it is safe",
             last,
         );
         let planned: Vec<&str> = replan.estimates.iter().map(|e| e.target.as_str()).collect();
@@ -369,6 +381,27 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         end,
     );
     found
+}
+
+/// True where a plan with this cost, these relaxations and this safety may have its verdict.
+fn has_its_verdict(replan: &ReplanDocument) -> bool {
+    let given_up: Vec<&str> = replan.relaxations.iter().map(String::as_str).collect();
+    let has_plan = replan.cost_m2.is_some();
+    let safeties: &[Option<Safety>] = match (has_plan, replan.safe) {
+        (false, false) => &[None],
+        (true, true) => &[Some(Safety::Safe)],
+        (true, false) => &[Safety::AtRisk, Safety::Unsafe, Safety::Collides].map(Some),
+        (false, true) => &[],
+    };
+    let risk = said_risk(&replan.verdict);
+    let words = outcomes(has_plan, given_up.is_empty())
+        .into_iter()
+        .flat_map(|outcome| safeties.iter().map(move |safety| (outcome, *safety)))
+        .map(|(outcome, safety)| outcome_word(outcome, safety, risk.unwrap_or(0.0)))
+        .map(|word| without_rules(word, given_up.contains(&"compliance")));
+    words.into_iter().any(|word| word == replan.verdict)
+        && (!risk.is_some_and(|risk| risk > 0.0) || given_up.contains(&"risk"))
+        && given_up.iter().all(|kind| KINDS.contains(kind))
 }
 
 /// The least distance of the hulls, metres. A set that is no polygon is everywhere.

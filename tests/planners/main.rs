@@ -18,3 +18,4 @@ mod path_networks;
 mod path_time;
 mod roles;
 mod rules;
+mod simulated_documents;

@@ -173,3 +173,59 @@ fn a_closest_approach_in_a_turn_on_the_spot_passes() {
     *at(&mut document, "/encounters/0/dcpa_m") = json!(dcpa + 0.1);
     assert!(is_caught(&document));
 }
+
+/// The first straight segment of a plan in 40 pieces, every second one aside by `gap` metres.
+fn in_pieces(plan: &mut Value, gap: f64) {
+    let all = segments(plan);
+    let straight = (all.iter())
+        .position(|s| s["turn_rate_deg_per_s"] == 0.0 && number(s, "duration_s") > 20.0);
+    let straight = straight.expect("a straight segment");
+    let whole = all[straight].clone();
+    let duration = number(&whole, "duration_s") / 40.0;
+    let start = |key: &str| number(&whole["start"], key);
+    let course = start("course_deg").to_radians();
+    let pieces = (0..40).map(|k| {
+        let mut piece = whole.clone();
+        let sailed = number(&whole, "speed_mps") * duration * f64::from(k);
+        let aside = gap * f64::from(k % 2);
+        piece["duration_s"] = json!(duration);
+        piece["start"]["t_s"] = json!(start("t_s") + duration * f64::from(k));
+        piece["start"]["east_m"] =
+            json!(start("east_m") + course.sin() * sailed + course.cos() * aside);
+        piece["start"]["north_m"] =
+            json!(start("north_m") + course.cos() * sailed - course.sin() * aside);
+        piece
+    });
+    let pieces: Vec<Value> = pieces.collect();
+    all.splice(straight..=straight, pieces);
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    value[key].as_f64().expect("a number")
+}
+
+#[test]
+fn gaps_that_are_each_allowed_are_not_allowed_together() {
+    let sound = document(scenario("colregs/head-on.toml"));
+    let altered = |change: &dyn Fn(&mut Value)| {
+        let mut plan = sound.clone();
+        change(&mut plan);
+        format!("{:?}", checked(&plan).violations)
+    };
+    assert_eq!(altered(&|plan| in_pieces(plan, 0.0)), "[]");
+    let found = altered(&|plan| in_pieces(plan, 9e-7));
+    assert!(found.contains("position at all joints"), "{found}");
+    // beside a segment of no time a gap is allowed nowhere
+    let with_an_instant = |plan: &mut Value, gap: f64| {
+        let mut instant = segments(plan)[1].clone();
+        instant["duration_s"] = json!(0.0);
+        instant["start"]["north_m"] = json!(number(&instant["start"], "north_m") + gap);
+        segments(plan).insert(1, instant);
+    };
+    assert_eq!(altered(&|plan| with_an_instant(plan, 0.0)), "[]");
+    let found = altered(&|plan| with_an_instant(plan, 4e-7));
+    assert!(
+        found.contains("position beside a segment of no time"),
+        "{found}"
+    );
+}

@@ -2,7 +2,9 @@
 
 use super::Simulation;
 use crate::colregs::SteadyShip;
-use crate::document::{EstimateDocument, ReplanDocument, finite, position, relaxation};
+use crate::document::{
+    EstimateDocument, PlanDocument, ReplanDocument, finite, position, relaxation,
+};
 use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, RelaxationLevel, Run};
@@ -39,6 +41,8 @@ const NEAREST_TIME: f64 = 0.01;
 
 pub(super) struct Cycle {
     pub run: Run,
+    /// Of the plan, if there is one.
+    pub document: Option<PlanDocument>,
     pub replan: ReplanDocument,
     /// Metres of the mission after the end of the plan, which may be before the intermediate end.
     pub left_out: f64,
@@ -119,12 +123,13 @@ impl Simulation {
         let (run, left_out_m) = self.run(&scenario);
         let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
         let plan = run.planned.outcome.plan();
+        let document = plan.map(|_| PlanDocument::of(&run));
         let replan = ReplanDocument {
             t_s: self.time,
             start_t_s: start,
             reason,
-            verdict: run.word(),
-            safe: run.safe(),
+            verdict: (document.as_ref()).map_or_else(|| run.word(), |plan| plan.verdict.clone()),
+            safe: document.as_ref().is_some_and(PlanDocument::is_safe),
             followed: plan.is_some() && !late,
             keeps_plan: run.planned.is_remainder(),
             left_out_m,
@@ -143,6 +148,7 @@ impl Simulation {
         let to_go = plan.map_or(0.0, |plan| plan.to_go);
         Cycle {
             run,
+            document,
             replan,
             left_out: left_out_m + to_go,
         }

@@ -460,6 +460,7 @@ impl Simulation {
     fn cycle(&mut self, delay: f64, reason: String) -> Option<NoPlan> {
         let Cycle {
             run,
+            document,
             replan,
             left_out,
         } = self.plan(delay, reason);
@@ -511,8 +512,7 @@ impl Simulation {
         self.stop_time = f64::INFINITY;
         if plan.is_some_and(is_stop) {
             self.stop_time = self.time + delay;
-        } else if let Some(plan) = plan {
-            let mut document = PlanDocument::of(&run);
+        } else if let (Some(plan), Some(mut document)) = (plan, document) {
             document.mission.left_out_m = replan.left_out_m;
             if self.keep_plans {
                 self.plans.push(document.clone());

@@ -13,6 +13,80 @@ fn every_plan_that_was_followed_verifies() {
     run(&format!("verify{}", files.collect::<String>())).success();
 }
 
+/// Plans that are kept after no set is over the last waypoint, and plans that are safe and at risk.
+#[test]
+fn what_the_closed_loop_says_of_its_plans_verifies() {
+    for name in ["parts-arrival", "at-risk-and-safe"] {
+        let folder = Folder::new();
+        let file = format!("tests/faults/{name}.toml");
+        let plans = folder.at("plans");
+        let sailed = searoom(&["simulate", &file, "--json", "--plans", &plans]);
+        let sailed = folder.write("sailed.json", stdout(&sailed));
+        searoom(&["verify", &sailed]).success();
+        let found = document(&searoom(&["verify", &plans, "--json"]).success());
+        let verified: Vec<bool> = (found["plans"].as_array().expect("plans").iter())
+            .map(|plan| plan["verified"] == true)
+            .collect();
+        assert!(
+            verified.len() > 10 && verified.iter().all(|v| *v),
+            "{name}: {verified:?}"
+        );
+        for plan in folder.names("plans") {
+            let text = std::fs::read_to_string(folder.path().join("plans").join(&plan));
+            let plan: serde_json::Value =
+                serde_json::from_str(&text.expect("a plan")).expect("JSON");
+            assert_eq!(plan["verified"], true, "{name}: {plan}");
+        }
+    }
+}
+
+/// Own ship jumps to and fro by 0.9 mm at each of 20 joints; and a joint beside a segment of no time.
+#[test]
+fn small_gaps_of_a_simulation_count_together() {
+    let folder = Folder::new();
+    let sailed = json(&format!("simulate {HEAD_ON_FILE} --json"));
+    let check = |cut: &dyn Fn(&serde_json::Value) -> Vec<serde_json::Value>| {
+        let mut changed = sailed.clone();
+        let all = changed["sailed"].as_array_mut().expect("segments");
+        let straight = all.iter().position(|s| s["turn_rate_deg_per_s"] == 0.0);
+        let straight = straight.expect("a straight segment");
+        let pieces = cut(&all[straight]);
+        all.splice(straight..=straight, pieces);
+        let name = folder.write("sailed.json", changed.to_string());
+        searoom(&["verify", &name])
+    };
+    let pieces = |whole: &serde_json::Value, gap: f64| -> Vec<serde_json::Value> {
+        let of = |value: &serde_json::Value| number(value);
+        let (start, duration) = (&whole["start"], of(&whole["duration_s"]) / 20.0);
+        let course = of(&start["course_deg"]).to_radians();
+        let way = of(&whole["speed_mps"]) * duration;
+        let piece = |k: u32| {
+            let (mut piece, sailed) = (whole.clone(), way * f64::from(k));
+            let aside = gap * f64::from(k % 2);
+            piece["duration_s"] = duration.into();
+            piece["start"]["t_s"] = (of(&start["t_s"]) + duration * f64::from(k)).into();
+            let [east, north] = ["east_m", "north_m"].map(|key| of(&start[key]));
+            piece["start"]["east_m"] = (east + course.sin() * sailed + course.cos() * aside).into();
+            piece["start"]["north_m"] =
+                (north + course.cos() * sailed - course.sin() * aside).into();
+            piece
+        };
+        (0..20).map(piece).collect()
+    };
+    check(&|whole| pieces(whole, 0.0)).success();
+    let shown = stdout(&check(&|whole| pieces(whole, 9e-4)).code(1));
+    says(&shown, "REJECTED | sailed: gaps of | in all");
+    let shown = stdout(
+        &check(&|whole| {
+            let mut none = whole.clone();
+            none["duration_s"] = 0.0.into();
+            vec![none, whole.clone()]
+        })
+        .code(1),
+    );
+    says(&shown, "REJECTED | lasts no time");
+}
+
 /// Contacts and distances are computed again from the motions alone.
 #[test]
 fn every_simulation_of_a_list_is_verified() {
@@ -119,6 +193,14 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/duration_s", 900.0.into()),
             ("/replans/1/safe", false.into()),
             ("/replans/1/verdict", "NOT SAFE".into()),
+            ("/replans/1/verdict", "COLLIDES, deadline".into()),
+            ("/replans/1/verdict", "at risk 0.90".into()),
+            ("/replans/1/verdict", "relaxed".into()),
+            ("/replans/1/verdict", "infeasible".into()),
+            ("/replans/1/verdict", "fine".into()),
+            ("/replans/1/verdict", "".into()),
+            ("/replans/1/relaxations", serde_json::json!(["speed"])),
+            ("/replans/1/cost_m2", serde_json::Value::Null),
             ("/replans/1/estimates", serde_json::json!([])),
             ("/replans", serde_json::json!([])),
             ("/targets", serde_json::json!([])),
