@@ -8,7 +8,7 @@ pub use uncertainty::{TimedVelocitySet, Uncertainty};
 
 use crate::frame::{Pose, Vector, direction, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, outer_disc};
-use crate::tolerance::{self, SIGMAS};
+use crate::tolerance::{self, ELLIPSE_SIDES, SIGMAS};
 use crate::vessel::Hull;
 use route::{RouteLeg, RoutePoint, Spread, Track};
 
@@ -498,6 +498,35 @@ impl Target {
             }
             Motion::Sets(sets) => sets.outer_section(time).signed_distance(pose.position),
         }
+    }
+
+    /// The first time in an interval, seconds, at which the nominal target meets a hull that lies
+    /// still at a pose; `None` where it never does. Explicit sets move with the velocity at the
+    /// centre of their velocities, against the centre of the hull. O(changes of the velocity).
+    pub fn first_meets(&self, hull: &Hull, pose: &Pose, [from, until]: [f64; 2]) -> Option<f64> {
+        let mut begin = from;
+        for change in self.changes() {
+            let end = change.min(until);
+            if !(begin < end || begin == from && from == until) {
+                continue;
+            }
+            let moved = self.position_at(end) - self.position_at(begin);
+            let around = match &self.motion {
+                Motion::Ship(ship) => {
+                    let other = ship.hull.polygon(&ship.pose_at(begin));
+                    other.minkowski_sum(&hull.polygon(pose).negated())
+                }
+                Motion::Sets(sets) => {
+                    let here = self.position_at(begin) - sets.initial.center() - pose.position;
+                    sets.initial.outer_polygon(ELLIPSE_SIDES).translated(here)
+                }
+            };
+            if let Some(share) = around.first_on(Vector::zeros(), -moved) {
+                return Some(begin + share * (end - begin));
+            }
+            begin = end;
+        }
+        None
     }
 
     /// The explicit sets, if it has them.

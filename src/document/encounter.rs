@@ -31,6 +31,10 @@ pub struct EncounterDocument {
     pub crosses_astern: Option<bool>,
     pub max_risk: Option<f64>,
     pub max_risk_t_s: Option<f64>,
+    /// First time after the end of the plan, until the horizon, at which the nominal target meets
+    /// own ship where it lies. Absent where it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub met_at_rest_s: Option<f64>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub conduct: Option<ConductDocument>,
 }
@@ -208,6 +212,7 @@ pub(crate) fn encounters(run: &Run) -> Vec<EncounterDocument> {
                     .and_then(|((p, t), ship)| crosses_astern(t, ship, p.tcpa)),
                 max_risk: peak.map(|peak| peak.risk),
                 max_risk_t_s: peak.filter(|peak| peak.risk > 0.0).map(|peak| peak.time),
+                met_at_rest_s: passage.and_then(|p| p.met_at_rest),
                 conduct: (conduct.get(index))
                     .and_then(Option::as_ref)
                     .map(ConductDocument::of),

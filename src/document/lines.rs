@@ -53,7 +53,17 @@ pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
         all.push(format!("skips {skipped}"));
     }
+    all.extend(
+        met_at_rest(plan).map(|(name, time)| format!("met at rest by '{name}' at {time:.0} s")),
+    );
     all.iter().map(|part| printable(part)).collect()
+}
+
+/// The target that is the first to meet own ship where it lies after its plan, and when.
+fn met_at_rest(plan: &PlanDocument) -> Option<(&str, f64)> {
+    let met = plan.encounters.iter();
+    let met = met.filter_map(|e| Some((e.target.as_str(), e.met_at_rest_s?)));
+    met.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// A word with further parts in brackets.
@@ -564,6 +574,14 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
                 format!("a target may run into own ship where it lies after {end}"),
             );
         }
+    }
+    if let Some((name, time)) = met_at_rest(plan) {
+        let time = times.at(time, 0);
+        let text = format!(
+            "'{name}' runs into own ship where it lies, at {time}, if neither moves off: nothing is \
+             claimed after the end of a plan"
+        );
+        add("warning", text);
     }
     if let Some(distance) = cost.min_land_distance_m {
         add("land", format!("{} m off", tenths(distance)));

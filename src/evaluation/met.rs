@@ -125,6 +125,12 @@ pub(super) fn passage<P: Piece>(
         passing_side,
         min_clearance: worst.value,
         hold_clearance: hold.value,
+        met_at_rest: pieces.last().and_then(|last| {
+            let (end, hull) = (last.end_time(), &request.own.hull);
+            let met = target.first_meets(hull, &last.pose_at(end), [end, request.horizon]);
+            // who is met at the end is met by the motion
+            met.filter(|time| *time > end)
+        }),
         min_margin: margin.value,
         min_margin_time: margin.time,
     };

@@ -81,6 +81,9 @@ pub struct Passage {
     /// Like `min_clearance`, but after the end of the motion, with own ship at rest at its final
     /// pose.
     pub hold_clearance: f64,
+    /// First time after the end of the motion, until the horizon, at which the nominal target meets
+    /// own hull where it lies, seconds. Nothing is claimed of it: own ship is free to move.
+    pub met_at_rest: Option<f64>,
     /// Least signed distance to the set against which the plan was made, metres. Infinite for a
     /// target without a set.
     pub min_margin: f64,

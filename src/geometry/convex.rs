@@ -425,6 +425,29 @@ impl ConvexPolygon {
         !(self.signed_distance(p) > 0.0)
     }
 
+    /// The first part of a way from `start`, in `[0, 1]`, that is in the closed set; `None` where
+    /// none is, and for a set without an inside. A NaN is inside at once. O(vertices) (Cyrus & Beck,
+    /// doi:10.1016/0097-8493(78)90021-3).
+    pub fn first_on(&self, start: Vector, way: Vector) -> Option<f64> {
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        if self.vertices.len() < 3 {
+            return None;
+        }
+        for (a, b) in self.edges() {
+            // distance to the left of the edge, which is inside, and its change along the way
+            let (inside, change) = (cross(b - a, start - a), cross(b - a, way));
+            if change > 0.0 {
+                enters = enters.max(-inside / change);
+            } else if change < 0.0 {
+                leaves = leaves.min(-inside / change);
+            } else if inside < 0.0 {
+                return None;
+            }
+        }
+        // negated so that a NaN is inside
+        (!(enters > leaves)).then_some(enters)
+    }
+
     /// Euclidean distance between two sets; where they overlap, minus the shortest separating
     /// translation. O(n + m).
     pub fn separation(&self, other: &Self) -> f64 {

@@ -123,6 +123,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     found.extend(phases(file));
     found.extend(way_left(claim, evaluation));
     found.extend(closest_approaches(claim, evaluation));
+    found.extend(met_at_rest(claim));
     found
 }
 
@@ -150,6 +151,26 @@ fn closest_approaches(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> 
             mismatch(&what, words(said.dcpa_m), passage.dcpa)
         })
         .collect()
+}
+
+/// Checks that a ship that is said to meet own ship at rest touches it then. A document of an earlier
+/// program says nothing of it.
+fn met_at_rest(claim: &Claim) -> Vec<Violation> {
+    let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
+        return Vec::new();
+    };
+    let Some(end) = segments.last().map(Segment::end) else {
+        return Vec::new();
+    };
+    let all = claim.file.encounters.iter().zip(&claim.targets);
+    let wrong = all.filter_map(|(said, target)| {
+        let apart = target.distance_from(&claim.own.hull, &end, said.met_at_rest_s?);
+        // negated so that a NaN is wrong
+        let is_wrong = target.ship().is_some() && !(apart <= tolerance::DEPTH_M);
+        let what = format!("encounter with '{}', met_at_rest_s", target.name);
+        is_wrong.then(|| mismatch(&what, "contact", format_args!("{apart} m from it")))
+    });
+    wrong.collect()
 }
 
 /// Largest difference of two distances from an explicit set at a time, metres; 0 for ships.

@@ -237,3 +237,48 @@ fn every_view_tells_the_clearance_of_the_right_target() {
     let value: f64 = held[column.expect("a column")].parse().expect("a number");
     near(&value.into(), 290.0);
 }
+
+/// A ship at anchor has arrived at once, and nothing is claimed of what comes later. Whoever comes is
+/// named, whichever planner answers, and long after the time for which the clearance is reported.
+#[test]
+fn a_ship_that_is_met_at_rest_is_warned() {
+    let file = "tests/faults/own-ship-at-anchor.toml";
+    let met = "; met at rest by 'coaster' at 953 s)";
+    let planners = ["space-time", "path-time"];
+    for planner in planners {
+        let said = stdout(&run(&format!("plan {file} --planner {planner}")).success());
+        assert!(
+            said.lines().next().is_some_and(|line| line.contains(met)),
+            "{said}"
+        );
+        says(
+            &said,
+            "  warning      'coaster' runs into own ship where it lies, at 953 s",
+        );
+    }
+    let folder = Folder::new();
+    let plan = run(&format!("plan {file} --json")).success();
+    let time = number(&document(&plan)["encounters"][0]["met_at_rest_s"]);
+    // own hull is 10 m farther north; both are 85 m long from the middles
+    let expected = (5000.0 - 10.0 - 85.0) / (10.0 * 1852.0 / 3600.0);
+    assert!((time - expected).abs() < 1e-6, "{time}");
+    let text = stdout(&plan);
+    run(&format!("verify {}", folder.write("plan.json", &text))).success();
+    let early = text.replacen(&format!("{time}"), "900.5", 1);
+    assert_ne!(early, text);
+    let refused = run(&format!("verify {}", folder.write("early.json", early))).code(1);
+    refused.stdout(contains("encounter with 'coaster', met_at_rest_s"));
+    // one that passes by, and one that comes after the horizon
+    let scenario = fs::read_to_string(file).expect("a scenario");
+    for (old, new) in [
+        (
+            "east_m = 0.0, north_m = 5000.0",
+            "east_m = 15.0, north_m = 5000.0",
+        ),
+        ("horizon_s = 1800.0", "horizon_s = 900.0"),
+    ] {
+        let other = folder.write("a.toml", scenario.replacen(old, new, 1));
+        let said = stdout(&run(&format!("plan {other}")).success());
+        assert!(!said.contains("met at rest"), "{said}");
+    }
+}
