@@ -9,7 +9,7 @@ use searoom::report::figure::{Figure, FigureOptions, assessment_figure};
 use searoom::study::assess::OwnSituation;
 use searoom::target::{TimedVelocitySet, Uncertainty};
 
-use super::program::{Folder, run};
+use super::program::{Folder, HEAD_ON, run};
 
 /// One target of each kind.
 fn targets() -> Vec<Obstacle> {
@@ -359,4 +359,26 @@ fn options_of_figures_are_refused_by_name() {
     for name in ["a.svg", "a.png", "a.pdf", ".pdf", ".SVG", ".png"] {
         assert!(!std::path::Path::new(&folder.at(name)).exists(), "{name}");
     }
+}
+
+/// Own ship sails a millimetre, and a target is ten kilometres broad: a PNG takes no step for each
+/// pixel that is far outside. `report::figure::render` bounds the steps; here the whole is drawn.
+#[test]
+fn a_chart_of_a_millimetre_beside_a_target_of_kilometres_is_drawn() {
+    let folder = Folder::new();
+    let text = HEAD_ON
+        .replace(
+            "{ east_m = 1500.0, north_m = 0.0 }]",
+            "{ east_m = 0.001, north_m = 0.0 }]",
+        )
+        .replace(
+            "position = { east_m = 1500.0",
+            "position = { east_m = 20000.0",
+        )
+        .replace("length_m = 60.0", "length_m = 10000.0")
+        .replace("beam_m = 12.0", "beam_m = 10000.0");
+    let file = folder.write("a.toml", text);
+    let figure = folder.at("a.png");
+    run(&format!("plan {file} --figure {figure}")).success();
+    assert!(fs::read(figure).expect("a figure").starts_with(b"\x89PNG"));
 }

@@ -8,11 +8,14 @@ use kurbo::{BezPath, PathEl, Shape};
 use kuva::backend::pdf::{PageSize, PdfBackend};
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
+use kuva::render::color::Color;
 use kuva::render::figure::Figure as Canvas;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 use super::Panel;
 use super::panel::{AREA, COLOURED, Key, text_size, text_width};
+use crate::frame::Vector;
+use crate::geometry::clipped;
 use crate::report::{WriteError, write_atomically};
 use crate::text::broken;
 
@@ -370,17 +373,27 @@ impl Figure {
     pub fn png(self) -> Result<Vec<u8>, FigureError> {
         let (dpi, scale) = (self.dpi, self.dpi / SVG_DPI);
         let mut scene = self.scene();
-        scene.elements = scene.elements.into_iter().flat_map(cut).collect();
         let pixels = [scene.width, scene.height].map(|length| (length * scale).round());
         let millions = pixels[0] * pixels[1] / 1e6;
         if !(millions <= MOST_MILLIONS) {
             return Err(FigureError::Pixels(millions.ceil()));
         }
+        scene.elements = within_reach(scene.elements, scene.width.max(scene.height));
+        scene.elements = scene.elements.into_iter().flat_map(cut).collect();
+        let upright = taken_upright(&mut scene);
         // the backend rounds up
         [scene.width, scene.height] = pixels.map(|pixels| (pixels - 0.3) / scale);
-        let drawn = PngBackend::new().with_scale(scale as f32);
-        let bytes = drawn.render_scene(&scene).map_err(FigureError::Draw)?;
-        with_resolution(&bytes, dpi).map_err(|e| FigureError::Draw(e.to_string()))
+        let draw = |scene: &Scene| {
+            let drawn = PngBackend::new().with_scale(scale as f32);
+            let bytes = drawn.render_scene(scene).map_err(FigureError::Draw)?;
+            Raster::read(&bytes).map_err(|e| FigureError::Draw(e.to_string()))
+        };
+        let mut raster = draw(&scene)?;
+        for ([x, y], text) in upright {
+            let [x, y] = [x, y].map(|length| (length * scale).round() as i64);
+            raster.add_turned(&draw(&text)?, [x, y]);
+        }
+        (raster.written(dpi)).map_err(|e| FigureError::Draw(e.to_string()))
     }
 
     /// Renders PDF bytes: one page as large as the figure.
@@ -417,35 +430,69 @@ fn colour_note(part: &mut Primitive) {
     }
 }
 
+/// A line of a scene.
+struct Line {
+    points: Vec<(f64, f64)>,
+    stroke: Color,
+    width: f64,
+    /// Lengths of the dashes and the gaps.
+    pattern: Option<String>,
+}
+
+impl Line {
+    /// The line that a part of a scene is.
+    fn of(part: &Primitive) -> Option<Self> {
+        let (points, stroke, width, pattern) = match part {
+            Primitive::PolyLine {
+                points,
+                stroke,
+                stroke_width,
+                stroke_dasharray,
+            } => (points.clone(), stroke, stroke_width, stroke_dasharray),
+            Primitive::Line {
+                x1,
+                y1,
+                x2,
+                y2,
+                stroke,
+                stroke_width,
+                stroke_dasharray,
+            } => {
+                let ends = vec![(*x1, *y1), (*x2, *y2)];
+                (ends, stroke, stroke_width, stroke_dasharray)
+            }
+            _ => return None,
+        };
+        Some(Self {
+            points,
+            stroke: stroke.clone(),
+            width: *width,
+            pattern: pattern.clone(),
+        })
+    }
+
+    /// Lines of the same stroke through other points.
+    fn with(&self, pattern: Option<&str>, lines: Vec<Vec<(f64, f64)>>) -> Vec<Primitive> {
+        let line = |points| Primitive::PolyLine {
+            points,
+            stroke: self.stroke.clone(),
+            stroke_width: self.width,
+            stroke_dasharray: pattern.map(str::to_owned),
+        };
+        lines.into_iter().map(line).collect()
+    }
+}
+
 /// A dashed line as its dashes, and everything else as it is. The raster backend would begin the
 /// dashes anew at every point of a line, and not scale them.
 fn cut(part: Primitive) -> Vec<Primitive> {
-    let (points, stroke, stroke_width, pattern) = match part {
-        Primitive::PolyLine {
-            points,
-            stroke,
-            stroke_width,
-            stroke_dasharray: Some(pattern),
-        } => (points, stroke, stroke_width, pattern),
-        Primitive::Line {
-            x1,
-            y1,
-            x2,
-            y2,
-            stroke,
-            stroke_width,
-            stroke_dasharray: Some(pattern),
-        } => (vec![(x1, y1), (x2, y2)], stroke, stroke_width, pattern),
-        other => return vec![other],
+    let line = Line::of(&part);
+    let pattern = line.as_ref().and_then(|line| line.pattern.as_deref());
+    let (Some(line), Some(pattern)) = (&line, pattern) else {
+        return vec![part];
     };
     let lengths: Vec<f64> = pattern.split(' ').filter_map(|l| l.parse().ok()).collect();
-    let line = |points| Primitive::PolyLine {
-        points,
-        stroke: stroke.clone(),
-        stroke_width,
-        stroke_dasharray: None,
-    };
-    dashes(&points, &lengths).into_iter().map(line).collect()
+    line.with(None, dashes(&line.points, &lengths))
 }
 
 /// The dashes of a line, whose lengths and those of the gaps take turns in a pattern of even length.
@@ -474,23 +521,190 @@ fn dashes(points: &[(f64, f64)], pattern: &[f64]) -> Vec<Vec<(f64, f64)>> {
     all
 }
 
-/// Adds its resolution to an image, which the drawing library leaves out.
-fn with_resolution(bytes: &[u8], dpi: f64) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
-    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or("too large")?];
-    reader.next_frame(&mut pixels)?;
-    let mut info = reader.info().clone();
-    let per_metre = (dpi / 0.0254).round() as u32;
-    info.pixel_dims = Some(png::PixelDimensions {
-        xppu: per_metre,
-        yppu: per_metre,
-        unit: png::Unit::Meter,
+/// The lines and areas of a figure without what is far outside of it: the raster backend takes a
+/// step for every pixel of a line, drawn or not. `size` is the longer side in pixels. Coordinates
+/// are those of the panels, each of which is moved by less than that.
+fn within_reach(parts: Vec<Primitive>, size: f64) -> Vec<Primitive> {
+    let reach = 2.0 * size;
+    // negated so that a NaN is far
+    let is_far = |(x, y): (f64, f64)| !(x.abs() <= reach && y.abs() <= reach);
+    let near = |part| match (Line::of(&part), part) {
+        (Some(line), part) => match line.points.iter().any(|point| is_far(*point)) {
+            true => line.with(line.pattern.as_deref(), line_within(&line.points, reach)),
+            false => vec![part],
+        },
+        (None, Primitive::Path(mut path)) => {
+            if let Some(area) = area_within(&path.d, reach) {
+                path.d = area;
+            }
+            vec![Primitive::Path(path)]
+        }
+        (None, part) => vec![part],
+    };
+    parts.into_iter().flat_map(near).collect()
+}
+
+/// The stretches of a line in the square that reaches so far from the origin. A segment with a
+/// coordinate that is not finite is left out (Liang & Barsky, doi:10.1145/357332.357333).
+fn line_within(points: &[(f64, f64)], reach: f64) -> Vec<Vec<(f64, f64)>> {
+    let mut all: Vec<Vec<(f64, f64)>> = Vec::new();
+    for pair in points.windows(2) {
+        let [start, end] = [0, 1].map(|i| Vector::new(pair[i].0, pair[i].1));
+        let way = end - start;
+        let (mut from, mut until) = (0.0_f64, 1.0_f64);
+        for axis in [0, 1] {
+            let [a, b] = [-reach, reach].map(|side| (side - start[axis]) / way[axis]);
+            let is_beside = way[axis] == 0.0 && start[axis].abs() > reach;
+            if is_beside || !way[axis].is_finite() {
+                until = -1.0;
+            } else if way[axis] != 0.0 {
+                (from, until) = (from.max(a.min(b)), until.min(a.max(b)));
+            }
+        }
+        if !(from <= until) {
+            continue;
+        }
+        let [start, end] = [from, until].map(|share| {
+            let point = start + way * share;
+            (point.x, point.y)
+        });
+        match all.last_mut() {
+            Some(line) if line.last() == Some(&start) => line.push(end),
+            _ => all.push(vec![start, end]),
+        }
+    }
+    all
+}
+
+/// The part of an area in the square that reaches so far from the origin, as SVG data; `None` where
+/// that is the whole area, and for data of another program.
+fn area_within(data: &str, reach: f64) -> Option<String> {
+    let path = BezPath::from_svg(data).ok()?;
+    let around = path.control_box();
+    let sides = [around.x0, around.y0, around.x1, around.y1];
+    if sides.iter().all(|side| side.abs() <= reach) {
+        return None;
+    }
+    let mut areas: Vec<Vec<Vector>> = Vec::new();
+    kurbo::flatten(path.iter(), 0.1, |part| match (part, areas.last_mut()) {
+        (PathEl::MoveTo(point), _) => areas.push(vec![Vector::new(point.x, point.y)]),
+        (PathEl::LineTo(point), Some(area)) => area.push(Vector::new(point.x, point.y)),
+        _ => {}
     });
-    let mut written = Vec::new();
-    let mut writer = png::Encoder::with_info(&mut written, info)?.write_header()?;
-    writer.write_image_data(&pixels)?;
-    writer.finish()?;
-    Ok(written)
+    let mut kept = BezPath::new();
+    for area in areas {
+        let sides = [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)];
+        let area = sides.into_iter().fold(area, |area, (axis, sign)| {
+            clipped(&area, |point| sign * point[axis] - reach)
+        });
+        for (index, point) in area.iter().enumerate() {
+            match index {
+                0 => kept.move_to((point.x, point.y)),
+                _ => kept.line_to((point.x, point.y)),
+            }
+        }
+        if !area.is_empty() {
+            kept.close_path();
+        }
+    }
+    Some(kept.to_svg())
+}
+
+/// Takes the texts that run upwards out of a scene: the raster backend blurs what it turns. Each is
+/// returned as a scene in which it runs to the right, with the place in pixels of the lower left
+/// corner of that scene after a quarter turn to the left.
+fn taken_upright(scene: &mut Scene) -> Vec<([f64; 2], Scene)> {
+    let mut moves = vec![[0.0, 0.0]];
+    let mut taken = Vec::new();
+    scene.elements.retain(|part| {
+        let [dx, dy] = moves.last().copied().unwrap_or_default();
+        match part {
+            Primitive::GroupStart { transform, .. } => {
+                let [x, y] = transform.as_deref().map_or([0.0; 2], translation);
+                moves.push([dx + x, dy + y]);
+            }
+            Primitive::GroupEnd => drop(moves.pop()),
+            Primitive::Text {
+                x,
+                y,
+                rotate: Some(-90.0),
+                size,
+                ..
+            } => {
+                let (x, y, height) = (x + dx, y + dy, 2.0 * f64::from(*size));
+                let mut text = part.clone();
+                if let Primitive::Text { x, y, rotate, .. } = &mut text {
+                    // in the middle of a line as long as the figure is high
+                    (*x, *y, *rotate) = (0.5 * scene.height, 0.75 * height, None);
+                }
+                let mut alone = Scene::new(scene.height, height);
+                alone.add(text);
+                taken.push(([x - 0.75 * height, y + 0.5 * scene.height], alone));
+                return false;
+            }
+            _ => {}
+        }
+        true
+    });
+    taken
+}
+
+/// The move of `translate(x,y)`, in pixels; none for another transform.
+fn translation(transform: &str) -> [f64; 2] {
+    let inside = transform.strip_prefix("translate(");
+    let inside = inside.and_then(|rest| rest.strip_suffix(')'));
+    let mut numbers = inside.into_iter().flat_map(|text| text.split(','));
+    let mut next = || numbers.next().and_then(|text| text.trim().parse().ok());
+    [next().unwrap_or(0.0), next().unwrap_or(0.0)]
+}
+
+/// A drawn figure.
+struct Raster {
+    info: png::Info<'static>,
+    /// Rows from above, four bytes each pixel: red, green, blue, opacity.
+    pixels: Vec<u8>,
+}
+
+impl Raster {
+    fn read(bytes: &[u8]) -> Result<Self, Box<dyn std::error::Error>> {
+        let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
+        let mut pixels = vec![0; reader.output_buffer_size().ok_or("too large")?];
+        reader.next_frame(&mut pixels)?;
+        let info = reader.info().clone();
+        Ok(Self { info, pixels })
+    }
+
+    /// Adds a drawing in dark on white, turned a quarter to the left, whose lower left corner is then
+    /// at a place in pixels.
+    fn add_turned(&mut self, other: &Self, [left, foot]: [i64; 2]) {
+        let [width, height] = [self.info.width, self.info.height].map(i64::from);
+        let wide = other.info.width as usize;
+        for (index, colour) in other.pixels.chunks_exact(4).enumerate() {
+            let (column, row) = ((index % wide) as i64, (index / wide) as i64);
+            let (x, y) = (left + row, foot - 1 - column);
+            if (0..width).contains(&x) && (0..height).contains(&y) {
+                let at = 4 * (y * width + x) as usize;
+                for (below, above) in self.pixels[at..at + 3].iter_mut().zip(colour) {
+                    *below = (u16::from(*below) * u16::from(*above) / 255) as u8;
+                }
+            }
+        }
+    }
+
+    /// The image with its resolution, which the drawing library leaves out.
+    fn written(mut self, dpi: f64) -> Result<Vec<u8>, png::EncodingError> {
+        let per_metre = (dpi / 0.0254).round() as u32;
+        self.info.pixel_dims = Some(png::PixelDimensions {
+            xppu: per_metre,
+            yppu: per_metre,
+            unit: png::Unit::Meter,
+        });
+        let mut written = Vec::new();
+        let mut writer = png::Encoder::with_info(&mut written, self.info)?.write_header()?;
+        writer.write_image_data(&self.pixels)?;
+        writer.finish()?;
+        Ok(written)
+    }
 }
 
 /// Mark and text of a key whose upper left corner is given in pixels.
@@ -569,6 +783,7 @@ fn numbered_anew(svg: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kuva::render::render::PathData;
 
     #[test]
     fn dashes_go_on_over_the_points_of_a_line() {
@@ -584,6 +799,56 @@ mod tests {
         assert_eq!(dashes(&[(0.0, 0.0), (1e9, 0.0)], &[8.0, 4.0]).len(), 1);
         assert_eq!(dashes(&[(0.0, 0.0), (f64::NAN, 0.0)], &[8.0, 4.0]).len(), 1);
         assert_eq!(dashes(&[], &[8.0, 4.0]).len(), 1);
+    }
+
+    /// The raster backend takes a step for every pixel of a line: what is left of lines and areas
+    /// bounds its work, however far they reach.
+    #[test]
+    fn nothing_far_outside_is_drawn() {
+        let (size, far) = (500.0, 1e10);
+        let line = |points: &[(f64, f64)]| Primitive::PolyLine {
+            points: points.to_vec(),
+            stroke: "#000000".into(),
+            stroke_width: 0.6,
+            stroke_dasharray: None,
+        };
+        let area = |data: &str| {
+            Primitive::Path(Box::new(PathData {
+                d: data.to_owned(),
+                fill: Some("#000000".into()),
+                stroke: Color::None,
+                stroke_width: 0.0,
+                opacity: None,
+                stroke_dasharray: None,
+            }))
+        };
+        let near = line(&[(1.0, 2.0), (300.0, 400.0), (-700.0, 0.0)]);
+        let parts = vec![
+            near.clone(),
+            line(&[(-far, 10.0), (far, 10.0), (far, far), (20.0, -far)]),
+            line(&[(far, far), (far, 2.0 * far), (f64::NAN, 0.0), (0.0, 0.0)]),
+            area("M -1e10 -1e10 L 1e10 -1e10 L 1e10 1e10 L -1e10 1e10 Z"),
+            area("M 5000 5000 L 6000 5000 L 6000 6000 Z"),
+        ];
+        let kept = within_reach(parts, size);
+        let [first, across, back, all, none] = &kept[..] else {
+            panic!("{kept:?}");
+        };
+        let points = |part: &Primitive| Line::of(part).expect("a line").points;
+        assert_eq!(points(first), points(&near));
+        assert_eq!(points(across), [(-1000.0, 10.0), (1000.0, 10.0)]);
+        let line = points(back);
+        assert!(
+            line.iter()
+                .all(|p| p.0.abs() <= 1000.1 && p.1.abs() <= 1000.1)
+        );
+        let data = |part: &Primitive| match part {
+            Primitive::Path(path) => path.d.clone(),
+            other => panic!("{other:?}"),
+        };
+        let whole = BezPath::from_svg(&data(all)).expect("a path");
+        assert_eq!(whole.area().abs(), 4e6);
+        assert!(data(none).is_empty());
     }
 
     #[test]
