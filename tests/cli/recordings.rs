@@ -231,6 +231,29 @@ fn recordings_are_named_after_their_scenarios() {
         .stderr(contains("4 scenarios"));
 }
 
+/// The note says how a recording is opened, and with which viewer: that of the library here.
+#[test]
+fn it_is_said_how_a_recording_is_opened() {
+    let folder = Folder::new();
+    let manifest = include_str!("../../Cargo.toml");
+    let version = manifest.split("rerun = { version = \"").nth(1);
+    let version = version
+        .and_then(|rest| rest.split('"').next())
+        .expect("a version");
+    let viewer = format!("(Rerun {version} or later: pip install rerun-sdk)");
+    let all = run(&format!("suite scenarios/colregs --rrd {folder}"));
+    let first = folder.at("give-way.rrd");
+    all.stderr(contains(format!(
+        "wrote {folder}; to open one: rerun {first} {viewer}"
+    )));
+    let one = run(&format!(
+        "plan scenarios/colregs/head-on.toml --rrd {first}"
+    ));
+    one.stderr(contains(format!(
+        "wrote {first}; to open it: rerun {first} {viewer}"
+    )));
+}
+
 #[test]
 fn a_recording_tells_what_simulate_tells() {
     let folder = Folder::new();

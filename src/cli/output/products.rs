@@ -22,9 +22,14 @@ use super::super::runner::guarded;
 use super::status::ExitStatus;
 use super::{Output, json};
 
+/// The viewer of recordings, of the version of the library that writes them or a later one.
+const VIEWER: &str = "(Rerun 0.36.3 or later: pip install rerun-sdk)";
+
 /// Destinations of recordings, figures and plans.
 #[derive(Debug)]
 pub struct Products {
+    /// Names of the results, without endings.
+    stems: Vec<String>,
     recordings: Option<Place>,
     figures: Option<Place>,
     drawn: FigureOptions,
@@ -87,6 +92,7 @@ impl Products {
             }
         }
         Ok(Self {
+            stems: found.iter().map(|found| found.stem.clone()).collect(),
             recordings,
             figures,
             drawn,
@@ -120,9 +126,18 @@ impl Products {
         match &self.recordings {
             Some(Place::File(file)) => {
                 let file = file.display();
-                output.note(&format_args!("wrote {file}; to open it: rerun {file}"));
+                output.note(&format_args!(
+                    "wrote {file}; to open it: rerun {file} {VIEWER}"
+                ));
             }
-            Some(Place::Folder(folder)) => output.wrote(folder),
+            Some(place @ Place::Folder(folder)) => {
+                let files = self.stems.iter().map(|stem| place.file(stem, "rrd"));
+                let first = { files }.find(|file| file.is_file());
+                let first = first.map_or(String::new(), |file| {
+                    format!("; to open one: rerun {} {VIEWER}", file.display())
+                });
+                output.note(&format_args!("wrote {}{first}", folder.display()));
+            }
             None => {}
         }
         if let Some(place) = &self.figures {
