@@ -20,14 +20,19 @@ mod verify;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 
 use args::{Arguments, Command};
 use output::Output;
 
 pub fn main() -> ExitCode {
     runner::keep_panics_quiet();
-    let arguments = match Arguments::try_parse() {
+    let parser = match output::help_width() {
+        Some(width) => Arguments::command().term_width(width),
+        None => Arguments::command(),
+    };
+    let parsed = parser.try_get_matches();
+    let arguments = match parsed.and_then(|found| Arguments::from_arg_matches(&found)) {
         Ok(arguments) => arguments,
         Err(error) => return output::usage(&error),
     };

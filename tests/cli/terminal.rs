@@ -44,6 +44,17 @@ fn tables_fit_the_terminal() {
     assert!(!cards.contains('─') && !cards.contains("nodes"), "{cards}");
 }
 
+/// A terminal of no columns does not know its width: help is not broken after every word.
+#[test]
+fn help_is_readable_where_the_width_is_zero() {
+    let shown = |columns: &str| {
+        let mut command = command(&["plan", "--help"]);
+        stdout(&command.env("COLUMNS", columns).assert().success())
+    };
+    assert_eq!(shown("0"), shown("100"));
+    assert_ne!(shown("0"), shown("60"));
+}
+
 /// Legs keep their turns; what happens on them is broken into lines.
 #[test]
 fn legs_keep_their_turns_in_a_narrow_terminal() {

@@ -34,6 +34,9 @@ const COLOURS: [&str; 5] = [
 /// these begin before this column.
 const VALUE_COLUMN: usize = 20;
 
+/// Width of the help, in characters, where there is no terminal.
+const HELP_WIDTH: usize = 100;
+
 /// Name of a scenario in its file, or nothing, and the notes on it.
 pub type Noted = (String, Vec<String>);
 
@@ -52,9 +55,9 @@ impl Output {
     pub fn new(quiet: bool) -> Self {
         let terminal = std::io::stdout().is_terminal();
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        let columns = std::env::var("COLUMNS").ok();
-        let columns = columns.and_then(|n| n.parse().ok().filter(|n| *n > 0));
-        let measured = |table: &Table| table.width().map(usize::from);
+        let columns = asked_columns().filter(|columns| *columns > 0);
+        // a terminal of no columns does not know its width
+        let measured = |table: &Table| table.width().map(usize::from).filter(|width| *width > 0);
         let mut on_stderr = Table::new();
         on_stderr.use_stderr();
         let messages = || {
@@ -230,6 +233,17 @@ impl Output {
             Err(_) => bar,
         }
     }
+}
+
+/// The width that `COLUMNS` asks for; 0 is none.
+fn asked_columns() -> Option<usize> {
+    std::env::var("COLUMNS").ok()?.parse().ok()
+}
+
+/// Width of the help in characters where it is neither asked for nor known; `None` where the parser
+/// finds it.
+pub fn help_width() -> Option<usize> {
+    (asked_columns() == Some(0)).then_some(HELP_WIDTH)
 }
 
 /// True for a terminal without escape codes.
