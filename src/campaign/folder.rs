@@ -228,10 +228,7 @@ impl Folder {
         mut take: impl FnMut(&Part),
     ) -> Result<Vec<Found>, CampaignError> {
         let folder = self.parts();
-        let unread = |source| InputError::Read {
-            file: folder.clone(),
-            source,
-        };
+        let unread = |source| InputError::unread(&folder, source);
         let entries = fs::read_dir(&folder).map_err(unread)?;
         let entries = entries.collect::<Result<Vec<_>, _>>().map_err(unread)?;
         let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();

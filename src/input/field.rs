@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use chrono::{DateTime, Utc};
 
 use super::value::{Node, Value};
-use super::{Fault, Faults, InputError, Table};
+use super::{Fault, Faults, InputError, Table, meant};
 use crate::frame::{Vector, mps_from_knots};
 use crate::text::{LINE, is_line, is_unprintable, printable};
 
@@ -304,8 +304,9 @@ impl<'a> Field<'a> {
     ) -> Option<T> {
         match read {
             Ok(content) => Some(content),
-            Err(InputError::Read { file, source }) => {
-                let found = format_args!("{}, which cannot be read ({source})", file.display());
+            Err(InputError::Read { file, source, near }) => {
+                let (file, near) = (file.display(), meant(&near));
+                let found = format_args!("{file}, which cannot be read ({source}){near}");
                 self.reject(found, kind)
             }
             Err(InputError::Faults { faults, .. }) => {

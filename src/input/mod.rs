@@ -73,12 +73,14 @@ impl Display for Fault {
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}", file.display())]
+    #[error("{}: cannot be read: {source}{}", file.display(), meant(near))]
     Read {
         /// The file.
         file: PathBuf,
         /// The error of the operating system.
         source: std::io::Error,
+        /// Where there is no such file, the one in its folder whose name is most like it.
+        near: Option<PathBuf>,
     },
     /// The file was read and is wrong.
     #[error("{}: {}", file.display(), listed(faults))]
@@ -90,7 +92,25 @@ pub enum InputError {
     },
 }
 
+fn meant(near: &Option<PathBuf>) -> String {
+    let near = near.as_ref().map(|near| near.display());
+    near.map_or(String::new(), |near| format!("; perhaps {near}?"))
+}
+
+/// Likeness from which a name of another file is offered, from 0 to 1.
+const ALIKE: f64 = 0.85;
+
 impl InputError {
+    /// A file that cannot be read. Where there is none, a similar name is looked for.
+    pub(crate) fn unread(file: &Path, source: Error) -> Self {
+        let near = (source.kind() == ErrorKind::NotFound).then(|| near(file));
+        Self::Read {
+            file: file.to_owned(),
+            source,
+            near: near.flatten(),
+        }
+    }
+
     /// Faults of a file.
     pub fn faults(file: &Path, faults: Vec<Fault>) -> Self {
         Self::Faults {
@@ -98,6 +118,22 @@ impl InputError {
             faults,
         }
     }
+}
+
+/// The entry of a file's folder whose name is most like it. Among equals the first by name.
+fn near(file: &Path) -> Option<PathBuf> {
+    let name = file.file_name()?.to_str()?.to_lowercase();
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let listed = match folder == Path::new("") {
+        true => Path::new("."),
+        false => folder,
+    };
+    let entries = std::fs::read_dir(listed).ok()?.flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let alike = names.map(|other| (strsim::jaro_winkler(&name, &other.to_lowercase()), other));
+    let alike = alike.filter(|(alike, _)| *alike >= ALIKE);
+    let best = alike.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    best.map(|(_, other)| folder.join(other))
 }
 
 /// Maximum number of faults that a message lists; the rest is counted.
@@ -191,10 +227,7 @@ const MEBIBYTE: u64 = 1024 * 1024;
 
 /// Text of a regular file of at most `mebibytes`; a larger file is refused before it is read.
 pub fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputError> {
-    let unread = |source| InputError::Read {
-        file: file.to_owned(),
-        source,
-    };
+    let unread = |source| InputError::unread(file, source);
     // opening a pipe would block, a device may have no end
     let about = std::fs::metadata(file).map_err(unread)?;
     if !about.is_file() {
@@ -226,10 +259,7 @@ pub fn read_from(
     let mut limited = source.take(most + 1);
     limited
         .read_to_end(&mut bytes)
-        .map_err(|source| InputError::Read {
-            file: file.to_owned(),
-            source,
-        })?;
+        .map_err(|source| InputError::unread(file, source))?;
     if bytes.len() as u64 > most {
         return Err(too_large(file, mebibytes, kind));
     }

@@ -265,3 +265,75 @@ fn later_faults_have_their_line() {
     assert!(said.contains(": map: found land for"), "{said}");
     assert!(said.contains("line "), "{said}");
 }
+
+/// Where a file is not there, one of a similar name in its folder is offered.
+#[test]
+fn a_missing_file_is_perhaps_another() {
+    let folder = Folder::new();
+    let file = folder.write("head-on.toml", HEAD_ON);
+    for (wrong, near) in [
+        ("head_on.toml", true),
+        ("Head-on.tml", true),
+        ("x.toml", false),
+    ] {
+        let wrong = folder.at(wrong);
+        let said = stderr(&run(&format!("plan {wrong}")).code(2));
+        assert_eq!(said.contains(&format!("; perhaps {file}?")), near, "{said}");
+    }
+    let said = stderr(&run("suite scenario").code(2));
+    assert!(said.contains("; perhaps scenarios?"), "{said}");
+    let text =
+        format!("origin = {{ lat_deg = 63.0, lon_deg = 10.0 }}\nmap = \"isl.geojson\"\n{HEAD_ON}");
+    folder.write("isle.geojson", "");
+    let said = stderr(&run(&format!("check {}", folder.write("a.toml", text))).code(2));
+    assert!(said.contains("isle.geojson?"), "{said}");
+}
+
+/// Reports of AIS and other rows are no scenario: the message says what they are, and what is read.
+#[test]
+fn rows_and_sentences_are_known() {
+    let folder = Folder::new();
+    let sentence = "!AIVDM,1,1,,A,15M67FC000G?ufbE`FepT@3n00Sa,0*5C\n";
+    for (name, text, kind) in [
+        ("a.nmea", sentence.to_owned(), "NMEA sentences"),
+        (
+            "b.nm4",
+            format!("\\s:2573135,c:1454025600*0A\\{sentence}"),
+            "NMEA sentences",
+        ),
+        (
+            "c.txt",
+            "$GPGGA,123519,4807.038,N,01131.000,E,1*47\n".to_owned(),
+            "NMEA sentences",
+        ),
+        (
+            "d.csv",
+            "MMSI,BaseDateTime,LAT,LON\n367390380,2022-01-03T00:00:00,40.6,-74.0\n".to_owned(),
+            "rows of AIS reports (CSV)",
+        ),
+        (
+            "e.csv",
+            "# Timestamp,Type of mobile,MMSI\n27/02/2024 00:00:00,Class A,219000\n".to_owned(),
+            "rows of AIS reports (CSV)",
+        ),
+        (
+            "f.csv",
+            "east_m,north_m,t_s\n1,2,3\n".to_owned(),
+            "rows of values (CSV)",
+        ),
+    ] {
+        let file = folder.write(name, text);
+        for command in ["check", "plan", "suite", "import"] {
+            let said = stderr(&run(&format!("{command} {file}")).code(2));
+            let whole = format!("found {kind}");
+            assert!(
+                said.contains(&whole) && said.contains("CommonOcean"),
+                "{said}"
+            );
+        }
+    }
+    // a broken scenario is still one
+    let file = folder.write("g.toml", HEAD_ON.replacen("title", "title, a, b", 1));
+    let said = stderr(&run(&format!("check {file}")).code(2));
+    assert!(said.contains("line 2: ") && !said.contains("CSV"), "{said}");
+}

@@ -47,18 +47,47 @@ impl Contents {
         match text.chars().next() {
             Some('{') => in_json(text, assumed),
             Some('<') => in_xml(text),
-            _ if is_campaign(text) => Ok(Self::Other(
-                "the specification of a campaign, which `searoom campaign run` reads",
-            )),
-            _ => Ok(Self::Scenario),
+            _ => match from_toml(text, &Faults::default()) {
+                Some(root) if root.get("strata").is_some() => Ok(Self::Other(
+                    "the specification of a campaign, which `searoom campaign run` reads",
+                )),
+                Some(_) => Ok(Self::Scenario),
+                None => rows(text).map_or(Ok(Self::Scenario), |found| {
+                    Err(vec![Fault::new("", found, READ)])
+                }),
+            },
         }
     }
 }
 
-/// True for TOML with the strata of a campaign.
-fn is_campaign(text: &str) -> bool {
-    let root = from_toml(text, &Faults::default());
-    root.is_some_and(|root| root.get("strata").is_some())
+/// The formats that are read.
+const READ: &str = "a scenario file (TOML), DNV's traffic situations or Imazu's cases (JSON), or \
+                    CommonOcean's scenarios (XML); what AIS reports of a ship goes into [[targets]]";
+
+/// The kind of a text of rows, which is no TOML: sentences of a receiver, or values between commas.
+fn rows(text: &str) -> Option<&'static str> {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let [first, second] = [lines.next()?, lines.next().unwrap_or_default()];
+    // after a tag block, and a time
+    let is_sentence = |line: &str| {
+        let begins = |sign: &str| line.split(sign).nth(1).and_then(|rest| rest.get(..5));
+        let begins = ["!", "$"].into_iter().find_map(begins);
+        begins.is_some_and(|word| word.chars().all(|c| c.is_ascii_uppercase()))
+            && line.contains(',')
+    };
+    let is_row = |line: &str| line.matches(',').count() >= 2 && !line.contains('=');
+    if is_sentence(first) {
+        Some("NMEA sentences, as of an AIS receiver")
+    } else if is_row(first) && (is_row(second) || second.is_empty()) {
+        let is_ais = first.to_lowercase().contains("mmsi");
+        Some(if is_ais {
+            "rows of AIS reports (CSV)"
+        } else {
+            "rows of values (CSV)"
+        })
+    } else {
+        None
+    }
 }
 
 /// Keys by which result documents without a format are known.
