@@ -33,7 +33,7 @@ scenario: frame tolerance geometry trajectory vessel map target colregs planner 
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
-study: parallel document frame tolerance trajectory target colregs obstacle planner evaluation scenario pipeline
+study: parallel document frame text tolerance trajectory vessel target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 publication: document evaluation pipeline verification
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text

@@ -11,9 +11,9 @@ use searoom::report::{
     plan_document_text, write_atomically,
 };
 use searoom::study::bound::lower_bound;
+use searoom::study::lint::findings;
 
 use super::args::PlanArgs;
-use super::check::short_horizon;
 use super::input::files::{Found, shown};
 use super::input::scenes;
 use super::output::Output;
@@ -36,7 +36,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
         Ok((run, mut notes)) => {
-            notes.extend(short_horizon(&run.scenario));
+            notes.extend(findings(&run.scenario, &scene.declared()));
             output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {

@@ -1,10 +1,17 @@
-//! Detection of scenario faults without planning: targets that never matter, missing ships and
-//! mirrored geometry.
+//! Detection of what is probably wrong with a scenario, without planning: own ship among its
+//! targets, impossible speeds, a mission that own ship cannot begin, targets that never matter,
+//! missing ships and mirrored geometry.
+//!
+//! What is found is no fault: the scenario can be planned, and may be meant as it is.
+
+mod mistakes;
+
+use mistakes::mistakes;
 
 use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
-use crate::frame::{Side, relative_bearing};
+use crate::frame::{Pose, Side, heading_of, relative_bearing};
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::sets;
+use crate::pipeline::{TargetSets, sets};
 use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
@@ -27,69 +34,99 @@ pub fn lint(
     declared: &Declared,
     notes: Vec<String>,
 ) -> LintScenarioDocument {
-    let sets = sets(scenario);
+    let targets = targets(scenario, &sets(scenario));
+    LintScenarioDocument {
+        file,
+        scenario: Some(scenario.title.clone()),
+        error: None,
+        findings: all(scenario, declared, &targets),
+        targets,
+        notes,
+    }
+}
+
+/// The findings of [`lint`] alone: who is concerned, what was found, and what it probably means.
+pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
+    all(scenario, declared, &targets(scenario, &sets(scenario)))
+}
+
+fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> {
     let fastest = scenario.own_ship.max_speed();
     let start = scenario.own_ship.pose.position;
     let step = scenario.horizon / INSTANTS as f64;
-    let targets: Vec<LintTargetDocument> = scenario
-        .targets
-        .iter()
-        .zip(&sets)
-        .map(|(target, sets)| {
-            let (mut to_set, mut to_reach) = (f64::INFINITY, f64::INFINITY);
-            for instant in 0..=INSTANTS {
-                let time = step * instant as f64;
-                let distance = |place| sets.hard.signed_distance(place, time).distance;
-                to_reach = to_reach.min(distance(start) - fastest * time);
-                // nothing is claimed after arrival
-                if time <= scenario.desired.duration() {
-                    to_set = to_set.min(distance(scenario.desired.position_at(time)));
-                }
+    let targets = scenario.targets.iter().zip(sets);
+    let checked = targets.map(|(target, sets)| {
+        let (mut to_set, mut to_reach) = (f64::INFINITY, f64::INFINITY);
+        for instant in 0..=INSTANTS {
+            let time = step * instant as f64;
+            let distance = |place| sets.hard.signed_distance(place, time).distance;
+            to_reach = to_reach.min(distance(start) - fastest * time);
+            // nothing is claimed after arrival
+            if time <= scenario.desired.duration() {
+                to_set = to_set.min(distance(scenario.desired.position_at(time)));
             }
-            // negated on purpose: a NaN matters
-            let matters = if !(to_set > 0.0) {
-                MEETS
-            } else if !(to_reach > (fastest + top_speed(target)) * step) {
-                "clear"
-            } else {
-                NEVER
-            };
-            LintTargetDocument {
-                name: target.name.clone(),
-                role: sets.encounter.role.word().to_owned(),
-                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
-                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
-                to_set_m: finite(to_set),
-                matters: matters.to_owned(),
-            }
-        })
-        .collect();
+        }
+        // negated on purpose: a NaN matters
+        let matters = if !(to_set > 0.0) {
+            MEETS
+        } else if !(to_reach > (fastest + top_speed(target)) * step) {
+            "clear"
+        } else {
+            NEVER
+        };
+        LintTargetDocument {
+            name: target.name.clone(),
+            role: sets.encounter.role.word().to_owned(),
+            undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
+            undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
+            to_set_m: finite(to_set),
+            matters: matters.to_owned(),
+        }
+    });
+    checked.collect()
+}
+
+fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument]) -> Vec<String> {
     let mut findings = against_declared(scenario, declared);
+    findings.extend(mistakes(scenario));
     for target in targets.iter().filter(|t| t.matters == NEVER) {
         findings.push(format!(
             "{}: never matters, out of reach within the horizon",
             target.name
         ));
     }
+    let met = met_at_rest(scenario);
+    let is_met = !met.is_empty();
+    findings.extend(met);
     if targets.is_empty() {
         findings.push("no targets".to_owned());
-    } else if targets.iter().all(|t| t.matters != MEETS) {
+    } else if !is_met && targets.iter().all(|t| t.matters != MEETS) {
         findings.push("no target in the way: own ship may hold its course".to_owned());
     }
-    let overlaps = |t: &&LintTargetDocument| {
-        t.undisturbed_dcpa_m.is_some_and(|d| d < 0.0) && t.undisturbed_tcpa_s == Some(0.0)
-    };
-    for target in targets.iter().filter(overlaps) {
-        findings.push(format!("{}: overlaps own ship at the start", target.name));
-    }
-    LintScenarioDocument {
-        file,
-        scenario: Some(scenario.title.clone()),
-        error: None,
-        targets,
-        findings,
-        notes,
-    }
+    findings
+}
+
+/// Targets that meet own ship where it lies after its mission, on their nominal motion.
+fn met_at_rest(scenario: &Scenario) -> Vec<String> {
+    let desired = &scenario.desired;
+    let last = desired
+        .legs()
+        .iter()
+        .map(|leg| heading_of(leg.direction))
+        .next_back();
+    let lies = Pose::new(
+        desired.end(),
+        last.unwrap_or(scenario.own_ship.pose.heading),
+    );
+    let time = [desired.duration(), scenario.horizon];
+    let met = scenario.targets.iter().filter_map(|target| {
+        let met = target.first_meets(&scenario.own_ship.hull, &lies, time)?;
+        let name = &target.name;
+        (met > time[0]).then(|| {
+            format!("{name}: meets own ship at {met:.0} s where it lies after its mission")
+        })
+    });
+    met.collect()
 }
 
 /// Upper bound of the target's speed, m/s.
