@@ -324,7 +324,8 @@ fn rows_and_sentences_are_known() {
         ),
     ] {
         let file = folder.write(name, text);
-        for command in ["check", "plan", "suite", "import"] {
+        let out = format!("import --out {folder}/out");
+        for command in ["check", "plan", "suite", &out] {
             let said = stderr(&run(&format!("{command} {file}")).code(2));
             let whole = format!("found {kind}");
             assert!(
