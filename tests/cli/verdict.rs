@@ -282,3 +282,33 @@ fn a_ship_that_is_met_at_rest_is_warned() {
         assert!(!said.contains("met at rest"), "{said}");
     }
 }
+/// At the size at which it is planned this trip is shorter than the tolerance of an arrival, but own
+/// ship has not arrived.
+#[test]
+fn a_round_trip_that_is_too_short_to_be_turned_is_infeasible() {
+    for compliance in ["none", "shape", "rules"] {
+        let plan = "plan tests/faults/round-trip-below-its-turn.toml --compliance";
+        let said = stdout(&run(&format!("{plan} {compliance}")).code(1));
+        says(&said, "round trip: infeasible | the horizon is 60.0 s");
+    }
+}
+
+/// A step of the refinement is some metres: with a turning radius of a millimetre that were
+/// thousands of turns, each with its closest approaches, and gigabytes of them.
+#[cfg(unix)]
+#[test]
+fn turns_of_a_millimetre_take_little_memory() {
+    let program = env!("CARGO_BIN_EXE_searoom");
+    let plan = "plan tests/faults/turns-of-a-millimetre.toml";
+    // 200 MB, with the address space of the program and of one thread
+    let limited = format!("ulimit -v 200000; exec {program} {plan}");
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", &limited]);
+    shell
+        .env("RAYON_NUM_THREADS", "1")
+        .env("MALLOC_ARENA_MAX", "1");
+    let output = shell.output().expect("sh");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(said.contains("verified, not safe"), "{said}");
+}

@@ -122,8 +122,9 @@ pub fn plan(problem: &Problem) -> Planned {
     })
 }
 
-/// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it
-/// without scaling; where that touches too, plans the original problem.
+/// Plans a problem in normalised coordinates. Where the restored plan touches a set, or stays at the
+/// start of a round trip that vanishes at the normalised size, plans it without scaling; where that
+/// does so too, plans the original problem.
 fn plan_normalised(
     problem: &Problem,
     clock: Clock,
@@ -164,7 +165,12 @@ fn plan_transformed(
         let segments = plan.trajectory.segments();
         first_met(proxies, segments).is_some() || land::meets(problem.land_obstacle, segments)
     };
-    (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
+    let stays = |plan: &Plan| {
+        let sailed: f64 = plan.trajectory.segments().iter().map(Segment::length).sum();
+        sailed <= tolerance::ARRIVAL_M && problem.desired.comes_by(problem.own.pose.position)
+    };
+    let is_wrong = |plan: &Plan| touches(plan) || stays(plan);
+    (!planned.outcome.plan().is_some_and(is_wrong)).then_some(planned)
 }
 
 /// True where own ship starts at the last waypoint and the path is not a round trip.

@@ -38,8 +38,11 @@ pub(crate) const MAX_STEPS: usize = 40;
 const RESTORATIONS: usize = 3;
 const RESTORABLE_M: f64 = 5.0;
 
-/// Longest turn of one segment variable, radians.
+/// Longest turn of one segment variable, radians: in a step of the programme, and where a step is
+/// restored or corrected. With a small turning radius a step of some metres would be thousands of
+/// turns, each with its closest approaches.
 const LONGEST_ARC: f64 = 2.0;
+const LONGEST_RESTORED_ARC: f64 = std::f64::consts::TAU;
 
 /// Penalty of a missing metre, m²/m. It starts as a multiple of the initial guess's cost, which a
 /// plan changes over some tens of metres. Later it is at least the sum of the multipliers.
@@ -264,7 +267,12 @@ impl Refinement {
                 hessian: &identity,
                 gradient: &[0.0; MAX_VARIABLES],
                 low: &self.least_steps(context, &self.lengths, f64::INFINITY),
-                high: &[LARGEST_RADIUS_M; MAX_VARIABLES],
+                high: &self.largest_steps(
+                    context,
+                    &self.lengths,
+                    LARGEST_RADIUS_M,
+                    LONGEST_RESTORED_ARC,
+                ),
                 rows: &self.model.rows,
                 price: None,
             };
@@ -347,6 +355,19 @@ impl Refinement {
         low.map(|low| low.max(-radius))
     }
 
+    /// Largest change of each length in a trust region: up to an arc of `longest` radians.
+    fn largest_steps(&self, context: &Context, lengths: &Row, radius: f64, longest: f64) -> Row {
+        let longest = longest * context.problem.own.turning_radius;
+        let mut high = [radius; MAX_VARIABLES];
+        let variables = self.structure.variables.iter().zip(lengths);
+        for (high, (variable, length)) in high.iter_mut().zip(variables) {
+            if matches!(variable, SegmentVariable::Arc { .. }) {
+                *high = high.min((longest - length).max(0.0));
+            }
+        }
+        high
+    }
+
     /// Second-order correction: the least change, in the norm of the Hessian, that moves a full
     /// step out of the sets it curves into. Without it, steps along a face are cut to nothing.
     fn corrected(
@@ -363,7 +384,7 @@ impl Refinement {
             hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
             low: &self.least_steps(context, trial_lengths, self.radius),
-            high: &[self.radius; MAX_VARIABLES],
+            high: &self.largest_steps(context, trial_lengths, self.radius, LONGEST_RESTORED_ARC),
             rows: &context.rows(&self.structure, trial),
             price: None,
         };
@@ -379,14 +400,7 @@ impl Refinement {
     fn advance(&mut self, context: &Context) -> bool {
         let n = self.structure.free();
         let low = self.least_steps(context, &self.lengths, self.radius);
-        let mut high = [self.radius; MAX_VARIABLES];
-        let longest = LONGEST_ARC * context.problem.own.turning_radius;
-        let variables = self.structure.variables.iter().zip(&self.lengths);
-        for (high, (variable, length)) in high.iter_mut().zip(variables) {
-            if matches!(variable, SegmentVariable::Arc { .. }) {
-                *high = high.min((longest - length).max(0.0));
-            }
-        }
+        let high = self.largest_steps(context, &self.lengths, self.radius, LONGEST_ARC);
         let mut rows = Vec::with_capacity(self.model.rows.len());
         for row in &self.model.rows {
             let (mut reach, mut least) = (0.0, 0.0);
