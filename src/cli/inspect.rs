@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, bail};
 use searoom::document::{
     InspectionDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument,
 };
-use searoom::recording::{EntityTable, Recorded};
+use searoom::recording::{Checksum, EntityTable, ReadError, Recorded};
 use searoom::report::{
     Display, comparison_table, entities_table, plan_document_text, simulation_text, timelines_text,
 };
@@ -16,12 +16,16 @@ use super::args::InspectArgs;
 use super::output::status::ExitStatus;
 use super::output::{Output, csv};
 use super::runner::guarded;
+use super::verify::RecordedPlans;
 
 /// Maximum number of similar entity names suggested for a missing one.
 const OFFERED: usize = 3;
 
 pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
-    let recorded = read(&args.recording)?;
+    let recorded = read(&args.recording, Recorded::read)?;
+    if recorded.checksum == Checksum::Gone {
+        output.note(&format_args!("{}: {GONE}", args.recording.display()));
+    }
     if args.plan {
         let document = document_of(&recorded, &args.recording)?;
         return Ok(output.print(document.trim_end()));
@@ -37,22 +41,36 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
     }))
 }
 
+/// What is said of a recording that another program wrote again.
+const GONE: &str =
+    "another program wrote the recording again: its checksum is gone, and no byte is checked";
+
 /// Reads a recording. A panic of the decoder counts as an invalid file.
-fn read(path: &Path) -> anyhow::Result<Recorded> {
-    match guarded(|| Recorded::read(path)) {
+fn read<T>(path: &Path, read: fn(&Path) -> Result<T, ReadError>) -> anyhow::Result<T> {
+    match guarded(|| read(path)) {
         // the message already includes its cause
         Ok(read) => read.map_err(|error| anyhow!("{error}")),
         Err(fault) => bail!("{}: damaged: its decoder gave up ({fault})", path.display()),
     }
 }
 
-/// The plan document of a recording, or the kind of one without.
-pub fn plan_document(path: &Path) -> anyhow::Result<Result<String, &'static str>> {
-    let recorded = read(path)?;
-    match other_kind(&recorded) {
-        Some(other) => Ok(Err(other)),
-        None => document_of(&recorded, path).map(Ok),
-    }
+/// The plan documents of the recordings of a file.
+pub fn plan_documents(path: &Path) -> anyhow::Result<RecordedPlans> {
+    let all = read(path, Recorded::read_all)?;
+    let is_gone = all
+        .iter()
+        .any(|recorded| recorded.checksum == Checksum::Gone);
+    let texts = match all.iter().find_map(other_kind) {
+        Some(other) => Err(other),
+        None => {
+            let texts = all.iter().map(|recorded| document_of(recorded, path));
+            Ok(texts.collect::<anyhow::Result<_>>()?)
+        }
+    };
+    Ok(RecordedPlans {
+        texts,
+        note: is_gone.then_some(GONE),
+    })
 }
 
 fn other_kind(recorded: &Recorded) -> Option<&'static str> {
@@ -133,6 +151,7 @@ impl Contents {
             bytes: recorded.bytes,
             application: "searoom",
             rerun_version: recorded.version.clone(),
+            checksum: recorded.checksum.word(),
             scenario: scenario.unwrap_or_default(),
             planner: field("planner"),
             search: field("search"),
@@ -159,14 +178,15 @@ impl Contents {
 
     fn text(&self, display: Display) -> String {
         let mut lines = vec![format!(
-            "{}: {:.0} kB, recorded by {} with Rerun {}",
+            "{}: {:.0} kB, recorded by {} with Rerun {}, checksum {}",
             self.document.file,
             self.document.bytes as f64 / 1e3,
             self.document.application,
             self.document
                 .rerun_version
                 .as_deref()
-                .unwrap_or("of an unknown version")
+                .unwrap_or("of an unknown version"),
+            self.document.checksum
         )];
         lines.push(match (&self.plan, &self.compared, &self.sailed) {
             (Some(plan), _, _) => plan_document_text(plan, display),

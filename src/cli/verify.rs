@@ -51,7 +51,10 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
                 output.note(&format_args!("{name}: {kind}, left out"));
                 continue;
             }
-            Some(Ok(Ok(Checked::Documents(all)))) => {
+            Some(Ok(Ok(Checked::Documents(all, note)))) => {
+                if let Some(note) = note {
+                    output.note(&format_args!("{name}: {note}"));
+                }
                 let mut reached = ExitStatus::Good;
                 for (document, text) in all {
                     if !document.verified {
@@ -98,23 +101,13 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
 }
 
 enum Checked {
-    /// The documents of a file, each with its result as text.
-    Documents(Vec<(VerifiedPlanDocument, String)>),
+    /// The documents of a file, each with its result as text, and what there is to note.
+    Documents(Vec<(VerifiedPlanDocument, String)>, Option<&'static str>),
     /// The kind of a file in a folder that has none.
     Other(&'static str),
 }
 
 fn one(file: &Path, in_folder: bool, is_alone: bool, display: Display) -> anyhow::Result<Checked> {
-    let text = if file.extension().is_some_and(|ending| ending == "rrd") {
-        match recorded(file)? {
-            Ok(text) => text,
-            Err(other) if in_folder => return Ok(Checked::Other(other)),
-            Err(other) => bail!("{other}; `searoom inspect --json` prints its own"),
-        }
-    } else {
-        // the message already includes its source
-        files::text(file, PLAN_MEBIBYTES, "a plan document").map_err(|error| anyhow!("{error}"))?
-    };
     let name = || files::name(file).display().to_string();
     let plan = |plan: &Verification| {
         let document = VerifiedPlanDocument::of(name(), plan);
@@ -128,6 +121,24 @@ fn one(file: &Path, in_folder: bool, is_alone: bool, display: Display) -> anyhow
         let document = VerifiedPlanDocument::of_simulation(name(), sailed);
         (document, simulation_verification_text(sailed))
     };
+    if file.extension().is_some_and(|ending| ending == "rrd") {
+        let recorded = recorded(file)?;
+        return match recorded.texts {
+            Ok(texts) => {
+                let checked = texts
+                    .iter()
+                    .map(|text| check(text).map(|checked| plan(&checked)));
+                let checked = checked.collect::<Result<_, _>>();
+                let checked = checked.map_err(|error| anyhow!("{error}"))?;
+                Ok(Checked::Documents(checked, recorded.note))
+            }
+            Err(other) if in_folder => Ok(Checked::Other(other)),
+            Err(other) => bail!("{other}; `searoom inspect --json` prints its own"),
+        };
+    }
+    // the message already includes its source
+    let text = files::text(file, PLAN_MEBIBYTES, "a plan document");
+    let text = text.map_err(|error| anyhow!("{error}"))?;
     let checked = if is_simulation(&text) {
         verify_simulations(&text).map(|all| all.iter().map(simulation).collect())
     } else if let Some(other) = other(&text).filter(|_| in_folder) {
@@ -137,7 +148,7 @@ fn one(file: &Path, in_folder: bool, is_alone: bool, display: Display) -> anyhow
     };
     // the message already includes its field
     let checked = checked.map_err(|error| anyhow!("{error}"))?;
-    Ok(Checked::Documents(checked))
+    Ok(Checked::Documents(checked, None))
 }
 
 /// The kind of a known text that is no plan document.
@@ -149,16 +160,21 @@ fn other(text: &str) -> Option<&'static str> {
     }
 }
 
-/// The plan document of a recording, or the kind of one without.
-type Recorded = Result<String, &'static str>;
+/// What a recording holds for this command.
+pub struct RecordedPlans {
+    /// The plan documents, or the kind of a recording without.
+    pub texts: Result<Vec<String>, &'static str>,
+    /// What there is to note.
+    pub note: Option<&'static str>,
+}
 
 #[cfg(feature = "recording")]
-fn recorded(file: &Path) -> anyhow::Result<Recorded> {
-    super::inspect::plan_document(file)
+fn recorded(file: &Path) -> anyhow::Result<RecordedPlans> {
+    super::inspect::plan_documents(file)
 }
 
 #[cfg(not(feature = "recording"))]
-fn recorded(_: &Path) -> anyhow::Result<Recorded> {
+fn recorded(_: &Path) -> anyhow::Result<RecordedPlans> {
     Err(anyhow!(
         "a recording; this program was built without recordings"
     ))

@@ -54,6 +54,8 @@ pub struct InspectionDocument {
     pub bytes: u64,
     pub application: &'static str,
     pub rerun_version: Option<String>,
+    /// `"valid"`, or `"gone"` where another program wrote the recording again.
+    pub checksum: &'static str,
     /// Fields from the plan document; null without one.
     #[schemars(with = "Option<String>")]
     pub scenario: Value,

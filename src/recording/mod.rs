@@ -21,7 +21,7 @@ mod read;
 mod views;
 mod write;
 
-pub use read::{EntityRow, EntityTable, ReadError, Recorded, is_recording};
+pub use read::{Checksum, EntityRow, EntityTable, ReadError, Recorded, is_recording};
 pub use write::{Compared, RecordingError, Simulated, write, write_comparison, write_simulation};
 
 use rerun::{EntityPath, EntityPathPart, RecordingStreamResult};

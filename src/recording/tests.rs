@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use rerun::external::re_log_types::StoreId;
+use rerun::external::re_entity_db::EntityDb;
+use rerun::external::re_log_encoding::{DecoderApp, Encoder};
+use rerun::external::re_log_types::{LogMsg, StoreId, StoreKind};
 use rerun::{ChunkStore, ChunkStoreConfig};
 
 use super::canvas::{Canvas, ViewModel, covered};
@@ -257,6 +259,162 @@ fn a_scenario_with_an_origin_is_recorded_on_the_earth() {
     let elsewhere = recorded_run(&self::run());
     let on_earth = |e: &EntityContents| e.path.contains("geographic");
     assert!(!elsewhere.entities().iter().any(on_earth));
+}
+
+fn messages(bytes: &[u8]) -> Vec<LogMsg> {
+    let messages = DecoderApp::decode_eager(bytes).expect("decodes");
+    messages.map(|message| message.expect("decodes")).collect()
+}
+
+fn encoded(messages: impl IntoIterator<Item = LogMsg>) -> Vec<u8> {
+    Encoder::encode(messages.into_iter().map(Ok)).expect("encodes")
+}
+
+/// The stores of a file, as `rerun rrd merge` writes them: it activates every layout, and the order
+/// of the stores is that of a hash map, so each is the last once.
+fn merged(bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut stores: Vec<EntityDb> = Vec::new();
+    for message in messages(bytes) {
+        let of_store = |store: &EntityDb| store.store_id() == message.store_id();
+        let place = stores.iter().position(of_store).unwrap_or_else(|| {
+            stores.push(EntityDb::new(message.store_id().clone()));
+            stores.len() - 1
+        });
+        stores[place].add_log_msg(&message).expect("added");
+    }
+    let in_order = |stores: &[EntityDb]| {
+        let all = stores.iter().flat_map(|store| store.to_messages(None));
+        encoded(all.map(|message| message.expect("a message")))
+    };
+    let number = stores.len();
+    let orders = (0..number).map(|_| {
+        stores.rotate_left(1);
+        in_order(&stores)
+    });
+    orders.collect()
+}
+
+/// The bytes of a recording of [`run`], and its plan document.
+fn written() -> (Vec<u8>, String) {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("run.rrd");
+    write_run(&run(), &path).expect("writes");
+    let document = Recorded::read(&path).expect("whole").document();
+    let bytes = std::fs::read(path).expect("written");
+    (bytes, document.expect("a plan"))
+}
+
+fn read_again(bytes: &[u8]) -> Result<Recorded, ReadError> {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("again.rrd");
+    std::fs::write(&path, bytes).expect("written");
+    Recorded::read(&path)
+}
+
+#[test]
+fn a_recording_keeps_its_layout_and_its_plan_when_rerun_writes_it_again() {
+    let (bytes, document) = written();
+    assert!(read_again(&bytes).is_ok_and(|whole| whole.checksum == Checksum::Valid));
+    let orders = merged(&bytes);
+    assert_eq!(orders.len(), 2, "the recording and its layout");
+    for again in orders {
+        let activated: Vec<StoreId> = (messages(&again).into_iter())
+            .filter_map(|message| match message {
+                LogMsg::BlueprintActivationCommand(command) => Some(command.blueprint_id),
+                _ => None,
+            })
+            .collect();
+        let [layout] = &activated[..] else {
+            panic!("{activated:?}")
+        };
+        let is_layout = layout.recording_id().as_str().starts_with("layout_");
+        assert!(is_layout, "{layout:?}");
+        let read = read_again(&again).expect("whole");
+        assert_eq!(read.checksum, Checksum::Gone);
+        assert_eq!(read.document().as_deref(), Some(&*document));
+
+        // a cut, a longer file and another length of a message are seen
+        let broken = |bytes: &[u8]| matches!(read_again(bytes), Err(ReadError::Broken { .. }));
+        for part in 1..8 {
+            let at = again.len() * part / 8;
+            assert!(broken(&again[..at]), "cut at {at}");
+            let longer = [&again[..at], b"0", &again[at..]].concat();
+            assert!(broken(&longer), "a byte more at {at}");
+        }
+        assert!(broken(&[&again[..], &bytes].concat()));
+        let mut lengthened = again.clone();
+        lengthened[12 + 8] ^= 1;
+        assert!(broken(&lengthened), "the length of the first message");
+    }
+}
+
+#[test]
+fn two_recordings_in_one_file_are_read_one_by_one() {
+    let (bytes, document) = written();
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("two.rrd");
+    let mut other = run_without_plan();
+    other.scenario.title = "Another".to_owned();
+    write_run(&other, &path).expect("writes");
+    let both = [
+        messages(&bytes),
+        messages(&std::fs::read(&path).expect("read")),
+    ]
+    .concat();
+    std::fs::write(&path, encoded(both)).expect("written");
+    let error = Recorded::read(&path).expect_err("two");
+    assert!(error.to_string().contains("2 recordings"), "{error}");
+    let all = Recorded::read_all(&path).expect("whole");
+    let documents: Vec<Option<String>> = all.iter().map(Recorded::document).collect();
+    assert!(documents.contains(&Some(document)), "{documents:?}");
+    assert_ne!(documents[0], documents[1]);
+    assert!(all.iter().all(|one| one.checksum == Checksum::Gone));
+}
+
+/// Earlier versions kept the checksum in the name of an empty layout.
+#[test]
+fn a_recording_of_an_earlier_version_is_read() {
+    let (bytes, document) = written();
+    let name = format!("checksum_{:016}", 0);
+    let seal = checksum::opening(StoreId::new(StoreKind::Blueprint, APPLICATION, name));
+    let mut all = messages(&bytes);
+    all[0] = checksum::opening(all[0].store_id().clone());
+    let mut earlier = encoded([seal].into_iter().chain(all));
+    checksum::seal(&mut earlier);
+    let read = read_again(&earlier).expect("whole");
+    assert_eq!(read.checksum, Checksum::Valid);
+    assert_eq!(read.document().as_deref(), Some(&*document));
+    let middle = earlier.len() / 2;
+    let mut damaged = earlier.clone();
+    damaged[middle] ^= 1;
+    assert!(read_again(&damaged).is_err());
+    for again in merged(&earlier) {
+        let read = read_again(&again).expect("whole");
+        assert_eq!(read.checksum, Checksum::Gone);
+        assert_eq!(read.document().as_deref(), Some(&*document));
+    }
+}
+
+#[test]
+fn recordings_of_other_programs_are_refused() {
+    let (bytes, _) = written();
+    let named = |message: LogMsg| match message {
+        LogMsg::ArrowMsg(store, message) => {
+            let name = store.recording_id().to_string();
+            LogMsg::ArrowMsg(StoreId::new(store.kind(), "other", name), message)
+        }
+        message => {
+            let store = message.store_id();
+            let name = store.recording_id().to_string();
+            checksum::opening(StoreId::new(store.kind(), "other", name))
+        }
+    };
+    let other = encoded(messages(&bytes).into_iter().map(named));
+    let error = read_again(&other).expect_err("another program's");
+    assert!(
+        error.to_string().contains("no recording of Searoom"),
+        "{error}"
+    );
 }
 
 #[test]

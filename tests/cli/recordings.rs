@@ -214,6 +214,37 @@ fn what_is_no_whole_recording_is_said_to_be_so() {
     );
 }
 
+/// As `rerun rrd filter` writes it: the messages of the recording alone, in other bytes.
+#[test]
+fn a_recording_that_another_program_wrote_again_is_read_with_a_note() {
+    use rerun::external::re_log_encoding::{DecoderApp, Encoder};
+    let folder = Folder::new();
+    let (file, plan) = recorded(&folder, "a.rrd", HEAD_ON_FILE);
+    let said = stdout(&searoom(&["inspect", &file]).success());
+    says(&said, "checksum valid");
+    assert_eq!(json(&format!("inspect --json {file}"))["checksum"], "valid");
+    let bytes = fs::read(&file).expect("a recording");
+    let messages = DecoderApp::decode_eager(&bytes[..]).expect("decodes");
+    let messages = messages.map(|message| message.expect("decodes"));
+    let kept = messages.filter(|message| message.store_id().is_recording());
+    let again = folder.at("again.rrd");
+    fs::write(&again, Encoder::encode(kept.map(Ok)).expect("encodes")).expect("written");
+    let note = "its checksum is gone";
+    let inspected = searoom(&["inspect", &again])
+        .success()
+        .stderr(contains(note));
+    says(&stdout(&inspected), "checksum gone | Head-on: solved");
+    assert_eq!(json(&format!("inspect --json {again}"))["checksum"], "gone");
+    let printed = searoom(&["inspect", "--plan", &again]).success();
+    assert_eq!(stdout(&printed.stderr(contains(note))), plan);
+    let verified = searoom(&["verify", &again])
+        .success()
+        .stderr(contains(note));
+    says(&stdout(&verified), "Head-on: verified, safe");
+    let whole = searoom(&["verify", &file]).success();
+    whole.stderr(is_empty());
+}
+
 #[test]
 fn recordings_are_named_after_their_scenarios() {
     let folder = Folder::new();

@@ -282,6 +282,7 @@ fn a_ship_that_is_met_at_rest_is_warned() {
         assert!(!said.contains("met at rest"), "{said}");
     }
 }
+
 /// At the size at which it is planned this trip is shorter than the tolerance of an arrival, but own
 /// ship has not arrived.
 #[test]

@@ -1,8 +1,10 @@
 //! Reads a recording back, offline and whole.
 
+mod frames;
 mod table;
 mod values;
 
+pub use super::checksum::Checksum;
 pub use table::{EntityRow, EntityTable};
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,8 +14,8 @@ use std::path::{Path, PathBuf};
 use rerun::external::re_log_encoding::{DecoderApp, RRD_FOURCC, StreamHeader};
 use rerun::log::{Chunk, LogMsg};
 
-use super::checksum::is_sealed;
-use super::{COMPARISON, DOCUMENT, SIMULATION, TIMELINE};
+use super::checksum::checksum_of;
+use super::{APPLICATION, COMPARISON, DOCUMENT, SIMULATION, TIMELINE};
 use crate::document::{EntityContents, TimelineContents};
 
 /// Longest file that is read: 1 GiB. The whole file is held in memory.
@@ -50,6 +52,8 @@ pub struct Recorded {
     pub version: Option<String>,
     /// Size of the file.
     pub bytes: u64,
+    /// Whether the bytes of the file are those that Searoom wrote.
+    pub checksum: Checksum,
     /// The chunks of each entity, by its path.
     chunks: BTreeMap<String, Vec<Chunk>>,
 }
@@ -60,15 +64,17 @@ pub fn is_recording(bytes: &[u8]) -> bool {
 }
 
 impl Recorded {
-    /// Reads a file. Anything but a whole recording of Searoom is an error. O(bytes).
+    /// Reads a file with one recording. Anything but a whole recording of Searoom is an error, and so
+    /// are several. O(bytes).
     ///
     /// The checksum is tested before Rerun decodes anything. A damaged file therefore costs the
-    /// memory of its bytes, and no length in it is believed.
+    /// memory of its bytes, and no length in it is believed. Where [`Self::checksum`] is gone, only
+    /// the frames of the file and the sizes of its unpacked messages are tested.
     ///
     /// # Panics
     ///
     /// Rerun's decoder may panic, or run out of memory, where a file was crafted on purpose and has
-    /// the right checksum.
+    /// the right checksum, or was damaged after another program had written it again.
     ///
     /// # Examples
     ///
@@ -79,6 +85,22 @@ impl Recorded {
     /// assert!(matches!(error, ReadError::Broken { .. }));
     /// ```
     pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let mut all = Self::read_all(path)?;
+        match (all.pop(), all.len()) {
+            (Some(one), 0) => Ok(one),
+            (_, others) => Err(ReadError::Broken {
+                path: path.to_owned(),
+                reason: format!(
+                    "{} recordings in one file; name the files that it was made from",
+                    others + 1
+                ),
+            }),
+        }
+    }
+
+    /// Reads the recordings of a file, at least one, in the order of their names; see
+    /// [`Self::read`]. `rerun rrd merge` makes files with several.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, ReadError> {
         let broken = |reason: String| ReadError::Broken {
             path: path.to_owned(),
             reason,
@@ -87,34 +109,44 @@ impl Recorded {
             path: path.to_owned(),
             source,
         })?;
-        if let Some(reason) = fault(&bytes) {
-            return Err(broken(reason.to_owned()));
+        let checksum = tested(&bytes).map_err(|reason| broken(reason.to_owned()))?;
+        let all = Self::decode(&bytes, checksum)
+            .map_err(|reason| broken(format!("damaged: {reason}")))?;
+        match all.is_empty() {
+            true => Err(broken("no recording of Searoom in it".to_owned())),
+            false => Ok(all),
         }
-        Self::decode(&bytes).map_err(|reason| broken(format!("damaged: {reason}")))
     }
 
-    fn decode(bytes: &[u8]) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut chunks: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
-        let mut version = None;
+    fn decode(bytes: &[u8], checksum: Checksum) -> Result<Vec<Self>, Box<dyn std::error::Error>> {
+        let mut all: BTreeMap<String, Self> = BTreeMap::new();
         for message in DecoderApp::decode_eager(bytes)? {
-            match message? {
-                LogMsg::SetStoreInfo(opened) if opened.info.store_id.is_recording() => {
-                    version = opened.info.store_version.map(|v| v.to_string());
+            let message = message?;
+            let store = message.store_id();
+            if !store.is_recording() || store.application_id().as_str() != APPLICATION {
+                // a layout, or another program's
+                continue;
+            }
+            let name = store.recording_id().to_string();
+            let recorded = all.entry(name).or_insert_with(|| Self {
+                version: None,
+                bytes: bytes.len() as u64,
+                checksum,
+                chunks: BTreeMap::new(),
+            });
+            match message {
+                LogMsg::SetStoreInfo(opened) => {
+                    recorded.version = opened.info.store_version.map(|v| v.to_string());
                 }
-                LogMsg::ArrowMsg(store, message) if store.is_recording() => {
+                LogMsg::ArrowMsg(_, message) => {
                     let chunk = Chunk::from_arrow_msg(&message)?;
                     let path = chunk.entity_path().to_string();
-                    chunks.entry(path).or_default().push(chunk);
+                    recorded.chunks.entry(path).or_default().push(chunk);
                 }
-                // the layout
-                _ => {}
+                LogMsg::BlueprintActivationCommand(_) => {}
             }
         }
-        Ok(Self {
-            version,
-            bytes: bytes.len() as u64,
-            chunks,
-        })
+        Ok(all.into_values().collect())
     }
 
     /// The plan document as `plan --json` wrote it; `None` in a recording without one.
@@ -171,21 +203,19 @@ fn file_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Why a file cannot be a whole recording; nothing of it is decoded.
-fn fault(bytes: &[u8]) -> Option<&'static str> {
+/// The state of a file that can be a whole recording, or why it cannot; nothing of it is decoded.
+fn tested(bytes: &[u8]) -> Result<Checksum, &'static str> {
     if bytes.is_empty() {
-        return Some("an empty file");
+        return Err("an empty file");
     }
     if !is_recording(bytes) {
-        return Some("no Rerun recording: it does not begin with RRF2");
+        return Err("no Rerun recording: it does not begin with RRF2");
     }
     if bytes.len() as u64 > FILE_BYTES {
-        return Some("more than 1 GiB");
+        return Err("more than 1 GiB");
     }
-    let sealed = is_sealed(bytes);
-    (!sealed).then_some(
-        "cut off, damaged, or rewritten by another program: its checksum is missing or wrong",
-    )
+    checksum_of(bytes, frames::are_whole)
+        .ok_or("cut off, damaged, or without an end: its checksum is missing or wrong")
 }
 
 fn contents(path: &str, chunks: &[Chunk]) -> EntityContents {

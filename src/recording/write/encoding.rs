@@ -27,16 +27,20 @@ pub fn encode(recording: Recorder, layout: Recorder) -> Result<Vec<u8>, Failure>
         make_active: true,
         make_default: true,
     };
-    let all = std::iter::once(Ok(unsealed()))
+    let all = std::iter::once(Ok(unsealed(recording_id.clone())))
         .chain(messages(&layout_id, &layout))
         .chain([Ok(activation.into())])
-        .chain(messages(&recording_id, &recording));
+        .chain(data(&recording_id, &recording));
     let mut bytes = Encoder::encode(all)?;
     seal(&mut bytes);
     Ok(bytes)
 }
 
 fn messages(store: &StoreId, chunks: &[Chunk]) -> impl Iterator<Item = ChunkResult<LogMsg>> {
+    std::iter::once(Ok(opening(store.clone()))).chain(data(store, chunks))
+}
+
+fn data(store: &StoreId, chunks: &[Chunk]) -> impl Iterator<Item = ChunkResult<LogMsg>> {
     let message = |chunk: &Chunk| Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?));
-    std::iter::once(Ok(opening(store.clone()))).chain(chunks.iter().map(message))
+    chunks.iter().map(message)
 }
