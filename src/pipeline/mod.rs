@@ -253,6 +253,8 @@ fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
         ) => Some(target.as_str()),
         _ => None,
     };
+    // land may be met first
+    let barring = barring.filter(|name| answer.whole.iter().any(|set| set.name() == *name));
     let entered = answer.whole.iter().zip(&answer.released);
     let mut names = barring.into_iter().chain(
         entered

@@ -58,8 +58,8 @@ pub enum RelaxationLevel {
     Domains,
     /// Clear of the hard sets and of reduced ship domains.
     ReducedDomains,
-    /// Clear of the hard sets and of reduced domains, without arriving. Along paths the motion ends
-    /// at the horizon; else before the sets that cover the last waypoint.
+    /// Clear of the hard sets and of reduced domains, without arriving. The motion ends at the
+    /// horizon, or before the sets that cover the last waypoint.
     Waiting,
     /// Clear of the level sets of the least risk for which a plan was found.
     Risk,
@@ -176,8 +176,8 @@ impl Relaxer<'_> {
         Self::remainder,
         Self::clear_of_hard_sets,
         Self::around_hard_sets,
-        Self::waiting,
         Self::short_of_end,
+        Self::waiting,
         Self::remainder_on_the_way,
         Self::at_least_risk,
     ];
@@ -498,10 +498,10 @@ impl Relaxer<'_> {
         Some(self.with_larger_domains(self.clear_of(&found, &retained, level), &retained))
     }
 
-    /// [`RelaxationLevel::Waiting`]: a motion along paths that does not arrive in time, clear of
-    /// the hard sets and of as much of the domains as was found.
+    /// [`RelaxationLevel::Waiting`]: a motion that does not arrive in time, clear of the hard sets
+    /// and of as much of the domains as was found.
     fn waiting(&self, with_domain: bool) -> Option<Attempt> {
-        if !self.follows_paths() {
+        if self.is_infeasible_alone() {
             return None;
         }
         let (level, risk) = (RelaxationLevel::Waiting, self.scenario.max_risk);
@@ -573,8 +573,8 @@ impl Relaxer<'_> {
             };
             let answer = self.of(&short, self.sets).answer_of_one_search();
             late |= matches!(answer.planned.outcome, Outcome::Deadline(_));
-            let keeps = answer.level < RelaxationLevel::Risk && answer.trajectory().is_some();
-            keeps.then_some(answer)
+            let arrives = answer.level < RelaxationLevel::Waiting;
+            (arrives && answer.trajectory().is_some()).then_some(answer)
         });
         if late {
             self.is_cut_short.set(true);
@@ -664,10 +664,9 @@ impl Relaxer<'_> {
         let is_up = || self.time_left().is_zero();
         let found = self.scenario.planner.leaving_sets(&problem, &nominal);
         let found = found.and_then(|planned| Some((planned.outcome.plan()?.clone(), planned)));
+        let found = found.filter(|(plan, _)| plan.arrives() || !self.is_infeasible_alone());
         let Some((plan, planned)) = found else {
-            // the sets are not the reason where there is no plan without any
-            let alone = self.of(self.scenario, &[]);
-            let alone = alone.attempt(RelaxationLevel::Compliant, &[], 0.0);
+            let alone = self.alone();
             return match is_up() {
                 _ if alone.is_infeasible() => Attempt {
                     planned: alone.planned,
@@ -710,6 +709,18 @@ impl Relaxer<'_> {
             },
             why: attempt.why,
         }
+    }
+
+    /// The plan without any set.
+    fn alone(&self) -> Attempt {
+        let alone = self.of(self.scenario, &[]);
+        alone.attempt(RelaxationLevel::Compliant, &[], 0.0)
+    }
+
+    /// True where the sets are not the reason, as there is no plan without any. Along paths there is
+    /// one wherever the horizon is long enough.
+    fn is_infeasible_alone(&self) -> bool {
+        !self.follows_paths() && self.alone().is_infeasible()
     }
 
     /// The only level below the first for a planner that relaxes domains only: the hard sets.

@@ -54,7 +54,7 @@ pub struct PlanRequest<'a> {
     pub whole: &'a [Obstacle],
     /// Accepted risk, in `[0, 1)`.
     pub max_risk: f64,
-    /// True where the motion need not arrive. Asked of planners that follow paths only.
+    /// True where the motion need not arrive. If it does not, it lasts until the horizon.
     pub may_wait: bool,
     /// Settings of the planners that have some.
     pub settings: &'a PlannerSettings,

@@ -28,6 +28,9 @@ pub enum PlanMethod {
     Remainder,
     /// Escape with the least harm from sets that own ship is in.
     LeastHarm,
+    /// Own ship slows or waits on its route, short of the sets: dynamic programming over its length
+    /// and time, without a graph.
+    Waiting,
     /// Own ship stays where it is.
     Stay,
 }
@@ -43,6 +46,7 @@ words!(PlanMethod {
     OptimalControl => "optimal-control",
     Remainder => "remainder",
     LeastHarm => "least-harm",
+    Waiting => "waiting",
     Stay => "stay",
 });
 
@@ -69,6 +73,7 @@ impl PlanMethod {
             Self::OptimalControl => "optimal control",
             Self::Remainder => "remainder of the last plan",
             Self::LeastHarm => "escape with the least harm",
+            Self::Waiting => "waits on its route",
             Self::Stay => "stays in place",
         }
     }
@@ -86,7 +91,11 @@ impl PlanMethod {
     /// of the plan may come from a search.
     pub(crate) fn has_statistics(self) -> Option<bool> {
         match self {
-            Self::Rules | Self::OptimalControl | Self::Remainder | Self::Stay => Some(false),
+            Self::Rules
+            | Self::OptimalControl
+            | Self::Remainder
+            | Self::Waiting
+            | Self::Stay => Some(false),
             Self::LeastHarm => None,
             Self::AStar
             | Self::Dijkstra

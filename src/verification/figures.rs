@@ -191,8 +191,8 @@ fn shape_rounding(target: &Target, time: f64) -> f64 {
 
 /// Checks the remaining distance of a plan that does not arrive. Along a single path it is the part
 /// of the path that was not covered, on a network at least the straight distance. Off paths it is
-/// that from the nearest point of the path, and at no risk a set is over the last waypoint at the
-/// horizon.
+/// that from the nearest point of the path. There the plan lasts until the horizon, or at no risk a
+/// set is over the last waypoint at the horizon.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let mut relaxation = claim.file.relaxations.iter();
     let given_up = relaxation.find(|r| r.kind == ARRIVAL)?;
@@ -222,9 +222,12 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
         .memory
         .as_ref()
         .is_some_and(|memory| memory.keeps_plan);
+    let stops = segments.last()?.end_time();
+    let lasts = (horizon - stops).abs() <= tolerance::TIME_S * (1.0 + horizon);
     // the sets of a risk are smaller than those that are over it
-    if claim.paths.is_none() && claim.file.max_risk == 0.0 && !is_kept && !sets.any(covers) {
-        let so = "a target whose set is over the last waypoint at the horizon";
+    let is_judged = claim.paths.is_none() && claim.file.max_risk == 0.0 && !is_kept && !lasts;
+    if is_judged && !sets.any(covers) {
+        let so = "a target whose set is over the last waypoint at the horizon, where the plan ends";
         return Some(mismatch(
             "relaxation of arrival, target",
             &given_up.target,

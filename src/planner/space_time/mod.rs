@@ -42,6 +42,7 @@ use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use covered_end::end_covered;
+use fallback::waiting::waiting;
 use fallback::{hybrid_a_star, sequential};
 use graph::Graph;
 use graph::node::{self, State};
@@ -81,7 +82,11 @@ impl Planner for SpaceTimePlanner {
     }
 
     fn plan(&self, request: &PlanRequest) -> Planned {
-        plan(&request.problem)
+        let problem = &request.problem;
+        match request.may_wait {
+            true => waiting(problem, Clock::new(problem.deadline)),
+            false => plan(problem),
+        }
     }
 
     fn warm_started(&self, problem: &Problem, from: &Trajectory) -> Option<Outcome> {

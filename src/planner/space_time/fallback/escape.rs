@@ -6,7 +6,8 @@
 //!
 //! An exit is one turn and a straight line at one speed. The exit with the least [`Harm`] is taken.
 //! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
-//! instead.
+//! instead. Where such a motion still does more harm than one that stops, or slows down, on the
+//! route, own ship does not go on to its end.
 
 use std::cell::Cell;
 
@@ -14,7 +15,8 @@ use crate::frame::{Pose, Side, Vector};
 use crate::numerics::bisected;
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls, depth_step};
+use crate::planner::space_time::fallback::harm::{Harm, NominalHulls, depth_step};
+use crate::planner::space_time::fallback::waiting::{Way, beside, nearest_speed, unfinished};
 use crate::planner::space_time::land;
 use crate::planner::space_time::motion::{part, pose_at, until};
 use crate::planner::space_time::piece::pieces as parts_of;
@@ -59,9 +61,10 @@ const MIN_COMPARED: usize = 12;
 /// starts in.
 ///
 /// The motion leaves the sets with the least harm by one turn at one speed. A plan that is clear of
-/// every set follows. Where none is found, the path follows at one speed. `None` where the sailable
-/// path is too long for the horizon or leads onto land. The caller determines from when on the
-/// motion is clear of which sets.
+/// every set follows. Where none is found, the path follows at one speed, or a path beside it. Where
+/// all this meets a nominal hull, or own ship is in no set, it may also slow down or stop on its
+/// route until the horizon. `None` where the sailable path is too long for the horizon or leads onto
+/// land. The caller determines from when on the motion is clear of which sets.
 ///
 /// Cost: some milliseconds and up to forty plans. A few motions are compared even after the
 /// deadline.
@@ -96,7 +99,24 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
             leaving = (&nominal, exits);
         }
     }
-    let (leaving, exits) = leaving;
+    let (leaving, mut exits) = leaving;
+    let last_resort = LastResort {
+        problem,
+        proxies: &proxies,
+        nominal_hulls: &nominal_hulls,
+        clock,
+    };
+    match exits.first().map(|exit| exit.harm) {
+        // a plan that follows is not worth a hull
+        Some(harm) if harm.is_clear() => exits.retain(|exit| exit.harm.is_clear()),
+        Some(harm) => {
+            if let Some(slowed) = last_resort.slowed(harm) {
+                let plan = unfinished(problem, slowed, PlanMethod::LeastHarm)?;
+                return Some(Planned::of(Outcome::Solved(plan)));
+            }
+        }
+        None => {}
+    }
     let mut exit_motions = exit_motions(&exits);
     let measured = |motion| Plan::measured(problem, motion, PlanMethod::LeastHarm);
     for beginning in &exit_motions {
@@ -116,64 +136,121 @@ pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Pla
             });
         }
     }
-    if exits.is_empty() {
-        exit_motions.extend(evasive_turns(problem.own, problem.horizon));
-    } else {
+    if !exits.is_empty() {
         // used where every exit is too long for the horizon
         exit_motions.push(Vec::new());
     }
-    let motion = continue_to_end(problem, &exit_motions, &nominal_hulls, clock)?;
-    Some(Planned::of(Outcome::Solved(measured(motion)?)))
+    let motion = last_resort.motion(&exit_motions, exits.is_empty())?;
+    let plan = unfinished(problem, motion, PlanMethod::LeastHarm)?;
+    Some(Planned::of(Outcome::Solved(plan)))
 }
 
-/// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
-/// the first that meets no nominal hull, or else the one with the least depth in one.
-fn continue_to_end(
-    problem: &Problem,
-    exit_motions: &[Vec<Segment>],
-    nominal_hulls: &NominalHulls,
+/// Motions that are compared by their harm where no plan follows.
+struct LastResort<'a> {
+    problem: &'a Problem<'a>,
+    proxies: &'a [Proxy<'a>],
+    nominal_hulls: &'a NominalHulls<'a>,
     clock: Clock,
-) -> Option<Vec<Segment>> {
-    let problem = &Problem {
-        obstacles: &[],
-        ..problem.clone()
-    };
-    let mut best: Option<(f64, Vec<Segment>)> = None;
-    let ends = exit_motions
-        .iter()
-        .flat_map(|beginning| [(beginning, false), (beginning, true)]);
-    for (compared, (beginning, straight)) in ends.enumerate() {
-        if clock.is_up() && compared >= MIN_COMPARED && best.is_some() {
-            break;
-        }
-        let found = append(problem, beginning, |rest| {
-            path_motion(rest, straight, clock)
-        });
-        let Some(found) = found else {
-            continue;
+}
+
+impl LastResort<'_> {
+    /// The motion with the least harm of those that go on from the beginnings along the path, or
+    /// straight to its end, and of those that slow down. Of motions with the same harm the first.
+    ///
+    /// Where own ship `is_outside`, paths beside the desired one are tried as well, and turns where
+    /// all of them meet a nominal hull. Else the first motion that meets none is taken.
+    fn motion(&self, beginnings: &[Vec<Segment>], is_outside: bool) -> Option<Vec<Segment>> {
+        let (clock, own) = (self.clock, self.problem.own);
+        let alone = &Problem {
+            obstacles: &[],
+            ..self.problem.clone()
         };
-        let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);
-        if best
-            .as_ref()
-            .is_none_or(|(least, _)| deep < least - LEAST_STEP_M)
-        {
-            best = Some((deep, found));
+        let continued = |beginning: &Vec<Segment>| {
+            [false, true]
+                .map(|straight| append(alone, beginning, |rest| path_motion(rest, straight, clock)))
+        };
+        let mut best = None;
+        let on = beginnings.iter().flat_map(continued).flatten();
+        self.improve(&mut best, on, !is_outside);
+        if is_outside {
+            let aside = beside(self.problem).filter_map(|desired| {
+                let along = Problem {
+                    desired: &desired,
+                    ..alone.clone()
+                };
+                path_motion(&along, false, clock)
+            });
+            self.improve(&mut best, aside, false);
+            let turns = evasive_turns(own, self.problem.horizon);
+            self.improve(&mut best, turns.iter().flat_map(continued).flatten(), true);
         }
-        if deep == 0.0 {
-            break;
+        let (harm, motion) = best?;
+        match is_outside || !harm.is_clear() {
+            true => self.slowed(harm).or(Some(motion)),
+            false => Some(motion),
         }
     }
-    best.map(|(_, motion)| motion)
+
+    /// Replaces the best motion by each that does less harm; the first that meets no hull is the
+    /// last where that `is_enough`.
+    fn improve(
+        &self,
+        best: &mut Option<(Harm, Vec<Segment>)>,
+        motions: impl Iterator<Item = Vec<Segment>>,
+        is_enough: bool,
+    ) {
+        let is_over = |best: &Option<(Harm, Vec<Segment>)>| {
+            is_enough && best.as_ref().is_some_and(|(harm, _)| harm.is_clear())
+        };
+        if is_over(best) {
+            return;
+        }
+        for (compared, motion) in motions.enumerate() {
+            let harm = self.harm(&motion);
+            let is_less = |least: &Harm| harm.depth_cmp(least).is_lt();
+            if best.as_ref().is_none_or(|(least, _)| is_less(least)) {
+                *best = Some((harm, motion));
+            }
+            if is_over(best) || self.clock.is_up() && compared + 1 >= MIN_COMPARED {
+                break;
+            }
+        }
+    }
+
+    /// The motion with the least harm that slows down or stops on the route, if that is less than
+    /// `most`. Once the time is up, only the one that slows at once is compared.
+    fn slowed(&self, most: Harm) -> Option<Vec<Segment>> {
+        let way = Way::of(self.problem, self.problem.desired, self.clock)?;
+        let (mut least, mut best) = (most, None);
+        for motion in way.slowing() {
+            let harm = self.harm(&motion);
+            if harm.depth_cmp(&least).is_lt() {
+                (least, best) = (harm, Some(motion));
+            }
+            if self.clock.is_up() {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Harm of a whole motion.
+    fn harm(&self, motion: &[Segment]) -> Harm {
+        let depth = |pose: &Pose, time: f64| {
+            let slacks = self.proxies.iter();
+            let slacks = slacks.filter_map(|h| h.slack(pose.position, time));
+            0.0 - slacks.fold(0.0, f64::min)
+        };
+        let end = motion.last().map_or(0.0, Segment::end_time);
+        Harm::of(self.problem.own, self.nominal_hulls, motion, end, depth)
+    }
 }
 
 /// Motion along the path, or straight to its end, at one speed: the speed nearest to the desired
 /// one, or the greatest where the horizon requires it. `None` where it meets land.
 fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
-    let mean = desired.length() / desired.duration();
-    let nearest = own
-        .moving_speeds()
-        .min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
+    let nearest = nearest_speed(problem)?;
     let direct = [own.pose.position, desired.end()];
     let direct = DesiredTrajectory::new(&direct, &[nearest]).ok();
     let desired = if straight { direct.as_ref()? } else { desired };
@@ -301,7 +378,7 @@ fn candidates(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>)
     };
     let soonest = first.out;
     let nearest = nominal_hulls.nearest(own, &first.motion, soonest, f64::INFINITY);
-    let nearest = nearest - depth_step(own);
+    let nearest = nearest.apart - depth_step(own);
     let soonest_exits: Vec<Exit> = exits.iter().take(MAX_EXITS).cloned().collect();
     for exit in &mut exits {
         exit.harm = exit.harm.with_delay(own, exit.out, soonest);
@@ -309,7 +386,10 @@ fn candidates(own: &OwnShip, nominal_hulls: &NominalHulls, mut exits: Vec<Exit>)
     exits.sort_by(|a, b| a.harm.total_cmp(&b.harm));
     let keeps_off = |exit: &Exit| {
         !exit.harm.is_soon()
-            || nominal_hulls.nearest(own, &exit.motion, exit.out, nearest) >= nearest
+            || nominal_hulls
+                .nearest(own, &exit.motion, exit.out, nearest)
+                .apart
+                >= nearest
     };
     let least_harm = exits.into_iter().filter(keeps_off).take(MAX_EXITS);
     let mut found: Vec<Exit> = least_harm.collect();

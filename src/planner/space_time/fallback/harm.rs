@@ -15,10 +15,15 @@ const DEPTH_STEP: f64 = 0.05;
 const TIME_STEP: f64 = 0.1;
 
 /// Least resolution of depths, metres: own ship may have zero size.
-pub(crate) const LEAST_STEP_M: f64 = 0.1;
+const LEAST_STEP_M: f64 = 0.1;
 
-/// Samples along an exit for its depth in the sets.
-const SAMPLES: u32 = 200;
+/// Least and largest number of samples along a motion for its depth in the sets. Between them, one
+/// a second.
+const LEAST_SAMPLES: f64 = 200.0;
+const MOST_SAMPLES: f64 = 2000.0;
+
+/// Resolution of the speed of an impact, m/s.
+const IMPACT_STEP_MPS: f64 = 0.5;
 
 /// Largest approach of two ships between two samples, as a fraction of own beam. It doubles after
 /// each [`MANY`] samples, and after each [`MANY_WHEN_LATE`] once the time is up.
@@ -36,14 +41,16 @@ fn time_steps(ratio: f64) -> f64 {
     ratio.ln() / (1.0 + TIME_STEP).ln()
 }
 
-/// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
-/// delay, speed, time in the sets, turn.
+/// Harm of an exit from sets, or of a whole motion. Compared in this order: depth in nominal hulls,
+/// depth in the sets, speed of the impact, delay, speed, time in the sets, turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Harm {
     /// Depth in nominal hulls, in steps; 0 where none is met.
     hulls: f64,
     /// Depth in the sets beyond that at the start, in steps.
     sets: f64,
+    /// Relative speed where the depth in nominal hulls is largest, in steps; 0 where none is met.
+    impact: f64,
     /// Logarithm of the delay, in steps; 0 for an exit that is about as soon as the soonest.
     delay: f64,
     /// Logarithm of the time in the sets, in steps.
@@ -55,7 +62,7 @@ pub(crate) struct Harm {
 }
 
 impl Harm {
-    /// Harm of a motion that leaves the sets at `out`; `depth` is its depth in the sets, metres.
+    /// Harm of a motion until `out`; `depth` is its depth in the sets, metres.
     pub(crate) fn of(
         own: &OwnShip,
         nominal_hulls: &NominalHulls,
@@ -67,16 +74,19 @@ impl Harm {
         let steps = |metres: f64| (metres / step).ceil();
         let start = depth(&own.pose, 0.0);
         let mut deepest = start;
-        for sample in 1..SAMPLES {
-            let time = out * f64::from(sample) / f64::from(SAMPLES);
+        let samples = out.clamp(LEAST_SAMPLES, MOST_SAMPLES) as u32;
+        for sample in 1..samples {
+            let time = out * f64::from(sample) / f64::from(samples);
             if let Some(s) = motion.iter().find(|s| time <= s.end_time()) {
                 deepest = deepest.max(depth(&s.pose_at(time), time));
             }
         }
         let first = &motion[0];
+        let nearest = nominal_hulls.nearest(own, motion, out, 0.0);
         Self {
-            hulls: steps(nominal_hulls.depth(own, motion, out)),
+            hulls: steps(0.0 - nearest.apart),
             sets: ((deepest - start) / step).floor(),
+            impact: (nearest.closing / IMPACT_STEP_MPS).ceil(),
             delay: 0.0,
             time: time_steps(out).floor(),
             speed: first.speed,
@@ -84,10 +94,10 @@ impl Harm {
         }
     }
 
-    /// Compares the depths alone: in nominal hulls, then in the sets.
+    /// Compares what is met alone: the depths in nominal hulls and in the sets, and the impact.
     pub(crate) fn depth_cmp(&self, other: &Self) -> Ordering {
-        let sets = || self.sets.total_cmp(&other.sets);
-        self.hulls.total_cmp(&other.hulls).then_with(sets)
+        let key = |h: &Self| [h.hulls, h.sets, h.impact];
+        lexical(&key(self), &key(other))
     }
 
     /// Counts the delay against the soonest exit, which leaves the sets at `soonest`. This one is
@@ -113,12 +123,25 @@ impl Harm {
     }
 
     pub(crate) fn total_cmp(&self, other: &Self) -> Ordering {
-        let key = |h: &Self| [h.hulls, h.sets, h.delay, h.speed, h.time, h.turn];
-        let both = key(self).into_iter().zip(key(other));
-        both.map(|(a, b)| a.total_cmp(&b))
-            .find(|order| order.is_ne())
-            .unwrap_or(Ordering::Equal)
+        let key = |h: &Self| [h.delay, h.speed, h.time, h.turn];
+        self.depth_cmp(other)
+            .then_with(|| lexical(&key(self), &key(other)))
     }
+}
+
+fn lexical(a: &[f64], b: &[f64]) -> Ordering {
+    let mut orders = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
+    let first = orders.find(|order| order.is_ne());
+    first.unwrap_or(Ordering::Equal)
+}
+
+/// Where a motion is nearest to the hulls of targets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest {
+    /// Distance between the hulls, metres; negative in overlap.
+    pub apart: f64,
+    /// Relative speed there, m/s; 0 where no hull comes nearer than asked.
+    closing: f64,
 }
 
 /// Hulls of the targets on their nominal tracks.
@@ -141,24 +164,27 @@ impl<'a> NominalHulls<'a> {
 
     /// Largest depth of own hull in one of them until a time, metres; 0 where it meets none.
     pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
-        0.0 - self.nearest(own, motion, until, 0.0)
+        0.0 - self.nearest(own, motion, until, 0.0).apart
     }
 
-    /// Least distance of own hull from them until a time, metres, negative where it meets one; at
-    /// most `enough`. The sampling interval follows from the largest closing speed.
+    /// Where own hull is nearest to them until a time; at most `enough` metres. The sampling
+    /// interval follows from the largest closing speed.
     pub(crate) fn nearest(
         &self,
         own: &OwnShip,
         motion: &[Segment],
         until: f64,
         enough: f64,
-    ) -> f64 {
+    ) -> Nearest {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
         let many = match self.clock.is_up() {
             true => MANY_WHEN_LATE,
             false => MANY,
         };
-        let mut nearest = enough;
+        let mut nearest = Nearest {
+            apart: enough,
+            closing: 0.0,
+        };
         for (proxy, hull) in &self.hulls {
             let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
             let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
@@ -177,8 +203,14 @@ impl<'a> NominalHulls<'a> {
                 let apart = proxy
                     .clearance_of(hull, &segment.pose_at(time), time)
                     .unwrap_or(f64::INFINITY);
-                nearest = nearest.min(apart);
-                let next = time + (apart - nearest).max(least) / closing;
+                if apart < nearest.apart {
+                    let relative = segment.velocity_at(time) - proxy.drift();
+                    nearest = Nearest {
+                        apart,
+                        closing: relative.norm(),
+                    };
+                }
+                let next = time + (apart - nearest.apart).max(least) / closing;
                 // the next segment may be faster
                 time = if next > segment.end_time() && time < segment.end_time() {
                     segment.end_time()
