@@ -164,9 +164,8 @@ impl Simulation {
         }
         let step = self.step_between_ends();
         let own_pace = self.at_own_pace(scenario);
-        let mut missions = [Some(&scenario.desired), own_pace.as_ref()]
-            .into_iter()
-            .flatten();
+        let due_now = Some(&scenario.desired).filter(|mission| !is_behind_land(scenario, mission));
+        let mut missions = [due_now, own_pace.as_ref()].into_iter().flatten();
         let due = missions.find_map(|mission| Some((mission, cut_due(scenario, mission, step)?)));
         let (mission, due) = due.unwrap_or((&scenario.desired, 0.0));
         let plan_without = |cut: f64, deadline: f64| {
@@ -235,6 +234,15 @@ impl Simulation {
         let speeds = vec![own.max_speed(); waypoints.len() - 1];
         DesiredTrajectory::new(&waypoints, &speeds).ok()
     }
+}
+
+/// True where the straight way from own ship to the beginning of a mission leads over land: after a
+/// wait own ship is so late that it has another leg to sail.
+fn is_behind_land(scenario: &Scenario, mission: &DesiredTrajectory) -> bool {
+    let own = &scenario.own_ship;
+    let way = [own.pose.position, mission.position_at(0.0)];
+    let land = scenario.land.as_ref();
+    land.is_some_and(|land| !land.crossings(&own.hull, &way).is_empty())
 }
 
 /// Metres to leave out at the end of a mission, so that own ship is due at the rest's end within
