@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
 use campaigns::plans::{asked, compliance, encounters, harbour, invariance, mutations, tidiness};
-use campaigns::{Report, dense_search, forces, path_time, wild};
+use campaigns::{Report, dense_search, forces, path_time, stopping, wild};
 use clap::{Args, Parser, Subcommand};
 use searoom::scenario::Compliance;
 
@@ -121,6 +121,8 @@ enum Campaign {
     },
     /// The path-time planner against a fine grid: least time, error, ellipsoids and alternatives
     PathTime(Scenes<7_000>),
+    /// Scenes that stopping solves: a plan is unsafe only where that along the path is
+    Stopping(Scenes<3_000>),
     /// The optimal-control planner on random scenes and from random starts
     Control {
         /// Number of scenes, half of them with three ellipsoids, half with six
@@ -239,6 +241,7 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Harbour { scenes, sail: true } => harbour::sail_all(scenes.of_each(2)),
         Campaign::Harbour { scenes, .. } => harbour::run(scenes.of_each(3)),
         Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
+        Campaign::Stopping(scenes) => stopping::run(scenes.of_each(3)),
         Campaign::Control { count, starts } => {
             let mut report = forces::run_scenes(count.div_ceil(2));
             report.missed.extend(forces::run_starts(starts).missed);

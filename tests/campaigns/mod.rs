@@ -12,6 +12,7 @@ pub mod forces;
 pub mod path_time;
 pub mod plans;
 pub mod statistics;
+pub mod stopping;
 pub mod wild;
 
 use std::collections::BTreeMap;

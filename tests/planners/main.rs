@@ -19,3 +19,4 @@ mod path_time;
 mod roles;
 mod rules;
 mod simulated_documents;
+mod stopping;
