@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{DomainKind, KnownLeg, ShipTrack};
+use super::{DomainKind, KnownLeg, ShipTrack, TURN_LENGTHS};
 use crate::frame::{Pose, Vector, heading_of, wrap};
 use crate::geometry::ConvexPolygon;
 use crate::tolerance;
@@ -138,8 +138,11 @@ pub(crate) struct Track {
     pub(crate) start: Vector,
     appears: f64,
     stretches: Vec<Stretch>,
-    /// The legs, if each has one speed, and no turn a radius of its own above 0.
+    /// The legs, if each has one speed, and each turn begins and ends within half of the legs beside
+    /// it.
     legs: Vec<KnownLeg>,
+    /// The greatest radius of its own that a turn of `legs` has, metres; 0 without one.
+    greatest_radius: f64,
 }
 
 impl Track {
@@ -158,6 +161,7 @@ impl Track {
             appears: 0.0,
             stretches: vec![only],
             legs: Vec::new(),
+            greatest_radius: 0.0,
         }
     }
 
@@ -242,6 +246,9 @@ impl Track {
             appears: 0.0,
             stretches: joined_stretches(stretches),
             legs: known_legs(points, legs, heading).unwrap_or_default(),
+            greatest_radius: (points.windows(3))
+                .filter_map(|beside| beside[1].turn_radius)
+                .fold(0.0, f64::max),
         })
     }
 
@@ -281,9 +288,12 @@ impl Track {
         }
     }
 
-    /// The route as at most `most` legs that a tracked ship may have; `None` for another track.
-    pub(crate) fn known_legs(&self, most: usize) -> Option<&[KnownLeg]> {
-        let fits = self.appears <= 0.0 && (1..=most).contains(&self.legs.len());
+    /// The route as at most `most` legs that a tracked ship of this length may have, of whose known
+    /// route all turns of the track are; `None` for another track.
+    pub(crate) fn known_legs(&self, most: usize, length: f64) -> Option<&[KnownLeg]> {
+        let fits = self.appears <= 0.0
+            && (1..=most).contains(&self.legs.len())
+            && self.greatest_radius <= TURN_LENGTHS * length;
         fits.then_some(&self.legs)
     }
 
@@ -368,6 +378,17 @@ impl Track {
     }
 }
 
+/// True for turns that begin and end within half of the shorter leg beside them, as those of a known
+/// route do. A turn without a radius does.
+fn turns_within_legs(points: &[RoutePoint]) -> bool {
+    points.windows(3).all(|beside| {
+        let [before, after] = [0, 1].map(|i| beside[i + 1].position - beside[i].position);
+        let half = 0.5 * wrap(heading_of(after) - heading_of(before)).abs();
+        let begins = beside[1].turn_radius.unwrap_or(0.0) * half.min(FRAC_PI_2).tan();
+        begins <= 0.5 * before.norm().min(after.norm())
+    })
+}
+
 /// Legs of one speed each, with those on one line at one speed as one.
 fn known_legs(
     points: &[RoutePoint],
@@ -375,11 +396,7 @@ fn known_legs(
     heading: Option<f64>,
 ) -> Option<Vec<KnownLeg>> {
     let same = |leg: &RouteLeg| leg.slow == leg.fast && leg.slow > 0.0;
-    // a turn on the spot is among those of a known route
-    let given = points
-        .iter()
-        .any(|point| point.turn_radius.is_some_and(|radius| radius > 0.0));
-    if heading.is_some() || given || !legs.iter().all(same) {
+    if heading.is_some() || !turns_within_legs(points) || !legs.iter().all(same) {
         return None;
     }
     let mut known: Vec<KnownLeg> = Vec::new();

@@ -2,6 +2,7 @@
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use searoom::colregs::Role;
 use searoom::frame::{Vector, direction, heading_of, wrap};
 use searoom::geometry::outer_disc;
 use searoom::scenario::import::{Assumed, Contents, Imported};
@@ -258,4 +259,32 @@ fn a_route_on_one_line_is_a_tracked_ship() {
     // widened by the deviation of the middle point
     let spread = ship.course_spread.to_degrees();
     assert!((5.0..6.0).contains(&spread), "{spread}");
+}
+
+/// A radius that a known route has. A larger one makes a set of the target, without a hull and a role.
+#[test]
+fn a_turn_radius_that_a_known_route_has_takes_no_role_away() {
+    let with_radius = |miles: Option<f64>| {
+        let mut document = dnv_01();
+        let ship = document.pointer_mut("/targetShips/0").expect("there");
+        let waypoints = ship["waypoints"].as_array_mut().expect("a list");
+        waypoints
+            .push(json!({ "position": { "lat": 58.70, "lon": 10.60 }, "leg": { "sog": 12.1 } }));
+        if let Some(miles) = miles {
+            waypoints[1]["turnRadius"] = json!(miles);
+        }
+        let contents = Contents::parse(&document.to_string(), &Assumed::default()).expect("good");
+        let found = imported(&situations(contents)[0]);
+        let role = searoom::pipeline::sets(&found.scenario)[0].encounter.role;
+        let note = found
+            .notes
+            .iter()
+            .any(|note| note.contains("no rule applies"));
+        (role, note)
+    };
+    let corner = with_radius(None);
+    assert_eq!(corner, (Role::HeadOn, false));
+    // 4.5 lengths of the ship are 0.121 miles
+    assert_eq!(with_radius(Some(0.12)), corner);
+    assert_eq!(with_radius(Some(0.13)), (Role::None, true));
 }

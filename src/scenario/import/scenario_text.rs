@@ -178,7 +178,7 @@ impl Writing<'_> {
                 under_way(&steady.pose, steady.speed),
                 steady.speed_spread
             );
-        } else if let Some(legs) = track.known_legs(limits::TARGET_WAYPOINTS) {
+        } else if let Some(legs) = track.known_legs(limits::TARGET_WAYPOINTS, hull.length) {
             let Hull { length, beam } = hull;
             let first = Pose::new(track.start, heading_of(legs[0].to - track.start));
             let places: Vec<String> = legs.iter().map(|leg| position(leg.to)).collect();
@@ -211,7 +211,7 @@ impl Writing<'_> {
             self.text += "]\n";
             self.notes.push(format!(
                 "{name}: a track with changes, as velocity sets one after another; \
-                 margin and hulls on any heading are in its set"
+                 margin and hulls on any heading are in its set, which has no role: no rule applies to it"
             ));
         }
         if track.end() < horizon {
