@@ -54,6 +54,14 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
     if is_on || is_near {
         own.pose = plan.now;
     }
+    // own ship has altered for a ship: that is a risk until own ship is on its route again
+    let has_altered = manoeuvres(previous, elapsed).iter().any(has_begun);
+    for target in &mut scenario.targets {
+        if let (Motion::Ship(ship), true) = (&mut target.motion, has_altered) {
+            let then = ship_then(previous, &target.name);
+            ship.risk_distance = then.map_or(0.0, |then| then.risk_distance);
+        }
+    }
     let mut memory = memory_after(previous, scenario, plan)?;
     if !is_on {
         memory.off_plan = off;
@@ -226,13 +234,8 @@ fn memory_after(
         }
     }
     let now = SteadyShip::new(own.pose, remainder.first().map_or(own.speed, |s| s.speed));
-    let manoeuvres = previous.manoeuvres.iter();
-    let manoeuvres: Vec<PlannedManoeuvre> = manoeuvres
-        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
-        .filter(|m| m.joins > 0.0)
-        .collect();
-    let begun = |m: &&PlannedManoeuvre| m.begins < -tolerance::TIME_S;
-    let is_off_route = manoeuvres.iter().any(|m| begun(&m));
+    let manoeuvres = manoeuvres(previous, elapsed);
+    let is_off_route = manoeuvres.iter().any(has_begun);
     let samples = OwnSamples::of_past(&sailed, now, own);
     let (mut outside_velocities, mut outside_places) = (Vec::new(), Vec::new());
     let limits = &scenario.limits;
@@ -264,7 +267,7 @@ fn memory_after(
     forget(&mut sailed, &mut targets);
     let missing = (previous.targets.iter().map(|then| then.name.clone()))
         .filter(|name| scenario.targets.iter().all(|target| target.name != *name));
-    let under_way = manoeuvres.iter().find(begun).zip(remainder.first());
+    let under_way = (manoeuvres.iter().find(|m| has_begun(m))).zip(remainder.first());
     Ok(Memory {
         warm_start: None,
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
@@ -292,6 +295,19 @@ fn memory_after(
         manoeuvres,
         targets,
     })
+}
+
+/// The manoeuvres of the previous plan that own ship has not finished.
+fn manoeuvres(previous: &PlanDocument, elapsed: f64) -> Vec<PlannedManoeuvre> {
+    let manoeuvres = previous.manoeuvres.iter();
+    manoeuvres
+        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
+        .filter(|m| m.joins > 0.0)
+        .collect()
+}
+
+fn has_begun(manoeuvre: &PlannedManoeuvre) -> bool {
+    manoeuvre.begins < -tolerance::TIME_S
 }
 
 /// The nearest of own ship's speeds, which may have changed.

@@ -97,6 +97,10 @@ pub struct ShipTrack {
     pub route: Vec<KnownLeg>,
     /// How much earlier or later the ship may turn on its route than its speed says, seconds.
     pub time_spread: f64,
+    /// Metres between the centres: there is risk of collision (Rule 7(a)) up to this distance at the
+    /// closest approach, where it is more than that of the limits. 0 but for a ship whose set own
+    /// ship alters for.
+    pub risk_distance: f64,
     /// The requested ship domain.
     pub domain: DomainKind,
 }
@@ -119,6 +123,7 @@ impl ShipTrack {
             kept_velocities: None,
             route: Vec::new(),
             time_spread: 0.0,
+            risk_distance: 0.0,
             domain: DomainKind::Hull,
         }
     }

@@ -99,11 +99,9 @@ pub fn sweep_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
 
 /// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
 /// 1.3): the distance shrinks, and two ships that hold course and speed will pass within the risk
-/// distance and the risk time of the thresholds. Searched from 0 to the horizon or the desired
-/// arrival, whichever is first. Own ship is on the desired trajectory, wherever it starts.
-///
-/// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
-/// approach. O(legs). A leg that is not finite has no risk: safety rests on the sets, not the role.
+/// distance and the risk time of the thresholds, or within the target's own risk distance. Searched
+/// from 0 to the horizon or the desired arrival, whichever is first. Own ship is on the desired
+/// trajectory, wherever it starts. O(legs).
 pub fn first_risk(
     own: &OwnShip,
     desired: &DesiredTrajectory,
@@ -113,8 +111,40 @@ pub fn first_risk(
 ) -> Option<Risk> {
     let risk = &thresholds.risk;
     let allowed = risk.distance(&own.hull, own.safety_margin, &target.hull);
+    let allowed = allowed.max(target.risk_distance);
+    let mut risks = approaches(own, desired, target, horizon, thresholds);
+    risks.find_map(|(risk, distance)| (distance <= allowed).then_some(risk))
+}
+
+/// Least distance of the centres, metres, at a closest approach that gives own ship a role if it is
+/// a risk: [`first_risk`] without a limit of the distance. `None` where no distance gives a role.
+pub(crate) fn least_risk_distance(
+    own: &OwnShip,
+    desired: &DesiredTrajectory,
+    target: &ShipTrack,
+    horizon: f64,
+    thresholds: &Thresholds,
+) -> Option<f64> {
+    approaches(own, desired, target, horizon, thresholds)
+        .filter(|(risk, _)| risk.role.rule().is_some())
+        .map(|(_, distance)| distance)
+        .min_by(f64::total_cmp)
+}
+
+/// The closest approaches that the desired trajectory comes to within the risk time, each as a risk
+/// with the distance of the centres, metres.
+///
+/// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
+/// approach. A leg that is not finite has none: safety rests on the sets, not the role.
+fn approaches<'a>(
+    own: &OwnShip,
+    desired: &'a DesiredTrajectory,
+    target: &'a ShipTrack,
+    horizon: f64,
+    thresholds: &'a Thresholds,
+) -> impl Iterator<Item = (Risk, f64)> {
     let soon = thresholds.risk_time(own.hull.length);
-    stretches(desired, target, horizon).find_map(|(leg, [from, until], theirs)| {
+    stretches(desired, target, horizon).filter_map(move |(leg, [from, until], theirs)| {
         let theirs = theirs(from);
         let relative = leg.direction * leg.speed - theirs.velocity();
         let speed = relative.norm();
@@ -125,16 +155,19 @@ pub fn first_risk(
         let closest = from + offset.dot(&relative) / (speed * speed);
         let distance = cross(relative, offset).abs() / speed;
         let time = from.max(closest - soon);
-        if !(time < closest && time < until && distance <= allowed) {
+        if !(time < closest && time < until) {
             return None;
         }
         let own = steady_on(leg, time);
         let target = SteadyShip::on_track(target, time);
-        role_within(&own, &target, &thresholds.sectors).map(|role| Risk {
-            role,
-            time,
-            own,
-            target,
+        role_within(&own, &target, &thresholds.sectors).map(|role| {
+            let risk = Risk {
+                role,
+                time,
+                own,
+                target,
+            };
+            (risk, distance)
         })
     })
 }

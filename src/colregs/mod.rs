@@ -12,6 +12,7 @@ mod rules;
 mod thresholds;
 
 pub use domain::{ShipDomain, ship_domain, sweep};
+pub(crate) use encounter::least_risk_distance;
 pub use encounter::{Encounter, Risk, TargetMemory, encounter, first_risk, sweep_distance};
 pub use role::{Role, Sectors, SteadyShip, role_within};
 pub(crate) use rules::Duty;

@@ -245,6 +245,8 @@ pub struct Encountered {
     pub ship: SteadyShip,
     /// Hull of the target.
     pub hull: Hull,
+    /// Metres: [`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance).
+    pub risk_distance: f64,
     /// Own ship when the risk began: its first course and speed.
     pub own: SteadyShip,
     /// Seconds at which the risk began.

@@ -287,7 +287,7 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
     met.sort_by(by(|e| e.undisturbed_tcpa_s));
     others.sort_by(by(|e| e.dcpa_m.or(e.undisturbed_dcpa_m)));
     for encounter in met {
-        let EncounterDocument { target, role, .. } = encounter;
+        let target = &encounter.target;
         add("target", format!("'{target}': {}", roles(encounter, times)));
         let apart = apart(plan, encounter, true, times);
         if !apart.is_empty() {
@@ -296,9 +296,8 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
         if let Some(conduct) = &encounter.conduct {
             conduct_lines(plan, conduct, times, add);
         }
-        if plan.compliance == "rules" && role == "none" && altered.contains(target) {
-            let text = "gives no role: the rules do not restrict the alteration for it";
-            add("", text.to_owned());
+        if let Some(note) = risk_note(plan, encounter, &altered) {
+            add("", note);
         }
     }
     let more = others.len().saturating_sub(LISTED);
@@ -315,6 +314,39 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
             "",
             format!("and {more} more without a role, none of them nearer"),
         );
+    }
+}
+
+/// Why own ship has a role toward a ship that passes beyond the limits, or has none toward a target
+/// that it alters for.
+fn risk_note(
+    plan: &PlanDocument,
+    encounter: &EncounterDocument,
+    altered: &BTreeSet<String>,
+) -> Option<String> {
+    let mut targets = plan.targets.iter();
+    let target = targets.find(|target| target.name == encounter.target)?;
+    match &target.ship {
+        Some(ship) if ship.cpa_limit_m > 0.0 => {
+            let limit = ship.cpa_limit_m;
+            let text = "passes beyond the limits, but own ship alters for its set: so there is risk \
+                        of collision, Rule 7(a), up to";
+            Some(format!("{text} {limit:.0} m of the centres"))
+        }
+        _ if plan.compliance != "rules"
+            || encounter.role != "none"
+            || !altered.contains(&encounter.target) =>
+        {
+            None
+        }
+        ship => {
+            let why = match ship {
+                Some(_) => "it does not come nearer on the desired trajectory",
+                None => "it is given as a set",
+            };
+            let text = "gives no role: the rules do not restrict the alteration for it";
+            Some(format!("{text}, as {why}"))
+        }
     }
 }
 

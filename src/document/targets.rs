@@ -57,6 +57,10 @@ pub struct ShipDocument {
     /// How much earlier or later the ship may turn than its speed says.
     #[serde(default, skip_serializing_if = "super::is_zero")]
     pub time_spread_s: f64,
+    /// Own ship alters for the ship though it passes beyond the limits: there is risk of collision up
+    /// to this distance of the centres.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub cpa_limit_m: f64,
 }
 
 /// Leg of a known route.
@@ -113,6 +117,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
             })
             .collect(),
         time_spread_s: track.time_spread,
+        cpa_limit_m: track.risk_distance,
     }
 }
 
@@ -149,6 +154,7 @@ impl ShipDocument {
             kept_velocities: kept("kept_velocities", velocities)?,
             route: self.route.iter().map(KnownLegDocument::leg).collect(),
             time_spread: self.time_spread_s,
+            risk_distance: self.cpa_limit_m,
             domain: DomainKind::Hull,
         })
     }

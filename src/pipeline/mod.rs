@@ -161,8 +161,19 @@ fn deadline(scenario: &Scenario) -> Duration {
 /// Where no plan satisfies the whole request, requirements are given up level by level
 /// (`docs/relaxation.md`), and the run reports which. The clock is read around planning alone. It
 /// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
-pub fn run(scenario: Scenario) -> Run {
-    let sets = sets(&scenario);
+///
+/// Under the rules the run's scenario has a risk of collision with every ship whose set own ship
+/// alters for ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
+pub fn run(mut scenario: Scenario) -> Run {
+    let mut sets = sets(&scenario);
+    let mut without = None;
+    if let Some(with_risk) = rules::with_risk_of_sets(&scenario, &sets) {
+        let sets_with_risk = self::sets(&with_risk);
+        without = Some((
+            std::mem::replace(&mut scenario, with_risk),
+            std::mem::replace(&mut sets, sets_with_risk),
+        ));
+    }
     let begun = Instant::now();
     let land = land_within_reach(&scenario);
     let around_land;
@@ -180,7 +191,17 @@ pub fn run(scenario: Scenario) -> Run {
         begun,
         is_cut_short: &Cell::new(false),
     };
-    let answer = relaxer.answer();
+    let mut answer = relaxer.answer();
+    if let Some((scenario, others)) = &without
+        && let Some(other) = relaxer.lawful_answer(scenario, others, &answer)
+    {
+        answer = other;
+        let mut others = others.clone();
+        for (other, with_risk) in others.iter_mut().zip(&sets) {
+            other.encounter = with_risk.encounter;
+        }
+        sets = others;
+    }
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
         parallel::map(&answer.whole, |index, set| {

@@ -196,6 +196,32 @@ impl Relaxer<'_> {
         }
     }
 
+    /// The answer to the request without the risks that sets alone give (another scenario and its
+    /// sets), where `answer` is not by the rules, takes a risk, or does not arrive. It is taken where
+    /// it relaxes less and breaks no rule toward the ships that have a role by these risks.
+    pub(super) fn lawful_answer(
+        &self,
+        scenario: &Scenario,
+        sets: &[TargetSets],
+        answer: &Attempt,
+    ) -> Option<Attempt> {
+        let is_lawful = |of: &Attempt| {
+            let breaks = |trajectory| rules::breaks(self.scenario, trajectory);
+            of.trajectory().map(breaks) == Some(0)
+        };
+        let arrives = answer.planned.outcome.plan().is_some_and(Plan::arrives);
+        let gives_up = match answer.level {
+            RelaxationLevel::Compliant | RelaxationLevel::Rules => false,
+            RelaxationLevel::Domains => !is_lawful(answer),
+            _ => true,
+        };
+        if arrives && !gives_up || self.time_left().is_zero() {
+            return None;
+        }
+        let other = self.of(scenario, sets).answer();
+        (other.relaxation_cmp(answer).is_lt() && is_lawful(&other)).then_some(other)
+    }
+
     /// For another scenario and its sets, in the same time.
     pub(super) fn of<'b>(&'b self, scenario: &'b Scenario, sets: &'b [TargetSets]) -> Relaxer<'b> {
         Relaxer {

@@ -1,13 +1,17 @@
 //! The rules in a scenario: what they ask of own ship, and how its motion complies.
 
+use std::borrow::Cow;
+
 use super::{Relaxation, Run, TargetSets};
 use crate::colregs::compliance::{ComplianceReport, OwnSamples};
-use crate::colregs::{Duty, Encountered, SteadyShip, Thresholds};
-use crate::frame::Side;
+use crate::colregs::{self, Duty, Encountered, SteadyShip, TargetMemory, Thresholds};
+use crate::frame::{Pose, Side, heading_of};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::parallel;
 use crate::scenario::{Compliance, Scenario};
-use crate::trajectory::Trajectory;
+use crate::target::Motion;
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 
 /// Side of the first turn, from the first target whose role names one.
 pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
@@ -33,6 +37,64 @@ pub(super) fn without_domains_of_give_way_targets(
         }
     }
     sets
+}
+
+/// Ratio of the risk distance of a ship that own ship alters for to the distance at which it would
+/// pass: the end of a risk over its beginning (docs/colregs.md 1.3).
+const RISK_DISTANCE_RATIO: f64 = 1.5;
+
+/// The scenario with a risk of collision (Rule 7(a)) with every ship that has no role though own
+/// ship alters for it: its set, of which `sets` has the larger one, is met on the desired
+/// trajectory. Such a ship has the role that its geometry gives without a limit of the distance.
+/// `None` where no ship gets a role by this, and where the rules are not asked for.
+pub(super) fn with_risk_of_sets(scenario: &Scenario, sets: &[TargetSets]) -> Option<Scenario> {
+    if scenario.compliance != Compliance::Rules {
+        return None;
+    }
+    let found = parallel::map(sets, |index, sets| {
+        let (ship, known) = (
+            scenario.targets[index].ship()?,
+            scenario.memory.target(index),
+        );
+        if sets.encounter.risk.is_some() || known.is_some_and(|known| known.passed) {
+            return None;
+        }
+        let desired = judged_path(scenario, known);
+        let legs = desired.legs().iter().map(|leg| {
+            let pose = Pose::new(leg.start, heading_of(leg.direction));
+            let (begins, ends) = (leg.start_time, leg.end_time().min(scenario.horizon));
+            Segment::straight(pose, begins, (ends - begins).max(0.0), leg.speed)
+        });
+        let set = sets.with_domain.at_risk(scenario.max_risk);
+        if !set.is_entered(&legs.collect::<Vec<_>>(), tolerance::TOUCH_M) {
+            return None;
+        }
+        let (own, limits) = (&scenario.own_ship, &scenario.limits);
+        colregs::least_risk_distance(own, &desired, ship, scenario.horizon, limits)
+    });
+    found.iter().any(Option::is_some).then(|| {
+        let mut scenario = scenario.clone();
+        for (target, distance) in scenario.targets.iter_mut().zip(found) {
+            if let (Motion::Ship(ship), Some(distance)) = (&mut target.motion, distance) {
+                ship.risk_distance = RISK_DISTANCE_RATIO * distance;
+            }
+        }
+        scenario
+    })
+}
+
+/// The motion along which a role toward a target is sought: the desired trajectory, from own place
+/// where the target was seen before.
+pub(super) fn judged_path<'a>(
+    scenario: &'a Scenario,
+    known: Option<&TargetMemory>,
+) -> Cow<'a, DesiredTrajectory> {
+    match known {
+        Some(known) if !known.track.is_empty() => {
+            Cow::Owned(scenario.desired.from(scenario.own_ship.pose.position))
+        }
+        _ => Cow::Borrowed(&scenario.desired),
+    }
 }
 
 /// The targets toward which the rules give own ship a duty.
@@ -73,6 +135,7 @@ fn asking<'a>(
             role,
             ship,
             hull: track.hull,
+            risk_distance: track.risk_distance,
             own: risk.own,
             risk_since: risk.time,
             tcpa,

@@ -1,6 +1,6 @@
 //! The obstacles of every target, grown by own ship's footprint.
 
-use super::rules::without_domains_of_give_way_targets;
+use super::rules::{judged_path, without_domains_of_give_way_targets};
 use crate::colregs::{self, Encounter, Risk, Role, ShipDomain, TargetMemory};
 use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, outer_enclosing_ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -158,11 +158,11 @@ fn new_role(
         return on_the_path;
     }
     let own = &scenario.own_ship;
-    let from_here = scenario.desired.from(own.pose.position);
+    let path = judged_path(scenario, Some(known));
     let (horizon, limits) = (scenario.horizon, &scenario.limits);
     let keeps_clear = |risk: &Risk| risk.role.duties().keeps_clear;
     let is_off = scenario.memory.under_way.is_some() && !known.passed;
-    colregs::first_risk(own, &from_here, target.ship()?, horizon, limits)
+    colregs::first_risk(own, &path, target.ship()?, horizon, limits)
         .or(on_the_path.filter(|risk| is_off && keeps_clear(risk)))
 }
 

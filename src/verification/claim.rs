@@ -306,6 +306,7 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
                 ("speed_spread_mps", ship.speed_spread_mps),
                 ("turn_rate_deg_per_s", ship.turn_rate_deg_per_s),
                 ("time_spread_s", ship.time_spread_s),
+                ("cpa_limit_m", ship.cpa_limit_m),
             ] {
                 not_negative(&at(key), value)?;
             }

@@ -66,6 +66,29 @@ fn a_remainder_that_ends_on_the_way_is_better_than_a_risk() {
     assert!(sailed.safe && conduct.unsafe_plans == 0 && conduct.lost_remainders == 0);
 }
 
+/// Ships that pass beyond two lengths, and whose sets reach own ship's way: on the way, too, own ship
+/// does not turn to port for them, and keeps the rules.
+#[test]
+fn a_role_by_an_alteration_lasts_on_the_way() {
+    for name in [
+        "rules-grazes-head-on.toml",
+        "rules-grazes-from-starboard.toml",
+        "rules-tug-and-tow.toml",
+    ] {
+        let sailed = sail(parsed(&fault(name)));
+        let conduct = &sailed.conduct;
+        assert!(sailed.safe && sailed.arrived, "{name}");
+        assert_eq!(conduct.breaks, Vec::<String>::new(), "{name}");
+        assert_eq!(conduct.side_switches, 0, "{name}");
+        let first = sailed
+            .sailed
+            .iter()
+            .find(|s| s.track.turn_rate_deg_per_s != 0.0);
+        let is_port = first.is_some_and(|s| s.track.turn_rate_deg_per_s < 0.0);
+        assert!(!is_port, "{name} {:?}", conduct.manoeuvres);
+    }
+}
+
 /// With a delay of 5 s: no plan is made while one is waiting to begin.
 #[test]
 fn plans_before_an_end_that_is_covered_are_made_one_after_another() {

@@ -123,7 +123,7 @@ impl ComplianceReport {
         memory: Option<&TargetMemory>,
         thresholds: &Thresholds,
     ) -> EncounterSamples {
-        let near = track.risk_distance(&target.hull, thresholds);
+        let near = track.risk_distance(target, thresholds);
         let factor = thresholds.time_factor(track.hull().length);
         let soon = factor * thresholds.risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);

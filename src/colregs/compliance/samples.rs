@@ -125,6 +125,8 @@ pub struct EncounterSamples {
     safety_margin: f64,
     ordered_speed: f64,
     target: Hull,
+    /// Metres: [`ShipTrack::risk_distance`].
+    target_risk_distance: f64,
 }
 
 impl EncounterSamples {
@@ -156,6 +158,7 @@ impl EncounterSamples {
             safety_margin: own.safety_margin,
             ordered_speed: own.ordered_speed,
             target: hull,
+            target_risk_distance: 0.0,
         }
     }
 
@@ -176,7 +179,9 @@ impl EncounterSamples {
 
     /// Greatest distance of the centres at a closest approach with risk, metres.
     pub(crate) fn risk_distance(&self, thresholds: &Thresholds) -> f64 {
-        (thresholds.risk).distance(&self.own, self.safety_margin, &self.target)
+        (thresholds.risk)
+            .distance(&self.own, self.safety_margin, &self.target)
+            .max(self.target_risk_distance)
     }
 
     /// Length of own ship, metres.
@@ -243,8 +248,10 @@ impl OwnSamples {
     }
 
     /// Greatest distance of the centres at a closest approach with risk, metres.
-    pub(crate) fn risk_distance(&self, target: &Hull, thresholds: &Thresholds) -> f64 {
-        (thresholds.risk).distance(&self.hull, self.safety_margin, target)
+    pub(crate) fn risk_distance(&self, target: &ShipTrack, thresholds: &Thresholds) -> f64 {
+        (thresholds.risk)
+            .distance(&self.hull, self.safety_margin, &target.hull)
+            .max(target.risk_distance)
     }
 
     pub(crate) fn hull(&self) -> Hull {
@@ -305,6 +312,7 @@ impl OwnSamples {
             safety_margin: self.safety_margin,
             ordered_speed: self.ordered_speed,
             target: target.hull,
+            target_risk_distance: target.risk_distance,
         }
     }
 

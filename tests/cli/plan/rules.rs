@@ -163,9 +163,9 @@ fn thresholds_that_are_wrong_are_named() {
     ));
 }
 
-/// A ship that passes at 250 m, beyond the limit, but whose set reaches own ship's way.
+/// A ship that passes at 250 m, beyond the limit, but whose set reaches own ship's way; and that set.
 #[test]
-fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
+fn the_block_of_a_target_says_why_it_has_a_role_or_none() {
     let folder = Folder::new();
     let scene = |limit: &str| {
         format!(
@@ -178,13 +178,27 @@ fn a_ship_without_a_role_is_named_where_the_plan_alters_for_it() {
              speed_spread_mps = 0.6\ncourse_spread_deg = 6.0\n"
         )
     };
-    let note = "gives no role: the rules do not restrict the alteration for it";
+    let note = "passes beyond the limits, but own ship alters for its set";
+    let role = "'coaster': own ship is give-way";
     let file = folder.write("far.toml", scene(""));
-    searoom(&["plan", &file])
-        .success()
-        .stdout(contains(note).and(contains("turns for 'coaster'")));
+    let far = contains(role)
+        .and(contains(note))
+        .and(contains("starboard"));
+    searoom(&["plan", &file]).success().stdout(far);
     let file = folder.write("near.toml", scene("planner = { cpa_limit_m = 400.0 }"));
-    searoom(&["plan", &file])
-        .success()
-        .stdout(contains("'coaster': own ship is give-way from ").and(contains(note).not()));
+    let near = contains(role).and(contains(note).not());
+    searoom(&["plan", &file]).success().stdout(near);
+    let text = scene("planner = { compliance = \"rules\" }");
+    let ship = text
+        .find("position = { east_m = 1350.0")
+        .expect("the coaster");
+    let set = "initial_set = { vertices_m = [[1250, -1100], [1450, -1100], [1450, -900], \
+               [1250, -900]] }\nvelocity_set = { vertices_mps = [[-0.6, 4.4], [0.6, 4.4], \
+               [0.6, 5.6], [-0.6, 5.6]] }\n[[targets]]\nname = \"far off\"\nposition = \
+               { east_m = 0.0, north_m = 9000.0 }\ncourse_deg = 0.0\nspeed_mps = 5.0\n\
+               length_m = 60.0\nbeam_m = 12.0\n";
+    let file = folder.write("set.toml", format!("{}{set}", &text[..ship]));
+    let text =
+        "gives no role: the rules do not restrict the alteration for it, as it is given as a set";
+    searoom(&["plan", &file]).success().stdout(contains(text));
 }

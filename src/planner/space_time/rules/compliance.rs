@@ -50,7 +50,10 @@ pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
     let thresholds = problem.thresholds;
     let own = OwnSamples::along(&[], &trajectory, problem.own);
     let samples = problem.encountered.iter().map(|e| {
-        let track = ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull);
+        let track = ShipTrack {
+            risk_distance: e.risk_distance,
+            ..ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull)
+        };
         // a role that has begun before the plan is kept
         let known = (e.risk_since <= 0.0).then(|| TargetMemory {
             role: Some(Risk {
@@ -283,6 +286,7 @@ mod tests {
                 role: Role::GiveWay,
                 ship,
                 hull,
+                risk_distance: 0.0,
                 own: ship,
                 risk_since: 0.0,
                 tcpa: 0.0,
