@@ -26,7 +26,7 @@ fn load(criterion: &mut Criterion) {
         ("froya-skerries-gshhg", 63.8, 8.8, 8_075),
     ] {
         let (file, earth) = (file(name), earth(lat, lon));
-        let map = Map::read(&file, &earth).expect("a map");
+        let map = Map::read(&file, &earth, None).expect("a map");
         // a ring of the file has its first vertex twice
         let found: usize = map
             .polygons()
@@ -35,7 +35,7 @@ fn load(criterion: &mut Criterion) {
             .sum();
         assert_eq!(found, vertices);
         criterion.bench_function(&format!("map/load/{vertices} vertices"), |b| {
-            b.iter(|| Map::read(black_box(&file), &earth).expect("a map"))
+            b.iter(|| Map::read(black_box(&file), &earth, None).expect("a map"))
         });
     }
 }
@@ -64,20 +64,20 @@ fn ragged() -> String {
 
 fn load_a_large_one(criterion: &mut Criterion) {
     let (text, earth) = (ragged(), earth(63.44, 10.4));
-    let map = Map::parse(&text, &earth).expect("a map");
+    let map = Map::parse(&text, &earth, None).expect("a map");
     assert_eq!(map.polygons()[0].vertex_count(), 100_000);
     let mut group = criterion.benchmark_group("map");
     group
         .sample_size(10)
         .bench_function("load/100000 vertices", |b| {
-            b.iter(|| Map::parse(black_box(&text), &earth).expect("a map"))
+            b.iter(|| Map::parse(black_box(&text), &earth, None).expect("a map"))
         });
     group.finish();
 }
 
 /// A path around Munkholmen, and the distance from land.
 fn ask(criterion: &mut Criterion) {
-    let map = Map::read(&file("trondheim-harbour"), &earth(63.44, 10.399)).expect("a map");
+    let map = Map::read(&file("trondheim-harbour"), &earth(63.44, 10.399), None).expect("a map");
     let path = [
         (600.0, 900.0),
         (-800.0, 800.0),

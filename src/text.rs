@@ -25,11 +25,14 @@ macro_rules! words {
 
 /// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
-const CHARS: usize = 200;
+/// Characters of such a text.
+pub(crate) const LINE_CHARS: usize = 200;
 
 /// True for a text of allowed length that is not blank and has no control characters.
 pub(crate) fn is_line(text: &str) -> bool {
-    !text.trim().is_empty() && !text.chars().any(is_unprintable) && text.chars().count() <= CHARS
+    !text.trim().is_empty()
+        && !text.chars().any(is_unprintable)
+        && text.chars().count() <= LINE_CHARS
 }
 
 /// True for control characters, for those that break a line or change its direction, and for those

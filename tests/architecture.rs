@@ -22,7 +22,7 @@ input: frame text
 geometry: tolerance frame numerics
 trajectory: frame tolerance geometry
 vessel: frame tolerance geometry
-map: frame geometry tolerance input
+map: frame geometry tolerance input text
 target: frame geometry tolerance vessel
 colregs: frame tolerance numerics geometry trajectory target vessel input text
 obstacle: frame geometry tolerance numerics target trajectory

@@ -19,6 +19,7 @@ const ASSUMPTIONS: [(&str, Assumption); 5] = [
     ("margin_m", Assumption::SafetyMargin),
     ("length_m", Assumption::Length),
     ("beam_m", Assumption::Beam),
+    ("own_speed_mps", Assumption::OwnSpeed),
 ];
 
 /// A checked scenario. It never changes; `replace` makes another.
@@ -36,11 +37,12 @@ impl Scenario {
     fn parsed(text: String, folder: PathBuf) -> Result<Self, Vec<Fault>> {
         // where a map was found stays so when the program changes its folder
         let folder = std::env::current_dir().map_or(folder.clone(), |here| here.join(&folder));
+        let inner = searoom::scenario::Scenario::parse_beside(&text, &folder)?;
         Ok(Self {
-            inner: searoom::scenario::Scenario::parse_beside(&text, &folder)?,
+            notes: inner.remarks.all(),
+            inner,
             text,
             folder,
-            notes: Vec::new(),
         })
     }
 }

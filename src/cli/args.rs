@@ -444,6 +444,9 @@ pub struct AssumedArgs {
     /// Beam of ships without one, metres [default: 20 if the format has none, else required]
     #[arg(long, value_name = "M", value_parser = assumption(Assumption::Beam))]
     pub beam_m: Option<f64>,
+    /// Speed of an own ship without one, m/s [default: required]
+    #[arg(long, value_name = "MPS", value_parser = assumption(Assumption::OwnSpeed))]
+    pub own_speed_mps: Option<f64>,
     /// Also import the published variants of Imazu's cases
     #[arg(long)]
     pub variants: bool,
@@ -458,6 +461,7 @@ impl AssumedArgs {
             (Assumption::SafetyMargin, self.safety_margin_m),
             (Assumption::Length, self.length_m),
             (Assumption::Beam, self.beam_m),
+            (Assumption::OwnSpeed, self.own_speed_mps),
         ];
         let given = given
             .into_iter()

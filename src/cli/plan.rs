@@ -37,6 +37,9 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
         Ok((run, mut notes)) => {
             notes.extend(findings(&run.scenario, &scene.declared()));
+            // the text has them below the verdict
+            let cautions = &run.scenario.remarks.cautions;
+            notes.retain(|note| args.shared.written.json || !cautions.contains(note));
             output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {

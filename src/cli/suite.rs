@@ -80,6 +80,12 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             "{scenarios} with assumptions: `searoom check`, and \"notes\" with --json, say which"
         ));
     }
+    if let Some(scenarios) = count(|run| !run.cautions.is_empty()) {
+        output.note(&format_args!(
+            "{scenarios} with input on safety that no plan uses: `searoom check`, and \
+             \"cautions\" with --json, say which"
+        ));
+    }
     if let Some(scenarios) = count(|run| run.outcome == NOT_APPLICABLE) {
         output.note(&format_args!(
             "{scenarios} not applicable, skipped: \"reason\" with --json, and `searoom plan`, \

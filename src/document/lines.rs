@@ -12,6 +12,7 @@ use super::{
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
+use crate::input::Remarks;
 use crate::planner::SearchKind;
 use crate::text::{
     Times, counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
@@ -36,8 +37,8 @@ pub(crate) fn headline(plan: &PlanDocument) -> String {
     format!("{}: {}", printable(&plan.scenario), verdict_line(plan))
 }
 
-/// Outcome, whether the plan is verified and safe, the rules that it breaks, and the waypoints that
-/// it skips.
+/// Outcome, whether the plan is verified and safe, the input on safety that it ignores, the rules
+/// that it breaks, and the waypoints that it skips.
 pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     in_brackets(&printable(&plan.verdict), &verdict_parts(plan))
 }
@@ -48,6 +49,7 @@ pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     if plan.trajectory.is_some() {
         all.push(facts(plan.verified, plan.is_safe()).to_owned());
     }
+    all.extend(ignored(&plan.cautions));
     all.extend(breaks(&plan.encounters).and_then(breaks_in_words));
     let skipped = plan.cost.as_ref().map(|cost| skipped(plan, cost));
     if let Some(skipped) = skipped.filter(|skipped| !skipped.is_empty()) {
@@ -64,6 +66,17 @@ fn met_at_rest(plan: &PlanDocument) -> Option<(&str, f64)> {
     let met = plan.encounters.iter();
     let met = met.filter_map(|e| Some((e.target.as_str(), e.met_at_rest_s?)));
     met.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The subjects of the cautions in brief; `None` without one.
+fn ignored(cautions: &[String]) -> Option<String> {
+    let subjects = Remarks::ignored(cautions);
+    let more = match subjects.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let listed: Vec<&str> = subjects.into_iter().take(LISTED).collect();
+    (!listed.is_empty()).then(|| format!("ignores {}{more}", listed.join(", ")))
 }
 
 /// A word with further parts in brackets.
@@ -85,6 +98,9 @@ pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str
     add("planner", planner_words(plan));
     if let Some(reason) = &plan.reason {
         add("reason", reason.clone());
+    }
+    for caution in &plan.cautions {
+        add("ignores", caution.clone());
     }
     for relaxation in &plan.relaxations {
         let (name, text) = relaxed(plan, relaxation, times);

@@ -87,6 +87,12 @@ pub struct PlanDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<LowerBoundDocument>,
     pub violations: Vec<ViolationDocument>,
+    /// Input that the plan ignores and that bears on safety.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cautions: Vec<String>,
+    /// Other input of the scenario's files that the plan ignores.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
@@ -149,6 +155,8 @@ impl PlanDocument {
             time_of_no_return_s: None,
             lower_bound: None,
             violations: Vec::new(),
+            cautions: scenario.remarks.cautions.clone(),
+            notes: scenario.remarks.notes.clone(),
             cost: cost(run),
             search_stats: SearchStatsDocument::of(run.planned.stats),
             timing: timing(run),

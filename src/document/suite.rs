@@ -55,6 +55,9 @@ pub struct SuiteRunDocument {
     #[serde(default)]
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
+    /// Those of the plan.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cautions: Vec<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
@@ -153,6 +156,7 @@ impl SuiteRunDocument {
             method: plan.method,
             search_stats: Some(plan.search_stats),
             timing: Some(plan.timing.clone()),
+            cautions: plan.cautions.clone(),
             notes,
         }
     }

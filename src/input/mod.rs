@@ -19,7 +19,7 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use crate::text::counted;
+use crate::text::{LINE_CHARS, counted, printable};
 
 /// One thing wrong in a file: its place, what was found, what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -221,6 +221,57 @@ fn without_index(path: &str) -> String {
     parts
         .map(|part| part.split_once(']').map_or(part, |(_, rest)| rest))
         .collect()
+}
+
+/// What was assumed or left out when files were read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Remarks {
+    /// Assumptions and unused parts, in sentences of the form `subject: statement`.
+    pub notes: Vec<String>,
+    /// Likewise, unused parts that bear on safety. Their subjects appear beside the verdict on a
+    /// plan: it is safe in spite of them only if somebody else takes care of them.
+    pub cautions: Vec<String>,
+}
+
+impl Remarks {
+    pub(crate) fn note(&mut self, subject: impl Display, statement: impl Display) {
+        self.notes.push(format!("{subject}: {statement}"));
+    }
+
+    /// Adds a caution, as one line that a scenario file may have.
+    pub(crate) fn caution(&mut self, subject: impl Display, statement: impl Display) {
+        let whole = printable(&format!("{subject}: {statement}"));
+        let mut text: String = whole.chars().take(LINE_CHARS).collect();
+        if text.len() < whole.len() {
+            text.pop();
+            text.push('…');
+        }
+        if !self.cautions.contains(&text) {
+            self.cautions.push(text);
+        }
+    }
+
+    pub(crate) fn extend(&mut self, more: &Self) {
+        self.notes.extend_from_slice(&more.notes);
+        self.cautions.extend_from_slice(&more.cautions);
+    }
+
+    /// The cautions, then the notes.
+    pub fn all(&self) -> Vec<String> {
+        self.cautions.iter().chain(&self.notes).cloned().collect()
+    }
+
+    /// The subjects of the cautions, each once.
+    pub fn ignored(cautions: &[String]) -> Vec<&str> {
+        let mut subjects = Vec::new();
+        for caution in cautions {
+            let subject = caution.split_once(": ").map_or(&**caution, |(who, _)| who);
+            if !subjects.contains(&subject) {
+                subjects.push(subject);
+            }
+        }
+        subjects
+    }
 }
 
 const MEBIBYTE: u64 = 1024 * 1024;

@@ -13,6 +13,7 @@ use crate::frame::Vector;
 use crate::geometry::{
     BoxIndex, ConvexPolygon, DecompositionError, EdgeTree, Polygon, Window, convex_pieces,
 };
+use crate::input::Remarks;
 
 /// The land of a scenario. Two maps are equal when their polygons are.
 #[derive(Clone)]
@@ -23,6 +24,7 @@ pub struct Map {
     boxes: BoxIndex,
     /// The edges of the polygons.
     edges: EdgeTree,
+    remarks: Remarks,
 }
 
 impl std::fmt::Debug for Map {
@@ -55,7 +57,13 @@ impl Map {
             pieces,
             boxes,
             edges,
+            remarks: Remarks::default(),
         })
+    }
+
+    /// What the file of the map has that is not used.
+    pub fn remarks(&self) -> &Remarks {
+        &self.remarks
     }
 
     /// The polygons in the order of the file.
@@ -111,7 +119,7 @@ mod tests {
         let origin = Geographic { lat_deg, lon_deg };
         let earth = Georeference::new(origin).expect("valid");
         let file = format!("{}/maps/{name}.geojson", env!("CARGO_MANIFEST_DIR"));
-        Map::read(file.as_ref(), &earth).unwrap_or_else(|error| panic!("{error}"))
+        Map::read(file.as_ref(), &earth, None).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Pieces tile the polygons of real coasts: areas add up, membership agrees with the even-odd

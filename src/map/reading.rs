@@ -3,18 +3,26 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
+use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, Position};
 
 use super::Map;
 use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
-use crate::geometry::{Polygon, PolygonError};
-use crate::input::{Fault, InputError, read_text};
+use crate::geometry::{ConvexPolygon, Polygon, PolygonError, outer_disc};
+use crate::input::{Fault, InputError, Remarks, read_text};
+use crate::text::counted;
 
 /// Mebibytes of a map.
 const FILE_MEBIBYTES: u64 = 64;
 
 /// Allowed features.
-const POLYGON: &str = "a Polygon or a MultiPolygon";
+const POLYGON: &str =
+    "a Polygon or a MultiPolygon; points and lines where the map has a point_radius_m";
+
+/// Properties of charts (S-57) by which a feature may be water or deep enough.
+const DEPTHS: [&str; 4] = ["DRVAL1", "DRVAL2", "VALSOU", "WATLEV"];
+
+/// Collections within one another: the reader of JSON allows about as many.
+const NESTED: usize = 100;
 
 /// Allowed positions.
 const POSITION: &str =
@@ -26,18 +34,31 @@ const FAR: &str = " from the origin";
 
 impl Map {
     /// Reads a GeoJSON file: a feature collection, a feature or a geometry of polygons with holes,
-    /// on the plane of a georeference. The error holds every fault, at most one for each polygon.
-    pub fn read(file: &Path, earth: &Georeference) -> Result<Self, InputError> {
+    /// on the plane of a georeference. With `point_radius`, metres, a point is land up to this
+    /// distance, and so is a line; without it both are skipped, with a caution. The error holds
+    /// every fault, at most one for each polygon.
+    pub fn read(
+        file: &Path,
+        earth: &Georeference,
+        point_radius: Option<f64>,
+    ) -> Result<Self, InputError> {
         let text = read_text(file, FILE_MEBIBYTES, "a map")?;
-        Self::parse(&text, earth).map_err(|faults| InputError::faults(file, faults))
+        Self::parse(&text, earth, point_radius).map_err(|faults| InputError::faults(file, faults))
     }
 
     /// [`Map::read`] of a text.
-    pub fn parse(text: &str, earth: &Georeference) -> Result<Self, Vec<Fault>> {
+    pub fn parse(
+        text: &str,
+        earth: &Georeference,
+        point_radius: Option<f64>,
+    ) -> Result<Self, Vec<Fault>> {
         let mut reading = Reading {
             earth,
+            point_radius,
             polygons: Vec::new(),
             faults: Vec::new(),
+            skipped: [0; 3],
+            depths: 0,
         };
         reading.document(text);
         if !reading.faults.is_empty() {
@@ -53,10 +74,12 @@ impl Map {
             );
             return Err(reading.faults);
         }
-        Self::new(reading.polygons).map_err(|error| {
+        let remarks = reading.remarks();
+        let map = Self::new(reading.polygons).map_err(|error| {
             let allowed = "polygons that can be cut into convex pieces";
             vec![Fault::new("", error, allowed)]
-        })
+        })?;
+        Ok(Self { remarks, ..map })
     }
 }
 
@@ -75,8 +98,14 @@ fn together(mut faults: Vec<Fault>) -> Vec<Fault> {
 
 struct Reading<'a> {
     earth: &'a Georeference,
+    /// Metres.
+    point_radius: Option<f64>,
     polygons: Vec<Polygon>,
     faults: Vec<Fault>,
+    /// Points, lines and features without a geometry that are left out.
+    skipped: [usize; 3],
+    /// Features with one of the [`DEPTHS`].
+    depths: usize,
 }
 
 impl Reading<'_> {
@@ -88,7 +117,10 @@ impl Reading<'_> {
     fn document(&mut self, text: &str) {
         match text.parse::<GeoJson>() {
             Ok(GeoJson::FeatureCollection(collection)) => self.collection(&collection),
-            Ok(GeoJson::Feature(feature)) => self.feature(0, feature.geometry.as_ref()),
+            Ok(GeoJson::Feature(feature)) => {
+                self.properties(feature.properties.as_ref());
+                self.feature(0, feature.geometry.as_ref());
+            }
             Ok(GeoJson::Geometry(geometry)) => self.feature(0, Some(&geometry)),
             Err(error) => {
                 let found = format!("no GeoJSON ({error})");
@@ -115,21 +147,116 @@ impl Reading<'_> {
             );
         }
         for (index, feature) in collection.features.iter().enumerate() {
+            self.properties(feature.properties.as_ref());
             self.feature(index, feature.geometry.as_ref());
         }
     }
 
+    fn properties(&mut self, properties: Option<&JsonObject>) {
+        let has_depth = |all: &JsonObject| {
+            let mut depths = DEPTHS.iter().filter_map(|key| all.get(*key));
+            depths.any(|value| !value.is_null())
+        };
+        self.depths += usize::from(properties.is_some_and(has_depth));
+    }
+
+    /// RFC 7946 allows a feature without a place.
     fn feature(&mut self, index: usize, geometry: Option<&Geometry>) {
-        match geometry.map(|g| &g.value) {
-            Some(GeometryValue::Polygon { coordinates }) => self.polygon(index, coordinates),
-            Some(GeometryValue::MultiPolygon { coordinates }) if !coordinates.is_empty() => {
+        match geometry {
+            Some(geometry) => self.geometry(index, geometry, 0),
+            None => self.skipped[2] += 1,
+        }
+    }
+
+    fn geometry(&mut self, index: usize, geometry: &Geometry, depth: usize) {
+        match &geometry.value {
+            GeometryValue::Polygon { coordinates } => self.polygon(index, coordinates),
+            GeometryValue::MultiPolygon { coordinates } if !coordinates.is_empty() => {
                 for polygon in coordinates {
                     self.polygon(index, polygon);
                 }
             }
-            Some(other) => self.fault(Some(index), format!("a {}", other.type_name()), POLYGON),
-            None => self.fault(Some(index), "no geometry", POLYGON),
+            GeometryValue::Point { coordinates } => self.line(index, &[coordinates]),
+            GeometryValue::MultiPoint { coordinates } => {
+                for point in coordinates {
+                    self.line(index, &[point]);
+                }
+            }
+            GeometryValue::LineString { coordinates } => {
+                self.line(index, &coordinates.iter().collect::<Vec<_>>());
+            }
+            GeometryValue::MultiLineString { coordinates } => {
+                for line in coordinates {
+                    self.line(index, &line.iter().collect::<Vec<_>>());
+                }
+            }
+            GeometryValue::GeometryCollection { geometries } if depth < NESTED => {
+                for geometry in geometries {
+                    self.geometry(index, geometry, depth + 1);
+                }
+            }
+            other => self.fault(Some(index), format!("a {}", other.type_name()), POLYGON),
         }
+    }
+
+    /// A point as a disc, and a line as a strip with round ends; both are outer approximations.
+    fn line(&mut self, feature: usize, positions: &[&Position]) {
+        let Some(radius) = self.point_radius else {
+            self.skipped[usize::from(positions.len() > 1)] += 1;
+            return;
+        };
+        let mut points = Vec::with_capacity(positions.len());
+        for (index, position) in positions.iter().enumerate() {
+            match self.point(position) {
+                Ok(point) => points.push(point),
+                Err((found, allowed)) => {
+                    let found = format!("{found} at position {index}");
+                    return self.fault(Some(feature), found, allowed);
+                }
+            }
+        }
+        let disc = outer_disc(radius, 0.0);
+        let around = |ends: &[Vector]| {
+            let moved = ends.iter().map(|end| disc.translated(*end));
+            let vertices: Vec<Vector> = moved.flat_map(|disc| disc.vertices().to_vec()).collect();
+            ConvexPolygon::hull(&vertices).ok()
+        };
+        let parts = points.windows(points.len().clamp(1, 2)).map(around);
+        for part in parts {
+            let ring = part.map(|part| vec![part.vertices().to_vec()]);
+            match ring.map(|ring| Polygon::new(&ring)) {
+                Some(Ok(polygon)) => self.polygons.push(polygon),
+                _ => self.fault(Some(feature), "a place that is not finite", POSITION),
+            }
+        }
+    }
+
+    fn remarks(&self) -> Remarks {
+        let mut remarks = Remarks::default();
+        let [points, lines, without] = self.skipped;
+        let parts = [(points, "point"), (lines, "line")].into_iter();
+        let parts = parts.filter(|(count, _)| *count > 0);
+        let parts: Vec<String> = parts.map(|(count, word)| counted(count, word)).collect();
+        if !parts.is_empty() {
+            remarks.caution(
+                format_args!("{} of the map", parts.join(" and ")),
+                "skipped, as if it were water there; map = { file = …, point_radius_m = … } takes \
+                 them as land",
+            );
+        }
+        if without > 0 {
+            let features = counted(without, "feature");
+            remarks.note("map", format_args!("{features} without a geometry skipped"));
+        }
+        if self.depths > 0 {
+            let statement = format_args!(
+                "{} with {} taken as land, whatever its depth",
+                counted(self.depths, "feature"),
+                DEPTHS.join(", ")
+            );
+            remarks.note("map", statement);
+        }
+        remarks
     }
 
     fn polygon(&mut self, feature: usize, rings: &[Vec<Position>]) {
@@ -257,7 +384,7 @@ mod tests {
     const ISLAND: &str = "[[10.4,63.44],[10.41,63.44],[10.41,63.45],[10.4,63.44]]";
 
     fn only_fault(text: &str) -> Fault {
-        let faults = Map::parse(text, &earth()).expect_err("faulty");
+        let faults = Map::parse(text, &earth(), None).expect_err("faulty");
         assert_eq!(faults.len(), 1, "{faults:?}");
         faults[0].clone()
     }
@@ -274,12 +401,12 @@ mod tests {
             (feature, 1),
             (collection(&[&island, &several]), 3),
         ] {
-            let map = Map::parse(&text, &earth()).expect("a map");
+            let map = Map::parse(&text, &earth(), None).expect("a map");
             assert_eq!(map.polygons().len(), count);
         }
         // a height is of no interest, nor is the order of turning
         let high = "[[10.4,63.44,3],[10.41,63.45,3],[10.41,63.44,3],[10.4,63.44,3]]";
-        assert!(Map::parse(&polygon(high), &earth()).is_ok());
+        assert!(Map::parse(&polygon(high), &earth(), None).is_ok());
     }
 
     /// Positions of a ring, what is found, and what is allowed.
@@ -298,7 +425,6 @@ mod tests {
     #[test]
     fn faults_name_their_feature_and_what_is_allowed() {
         let island = polygon(ISLAND);
-        let line = r#"{"type":"LineString","coordinates":[[10.4,63.44],[10.41,63.44]]}"#;
         let hole = format!("{ISLAND},{}", ISLAND.replace("63.4", "63.5"));
         let rings = RINGS.lines().filter_map(|row| {
             let (points, said) = row.split_once(": ")?;
@@ -307,8 +433,11 @@ mod tests {
             Some((polygon(&format!("[[{points}]]")), found, allowed))
         });
         let mut cases = vec![
-            (line.to_owned(), "a LineString", POLYGON),
-            ("null".to_owned(), "no geometry", POLYGON),
+            (
+                r#"{"type":"MultiPolygon","coordinates":[]}"#.to_owned(),
+                "a MultiPolygon",
+                POLYGON,
+            ),
             (polygon(&hole), "hole 1 is not inside", "holes inside"),
         ];
         cases.extend(rings);
@@ -319,8 +448,37 @@ mod tests {
             assert!(fault.allowed.contains(allowed), "{fault}");
         }
         let all: Vec<&str> = cases.iter().map(|(g, _, _)| g.as_str()).collect();
-        let together = Map::parse(&collection(&all), &earth()).expect_err("faulty");
+        let together = Map::parse(&collection(&all), &earth(), None).expect_err("faulty");
         assert_eq!(together.len(), cases.len(), "all at once");
+    }
+
+    /// Points and lines are land up to the radius and never less; without one they are counted.
+    #[test]
+    fn points_and_lines_are_discs_and_strips_or_are_counted() {
+        let point = r#"{"type":"Point","coordinates":[10.4,63.44]}"#;
+        let line = r#"{"type":"LineString","coordinates":[[10.42,63.44],[10.42,63.45]]}"#;
+        let both = format!(r#"{{"type":"GeometryCollection","geometries":[{point},{line}]}}"#);
+        let island = polygon(&ISLAND.replace("10.4", "10.6"));
+        let text = collection(&[&island, &both, "null"]);
+        let skipped = Map::parse(&text, &earth(), None).expect("a map");
+        assert_eq!(skipped.polygons().len(), 1);
+        let remarks = skipped.remarks();
+        assert!(remarks.cautions[0].starts_with("1 point and 1 line of the map: skipped"));
+        assert_eq!(remarks.notes, ["map: 1 feature without a geometry skipped"]);
+        let map = Map::parse(&text, &earth(), Some(50.0)).expect("a map");
+        assert!(map.remarks().cautions.is_empty());
+        let line = |lat| earth().to_plane(Geographic::new(lat, 10.42));
+        for k in 0..64 {
+            let to = crate::frame::direction(f64::from(k) * 0.1) * 50.0;
+            for middle in [Vector::zeros(), line(63.44), line(63.445), line(63.45)] {
+                assert!(map.contains(middle + to * 0.9999), "{k}");
+            }
+            assert!(!map.contains(to * 1.02), "{k}");
+        }
+        let far = text.replace("[10.4,63.44]}", "[1.4,63.44]}");
+        let faults = Map::parse(&far, &earth(), Some(50.0)).expect_err("far");
+        assert!(faults[0].found.contains("km from the origin"), "{faults:?}");
+        assert!(Map::parse(&far, &earth(), None).is_ok());
     }
 
     /// One fault, not one for each of a thousand islands.
@@ -349,7 +507,12 @@ mod tests {
         );
         // one right island: each of the others is named
         let mixed = collection(&[&swapped, &polygon(ISLAND), &swapped]);
-        assert_eq!(Map::parse(&mixed, &earth()).expect_err("faulty").len(), 2);
+        assert_eq!(
+            Map::parse(&mixed, &earth(), None)
+                .expect_err("faulty")
+                .len(),
+            2
+        );
     }
 
     #[test]
@@ -371,12 +534,12 @@ mod tests {
     fn hostile_text_is_refused_and_never_panics() {
         let text = collection(&[&polygon(ISLAND)]);
         for end in 0..text.len() {
-            assert!(Map::parse(&text[..end], &earth()).is_err());
+            assert!(Map::parse(&text[..end], &earth(), None).is_err());
         }
         for hostile in ["1e308", "-1e308", "5e-324", "null", "[]", "\"a\"", "1e999"] {
             for (at, _) in text.match_indices(char::is_numeric) {
                 let mutated = format!("{}{hostile}{}", &text[..at], &text[at + 1..]);
-                let _ = Map::parse(&mutated, &earth());
+                let _ = Map::parse(&mutated, &earth(), None);
             }
         }
     }

@@ -165,7 +165,7 @@ fn painted_headline(plan: &PlanDocument, display: Display) -> String {
     let part = |part: String| {
         let tone = match part.split(' ').next() {
             Some("breaks") => Tone::Bad,
-            Some("skips") => Tone::Fair,
+            Some("skips" | "ignores") => Tone::Fair,
             _ if plan.verified && plan.is_safe() => Tone::Good,
             _ => Tone::Bad,
         };

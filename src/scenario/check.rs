@@ -7,16 +7,18 @@ use chrono::{DateTime, Utc};
 
 use super::plane::{Plane, near};
 use super::planner::{PlannerTable, planner};
-use super::route::Route;
+use super::route::{Route, RouteLeg};
 use super::simulation::simulation;
 use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits};
 use crate::colregs::TargetMemory;
-use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::input::{Fault, Faults, Field, Node, Table, every, from_toml};
+use crate::frame::{
+    GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Vector, heading_from_course_deg,
+};
+use crate::input::{Fault, Faults, Field, Node, Range, Remarks, Table, every, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
-use crate::text::LINE;
+use crate::text::{LINE, counted, knots};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
@@ -25,6 +27,21 @@ const DEFAULT_SPEEDS: [f64; 2] = [0.5, 1.0];
 
 /// Speeds that differ by this fraction are one.
 const SAME_SPEED: f64 = 1e-9;
+
+/// Cautions of a file.
+const CAUTIONS: usize = 1000;
+
+/// The waypoints of a route by their numbers in the file.
+const FROM_WAYPOINT: Range = Range::between(1.0, 10_000.0);
+
+/// Horizon in durations of a mission that is cut out of a longer route.
+const HORIZON_MISSIONS: f64 = 2.0;
+
+/// Metres behind a corner, in turning radii, that a mission needs to end there after the turn.
+const ROOM_AFTER_TURN: f64 = 4.0;
+
+/// Metres beside the straight leg of a plane from which on rhumb lines are remarked.
+const BESIDE_M: f64 = 1.0;
 
 /// Seconds after arrival for which own ship is observed by default.
 const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
@@ -70,7 +87,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let start = root.take("start_utc").map(|field| field.date_time());
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
-    let map = land::map(&mut root, &plane, folder);
+    let mut remarks = Remarks::default();
+    cautions(&mut root, &mut remarks);
+    let map = land::map(&mut root, &plane, folder, &mut remarks);
     let own_ship = root
         .required_table("own_ship")
         .map(|table| own_ship(table, |table| pose(table, &plane)));
@@ -79,11 +98,28 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let acceleration = own_ship.as_ref().and_then(|own| own.acceleration);
     let has_speeds = own_ship.as_ref().is_some_and(|own| own.has_speeds);
     let mut own_ship = own_ship.and_then(|own| own.ship);
+    let reading = Reading {
+        plane: &plane,
+        folder,
+        own_speed: speed,
+        own_place: own_ship.as_ref().map(|own| own.pose.position),
+        turning_radius: own_ship.as_ref().map_or(0.0, |own| own.turning_radius),
+        time,
+        horizon,
+    };
     let mission = root
         .required_table("mission")
-        .and_then(|table| mission(table, speed, &plane, folder, time));
-    if let (Some(own), Some(mission), false) = (&mut own_ship, &mission, has_speeds) {
-        add_speeds(&mut own.speeds, &mission.desired);
+        .and_then(|table| mission(table, &reading, &mut remarks));
+    if let (Some(own), Some(mission)) = (&mut own_ship, &mission) {
+        match (has_speeds, mission.is_route) {
+            (false, _) => add_speeds(&mut own.speeds, &mission.desired, f64::INFINITY),
+            (true, true) => {
+                let most = own.max_speed();
+                add_speeds(&mut own.speeds, &mission.desired, most);
+            }
+            (true, false) => {}
+        }
+        fast_legs(own, mission, &mut remarks);
     }
     // without a length the file is faulty, and any length serves
     let length = own_ship.as_ref().map_or(1.0, |own| own.hull.length);
@@ -125,6 +161,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
             ..Memory::default()
         },
         simulation,
+        remarks,
         ..bare(title?, horizon?, own_ship, desired, planner, tracked)
     })
 }
@@ -172,6 +209,7 @@ pub(super) fn bare(
         land: None,
         memory: Memory::default(),
         simulation: SimulationSettings::default(),
+        remarks: Remarks::default(),
     }
 }
 
@@ -273,15 +311,71 @@ fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-/// Adds the speeds of the mission: without them own ship would change between two others all the way.
-fn add_speeds(speeds: &mut Vec<f64>, desired: &DesiredTrajectory) {
+/// Adds the speeds of the mission up to `most`: without them own ship would change between two others
+/// all the way.
+fn add_speeds(speeds: &mut Vec<f64>, desired: &DesiredTrajectory, most: f64) {
     for leg in desired.legs() {
         let is_there = |speed: &f64| (speed - leg.speed).abs() <= SAME_SPEED * leg.speed;
-        if speeds.len() < limits::SPEEDS && !speeds.iter().any(is_there) {
+        let fits = speeds.len() < limits::SPEEDS && leg.speed <= most;
+        if fits && !speeds.iter().any(is_there) {
             speeds.push(leg.speed);
         }
     }
     speeds.sort_by(f64::total_cmp);
+}
+
+/// Remarks on speeds of a route that own ship does not reach, and on limits that it may exceed.
+fn fast_legs(own: &OwnShip, mission: &Mission, remarks: &mut Remarks) {
+    if !mission.is_route {
+        return;
+    }
+    let largest = own.max_speed();
+    let (mut fast, mut fastest) = (0, 0.0);
+    for leg in mission
+        .desired
+        .legs()
+        .iter()
+        .filter(|leg| leg.speed > (1.0 + SAME_SPEED) * largest)
+    {
+        fast += 1;
+        fastest = leg.speed.max(fastest);
+    }
+    if fast > 0 {
+        let (fastest, largest) = (knots(fastest), knots(largest));
+        let statement = format_args!(
+            "up to {fastest}, and own ship falls behind: the largest of its speeds is {largest}"
+        );
+        remarks.note(
+            format_args!("speeds of {}", counted(fast, "leg")),
+            statement,
+        );
+    }
+    if let Some(least) = mission
+        .most
+        .filter(|most| *most < (1.0 - SAME_SPEED) * largest)
+    {
+        let statement = format_args!(
+            "limits the mission alone, on a leg to {}; a plan may use own ship's speeds up to {}",
+            knots(least),
+            knots(largest)
+        );
+        remarks.note("speedMax", statement);
+    }
+}
+
+/// The cautions of the program that wrote the file.
+fn cautions(root: &mut Table, remarks: &mut Remarks) {
+    let Some(field) = root.take("cautions") else {
+        return;
+    };
+    let Some(list) = field.list(0..=CAUTIONS, "texts") else {
+        return;
+    };
+    let texts = every(
+        list.iter()
+            .map(|text| text.line_of_text().map(str::to_owned)),
+    );
+    remarks.cautions.extend(texts.unwrap_or_default());
 }
 
 struct Mission {
@@ -289,79 +383,321 @@ struct Mission {
     /// The date and time at 0 s on the clock of the file, by the schedule of the route.
     date: Option<DateTime<Utc>>,
     alternatives: Vec<Vec<Vector>>,
+    /// True where the speeds are those of a route file.
+    is_route: bool,
+    /// The least of the highest speeds that the legs of a route allow, m/s.
+    most: Option<f64>,
 }
 
-fn mission(
-    mut table: Table,
+/// What the mission needs of the rest of the file.
+struct Reading<'a> {
+    plane: &'a Plane,
+    folder: &'a Path,
+    /// m/s.
     own_speed: Option<f64>,
-    plane: &Plane,
-    folder: &Path,
+    own_place: Option<Vector>,
+    /// Metres.
+    turning_radius: f64,
     time: Option<f64>,
-) -> Option<Mission> {
+    horizon: Option<f64>,
+}
+
+fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option<Mission> {
+    let Reading { plane, time, .. } = *reading;
     let start = table
         .take("start_s")
         .map_or(time, |field| field.number(limits::until(time?)));
     let alternatives = table.read_or("alternatives", Vec::new(), |field| {
         alternatives(field, plane)
     });
-    let (waypoints, speeds, departs) = if let Some(field) = table.take("route") {
+    let from = table.take("from_waypoint");
+    let from_read = from.as_ref().map(|field| field.whole_number(FROM_WAYPOINT));
+    let schedule = table.take("schedule");
+    let of_route = from.iter().chain(&schedule).next().cloned();
+    let schedule = schedule.map(|field| field.line_of_text());
+    let mut part: Option<Part> = None;
+    let (waypoints, speeds) = if let Some(field) = table.take("route") {
         table.forbid("waypoints", "nothing: the route has them");
-        let (waypoints, route) = route(&field, folder, plane).unzip();
-        let legs = route.as_ref().map(|route| route.speeds.as_slice());
-        let speeds = leg_speeds(&mut table, legs, own_speed);
-        (waypoints, speeds, route.and_then(|route| route.departs))
+        part = match (schedule, from_read) {
+            (Some(None), _) | (_, Some(None)) => None,
+            (schedule, from) => {
+                let wanted = (schedule.flatten(), from.flatten());
+                route(&field, wanted, reading, remarks)
+            }
+        };
+        let legs = part.as_ref().map(|part| part.legs.as_slice());
+        let is_ordered = table.has_speed("speed") || table.has_speed("leg_speeds");
+        let mut speeds = leg_speeds(&mut table, legs, reading.own_speed);
+        if let (Some(speeds), Some(part), false) = (&mut speeds, &part, is_ordered) {
+            slow_down(&field, speeds, part, remarks)?;
+        }
+        (part.as_ref().map(|part| part.points.clone()), speeds)
     } else {
+        if let Some(field) = of_route {
+            field.fault(
+                "a key of a route",
+                "nothing beside 'waypoints': it is for 'route'",
+            );
+        }
         let fields = table
             .require(
                 "waypoints",
                 "a list of at least 2 positions, or 'route', a file",
             )
             .and_then(|field| positions(&field));
-        let legs = fields.as_ref().map(|fields| vec![None; fields.len() - 1]);
+        let legs = fields
+            .as_ref()
+            .map(|fields| vec![LegSpeeds::default(); fields.len() - 1]);
         let waypoints = fields.and_then(|fields| waypoints(&fields, plane));
         (
             waypoints,
-            leg_speeds(&mut table, legs.as_deref(), own_speed),
-            None,
+            leg_speeds(&mut table, legs.as_deref(), reading.own_speed),
         )
     };
     table.finish();
     // every leg is long and fast enough by now
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
     let elapsed = time? - start?;
+    let mut desired = if elapsed > 0.0 {
+        desired.remaining(elapsed)
+    } else {
+        desired
+    };
+    let is_cut = part.as_ref().is_some_and(|part| part.is_cut);
+    if let (true, Some(horizon)) = (is_cut, reading.horizon) {
+        let room = ROOM_AFTER_TURN * reading.turning_radius;
+        desired = until(desired, horizon / HORIZON_MISSIONS, room, remarks);
+    }
+    let departs = part.as_ref().and_then(|part| part.departs);
+    let most = part
+        .iter()
+        .flat_map(|part| &part.legs)
+        .filter_map(|leg| leg.most);
     Some(Mission {
         date: departs.and_then(|departs| after(departs, -start?)),
-        desired: if elapsed > 0.0 {
-            desired.remaining(elapsed)
-        } else {
-            desired
-        },
+        desired,
         alternatives,
+        is_route: part.is_some(),
+        most: most.reduce(f64::min),
     })
 }
 
-/// A route file, and its waypoints on the plane.
-fn route(field: &Field, folder: &Path, plane: &Plane) -> Option<(Vec<Vector>, Route)> {
-    let earth = plane.need_earth();
-    let file = field.file_in(folder)?;
+/// The beginning of a mission that takes no more than some seconds. It does not end within `room`,
+/// metres, behind a corner, but at the corner.
+fn until(
+    desired: DesiredTrajectory,
+    time: f64,
+    room: f64,
+    remarks: &mut Remarks,
+) -> DesiredTrajectory {
+    let mut legs = desired.legs().iter();
+    let Some((index, leg)) = legs
+        .by_ref()
+        .enumerate()
+        .find(|(_, leg)| leg.end_time() > time)
+    else {
+        return desired;
+    };
+    let made = (time - leg.start_time) * leg.speed;
+    let is_short = index > 0 && made < room;
+    let length = leg.start_distance + if is_short { 0.0 } else { made };
+    let Some(begin) = desired.shortened(desired.length() - length) else {
+        return desired;
+    };
+    let statement = format_args!(
+        "the mission is its next {:.1} km, which take no more than half of horizon_s, so that \
+         there is time to give way",
+        1e-3 * begin.length()
+    );
+    remarks.note("route", statement);
+    begin
+}
+
+/// Speeds that a leg of a route has, m/s.
+#[derive(Debug, Clone, Copy, Default)]
+struct LegSpeeds {
+    ordered: Option<f64>,
+    /// The highest allowed one.
+    most: Option<f64>,
+}
+
+/// The part of a route that is the mission.
+struct Part {
+    points: Vec<Vector>,
+    legs: Vec<LegSpeeds>,
+    /// Seconds that own ship waits where each leg ends.
+    waits: Vec<f64>,
+    departs: Option<DateTime<Utc>>,
+    /// True where something of the route is left out.
+    is_cut: bool,
+}
+
+/// Makes a leg before a wait as slow as to end with the wait: a desired trajectory does not wait.
+fn slow_down(field: &Field, speeds: &mut [f64], part: &Part, remarks: &mut Remarks) -> Option<()> {
+    for (leg, (speed, wait)) in speeds.iter_mut().zip(&part.waits).enumerate() {
+        if *wait <= 0.0 {
+            continue;
+        }
+        let length = (part.points[leg + 1] - part.points[leg]).norm();
+        *speed = length / (length / *speed + wait);
+        if !limits::WAY.contains(*speed) {
+            let found = format_args!("a stay of {wait} s after a leg of {length:.0} m");
+            return field.reject(found, "a shorter stay, or a route that ends there");
+        }
+        let statement = format_args!(
+            "taken as a slower leg {}, at {}, which ends when the stay does",
+            leg + 1,
+            knots(*speed)
+        );
+        remarks.note(format_args!("stay of {wait:.0} s"), statement);
+    }
+    Some(())
+}
+
+/// The part of a route file, with its schedule and its first waypoint by choice, that is the mission.
+/// A route beyond the reach of the plane is followed from the place nearest to own ship, or from the
+/// chosen waypoint, to the end of the reach.
+fn route(
+    field: &Field,
+    (schedule, from): (Option<&str>, Option<usize>),
+    reading: &Reading,
+    remarks: &mut Remarks,
+) -> Option<Part> {
+    let earth = reading.plane.need_earth();
+    let file = field.file_in(reading.folder)?;
     let kind = "a route file, RTZ 1.0 to 1.2";
-    let route = field.contents(&file, Route::read(&file), kind)?;
+    let route = field.contents(&file, Route::read(&file, schedule), kind)?;
     let earth = earth?;
-    let places = route.places.iter();
-    let points = every(places.map(|place| near(field, *place, &earth)))?;
-    let sound = (1..).zip(points.windows(2)).all(|(leg, pair)| {
-        let length = (pair[1] - pair[0]).norm();
-        let is_long = length >= limits::LENGTH.low;
-        if !is_long {
-            let found = format_args!("waypoints {leg} and {} in one place", leg + 1);
-            field.fault(
-                found,
+    let count = route.places.len();
+    if let Some(from) = from.filter(|from| *from >= count) {
+        let found = format_args!("from_waypoint = {from} for a route of {count} waypoints");
+        return field.reject(found, format_args!("1 to {}", count - 1));
+    }
+    remarks.extend(&route.remarks);
+    let is_near = |place: &Geographic| earth.to_near_plane(*place).is_some();
+    let is_whole = count <= limits::WAYPOINTS && route.places.iter().all(is_near);
+    let (first, begins) = match from {
+        Some(from) => (from - 1, 0.0),
+        None if is_whole => (0, 0.0),
+        None => {
+            let own = reading.own_place.unwrap_or_default();
+            let Some(nearest) = nearest(&route.legs, own, &earth) else {
+                near(field, route.places[0], &earth)?;
+                return None;
+            };
+            nearest
+        }
+    };
+    // a fault where the chosen waypoint is beyond reach
+    let mut points = vec![near(field, route.legs[first].at(begins), &earth)?];
+    let (mut legs, mut waits) = (Vec::new(), Vec::new());
+    let mut beside: [f64; 2] = [0.0; 2];
+    let (mut last, mut ends) = (first, 1.0);
+    for (index, leg) in route.legs.iter().enumerate().skip(first) {
+        if legs.len() + 1 == limits::WAYPOINTS {
+            break;
+        }
+        let from = if index == first { begins } else { 0.0 };
+        let reached = leg.within_reach(&earth);
+        let to = match reached {
+            Some([starts, to]) if starts <= from => to,
+            _ => break,
+        };
+        let point = near(field, leg.at(to), &earth)?;
+        let length = (point - points[points.len() - 1]).norm();
+        if !(length >= limits::LENGTH.low) {
+            if to < 1.0 || index == first {
+                continue;
+            }
+            return field.reject(
+                format_args!("waypoints {} and {} in one place", index + 1, index + 2),
                 format_args!("legs of at least {} m", limits::LENGTH.low),
             );
         }
-        is_long
-    });
-    sound.then_some((points, route))
+        let off = &mut beside[usize::from(leg.is_great_circle)];
+        *off = off.max(leg.beside([from, to], &earth));
+        points.push(point);
+        legs.push(LegSpeeds {
+            ordered: leg.speed,
+            most: leg.most,
+        });
+        waits.push(if to < 1.0 { 0.0 } else { leg.wait });
+        (last, ends) = (index, to);
+        if to < 1.0 {
+            break;
+        }
+    }
+    // where the mission ends nothing waits
+    if let Some(wait) = waits.last_mut() {
+        *wait = 0.0;
+    }
+    if legs.is_empty() {
+        return field.reject("no leg within reach of the origin", "a route near own ship");
+    }
+    let is_cut = last + 1 < route.legs.len() || ends < 1.0;
+    if is_cut || (first, begins) != (0, 0.0) {
+        let reach = GEOREFERENCE_REACH_M / 1e3;
+        let until = match ends < 1.0 {
+            true => format!("on leg {}", last + 1),
+            false => format!("at waypoint {}", last + 2),
+        };
+        let begun = match begins > 0.0 {
+            true => format!("beside own ship on leg {}", first + 1),
+            false => format!("at waypoint {}", first + 1),
+        };
+        let statement = format_args!(
+            "of {count} waypoints; the mission begins {begun} and ends {until}, within {reach:.0} \
+             km of the origin and with at most {} waypoints",
+            limits::WAYPOINTS
+        );
+        remarks.note("route", statement);
+    }
+    for (kind, off, from) in [
+        ("rhumb lines (Loxodrome)", beside[0], BESIDE_M),
+        ("great circles (Orthodrome)", beside[1], 0.0),
+    ] {
+        let is_there = kind.starts_with('r') || route.legs.iter().any(|leg| leg.is_great_circle);
+        if is_there && off >= from {
+            let statement = format_args!(
+                "a leg is a straight line of the plane, here at most {off:.1} m beside them"
+            );
+            remarks.note(kind, statement);
+        }
+    }
+    let departs = match begins > 0.0 {
+        true => None,
+        false => route.departs[first],
+    };
+    Some(Part {
+        points,
+        legs,
+        waits,
+        departs,
+        is_cut,
+    })
+}
+
+/// The leg that comes nearest to own ship within reach, and the fraction of it where it does. The end
+/// of a leg is the beginning of the next one.
+fn nearest(legs: &[RouteLeg], own: Vector, earth: &Georeference) -> Option<(usize, f64)> {
+    let mut best: Option<(f64, usize, f64)> = None;
+    for (index, leg) in legs.iter().enumerate() {
+        let Some([from, to]) = leg.within_reach(earth) else {
+            continue;
+        };
+        let [start, end] = [from, to].map(|fraction| earth.to_plane(leg.at(fraction)));
+        let way = end - start;
+        let along = ((own - start).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+        let off = (start + way * along - own).norm();
+        if best.is_none_or(|(least, ..)| off < least) {
+            best = Some((off, index, from + along * (to - from)));
+        }
+    }
+    let (_, index, fraction) = best?;
+    Some(match fraction >= 1.0 && index + 1 < legs.len() {
+        true => (index + 1, 0.0),
+        false => (index, fraction),
+    })
 }
 
 fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {
@@ -415,10 +751,11 @@ pub(super) fn waypoints_from(
     points.filter(|_| sound)
 }
 
-/// The speed of each leg: those of the file, else that of the leg in its route, else own ship's.
+/// The speed of each leg: those of the file, else that of the leg in its route, else own ship's, up
+/// to the highest that the leg allows.
 fn leg_speeds(
     table: &mut Table,
-    legs: Option<&[Option<f64>]>,
+    legs: Option<&[LegSpeeds]>,
     own_speed: Option<f64>,
 ) -> Option<Vec<f64>> {
     let one = table.speed("speed", limits::WAY);
@@ -445,20 +782,17 @@ fn leg_speeds(
     if table.has_speed("leg_speeds") {
         return None;
     }
-    let of_route: Option<Vec<f64>> = legs.and_then(|legs| legs.iter().copied().collect());
-    if of_route.is_some() {
-        return of_route;
-    }
     let own_speed = own_speed?;
-    if limits::WAY.contains(own_speed) {
-        Some(
-            legs?
-                .iter()
-                .map(|speed| speed.unwrap_or(own_speed))
-                .collect(),
-        )
-    } else {
+    let makes_way = limits::WAY.contains(own_speed);
+    // own ship at rest has no speed for a leg without one
+    let usual = |leg: &LegSpeeds| match makes_way {
+        true => Some(leg.most.map_or(own_speed, |most| own_speed.min(most))),
+        false => leg.most,
+    };
+    let legs = legs?.iter().map(|leg| leg.ordered.or_else(|| usual(leg)));
+    let speeds: Option<Vec<f64>> = legs.collect();
+    if speeds.is_none() {
         table.require_speed("speed", limits::WAY);
-        None
     }
+    speeds
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::plane::Plane;
 use crate::frame::{Pose, Vector, heading_of};
-use crate::input::{Field, Table};
+use crate::input::{Field, Range, Remarks, Table};
 use crate::map::{LandCrossing, Map};
 use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
@@ -66,15 +66,34 @@ impl Land {
     }
 }
 
-/// The map that the key `map` names, from `folder`; `None` without the key, or with a fault noted.
-pub(super) fn map(root: &mut Table, plane: &Plane, folder: &Path) -> Option<Arc<Map>> {
-    let field = root.take("map")?;
+/// Metres around points and lines of a map.
+const POINT_RADIUS: Range = Range::between(0.001, 10_000.0);
+
+/// The map that the key `map` names, from `folder`: a file, or a table of a file and of the radius
+/// that points and lines have. `None` without the key, or with a fault noted.
+pub(super) fn map(
+    root: &mut Table,
+    plane: &Plane,
+    folder: &Path,
+    remarks: &mut Remarks,
+) -> Option<Arc<Map>> {
+    let mut field = root.take("map")?;
     let earth = plane.need_earth();
+    let mut radius = Some(None);
+    if field.is_table() {
+        let mut table = field.table("a file, or a table { file, point_radius_m }")?;
+        let file = table.require("file", "a GeoJSON file of land");
+        radius = table
+            .take("point_radius_m")
+            .map_or(Some(None), |field| field.number(POINT_RADIUS).map(Some));
+        table.finish();
+        field = file?;
+    }
     let file = field.file_in(folder)?;
     let kind = "a GeoJSON file of land polygons";
-    field
-        .contents(&file, Map::read(&file, &earth?), kind)
-        .map(Arc::new)
+    let map = field.contents(&file, Map::read(&file, &earth?, radius?), kind)?;
+    remarks.extend(map.remarks());
+    Some(Arc::new(map))
 }
 
 /// Notes a start on land, and every stretch of a path that is too near to land.

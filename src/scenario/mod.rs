@@ -16,7 +16,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
-pub use crate::input::{Fault, InputError as ScenarioError};
+pub use crate::input::{Fault, InputError as ScenarioError, Remarks};
 pub use land::Land;
 pub use limits::FILE_MEBIBYTES;
 pub use memory::Memory;
@@ -106,6 +106,8 @@ pub struct Scenario {
     pub memory: Memory,
     /// How the scenario is sailed in the closed loop, without effect on plans.
     pub simulation: SimulationSettings,
+    /// What its files have that no plan uses, without effect on plans.
+    pub remarks: Remarks,
 }
 
 impl Scenario {

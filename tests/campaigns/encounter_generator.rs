@@ -12,7 +12,7 @@ use searoom::campaign::{Distribution, Encounter};
 use searoom::colregs::Thresholds;
 use searoom::frame::{Pose, Vector, wrap};
 use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
-use searoom::scenario::{Compliance, Memory, Scenario, SimulationSettings};
+use searoom::scenario::{Compliance, Memory, Remarks, Scenario, SimulationSettings};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
@@ -206,6 +206,7 @@ fn scene(
             land: None,
             memory: Memory::default(),
             simulation: SimulationSettings::default(),
+            remarks: Remarks::default(),
         },
         kinds,
         rejected,

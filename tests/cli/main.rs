@@ -8,6 +8,7 @@ mod docs;
 mod figures;
 mod foreign;
 mod golden;
+mod ignored;
 mod lint;
 mod plan;
 mod program;

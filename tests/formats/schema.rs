@@ -40,6 +40,7 @@ fn files() -> Vec<Value> {
     let mut base = json!({
         "title": "all", "horizon_s": 100.0, "time_s": 1e10,
         "origin": { "lat_deg": 59.0, "lon_deg": 10.0 },
+        "map": { "file": "none.geojson", "point_radius_m": 1.0 },
         "own_ship": {
             "position": position, "course_deg": 0.0, "speed_mps": 1.0, "length_m": 10.0,
             "beam_m": 2.0, "turning_radius_m": 9.0, "speeds_mps": [0.0, 1.0],

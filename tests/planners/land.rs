@@ -132,8 +132,12 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
     assert!(missing[0].contains("map: found "), "{missing:?}");
     assert!(missing[0].contains("bad.geojson, which cannot be read"));
     write(&map.replacen(r#""type":"Polygon""#, r#""type":"MultiLineString""#, 1));
-    let line = "bad.geojson: features[0]: a MultiLineString; allowed: a Polygon or a MultiPolygon";
-    assert_one_fault(folder.path(), &text, line);
+    let read = Scenario::parse_beside(&text, folder.path()).expect("a map without one polygon");
+    let caution = &read.remarks.cautions[0];
+    assert!(caution.contains("of the map: skipped"), "{caution}");
+    write(r#"{"type":"FeatureCollection","features":[]}"#);
+    let none = "bad.geojson: no polygon; allowed: at least one feature that is a Polygon";
+    assert_one_fault(folder.path(), &text, none);
     // the origin in another town: every feature is far
     let oslo = SCENARIO
         .replace("63.44,", "59.91,")

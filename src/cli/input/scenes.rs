@@ -35,9 +35,9 @@ impl Scene {
             Source::Text(text) => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 Scenario::parse_beside(text, folder).map(|scenario| Imported {
+                    notes: scenario.remarks.all(),
                     scenario,
                     text: text.clone(),
-                    notes: Vec::new(),
                 })
             }
         };

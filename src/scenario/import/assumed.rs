@@ -24,6 +24,9 @@ pub(super) const TURNING_LENGTHS: f64 = 2.5;
 /// Horizon in durations of own ship's route: time to stay behind a slower ship all the way.
 pub(super) const HORIZON_ROUTES: f64 = 2.0;
 
+/// Hull of a ship whose file says that its size is unknown: nearly every ship is smaller.
+pub(super) const LARGE_HULL: Hull = Hull::new(400.0, 60.0);
+
 /// Values that a scenario needs and imported files do not have. Defaults as in `docs/formats.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
@@ -34,6 +37,8 @@ pub struct Assumed {
     safety_margin: Option<f64>,
     length: Option<f64>,
     beam: Option<f64>,
+    /// Own ship's speed where a file has none, m/s.
+    pub(super) own_speed: Option<f64>,
     pub(super) variants: bool,
 }
 
@@ -45,6 +50,7 @@ impl Default for Assumed {
             safety_margin: None,
             length: None,
             beam: None,
+            own_speed: None,
             variants: false,
         }
     }
@@ -63,6 +69,8 @@ pub enum Assumption {
     Length,
     /// Beam of ships without one, metres.
     Beam,
+    /// Speed of an own ship without one, m/s.
+    OwnSpeed,
 }
 
 impl Assumption {
@@ -72,6 +80,7 @@ impl Assumption {
             Self::CourseSpread => limits::COURSE_SPREAD,
             Self::SafetyMargin => limits::DISTANCE,
             Self::Length | Self::Beam => limits::SHIP_LENGTH,
+            Self::OwnSpeed => limits::SHIP_WAY,
         }
     }
 
@@ -99,6 +108,7 @@ impl Assumed {
             Assumption::SafetyMargin => self.safety_margin = Some(value),
             Assumption::Length => self.length = Some(value),
             Assumption::Beam => self.beam = Some(value),
+            Assumption::OwnSpeed => self.own_speed = Some(value),
         }
         self
     }
@@ -120,6 +130,13 @@ impl Assumed {
             self.length.unwrap_or(USUAL_HULL.length),
             self.beam.unwrap_or(USUAL_HULL.beam),
         )
+    }
+
+    /// Hull of a ship of which only the known sizes are given. Not wider than long.
+    pub(super) fn large_hull(&self, length: Option<f64>, beam: Option<f64>) -> Hull {
+        let length = length.or(self.length).unwrap_or(LARGE_HULL.length);
+        let beam = beam.or(self.beam);
+        Hull::new(length, beam.unwrap_or(LARGE_HULL.beam.min(length)))
     }
 
     /// Hull of a ship whose file lacks its size: only if the user gave one.

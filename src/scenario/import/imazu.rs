@@ -2,7 +2,7 @@
 
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
 use crate::frame::{Pose, Side, Vector, heading_from_course_deg, wrap};
-use crate::input::{Fault, Faults, Field, every};
+use crate::input::{Fault, Faults, Field, Remarks, every};
 use crate::scenario::limits;
 use crate::target::route::Track;
 
@@ -81,7 +81,7 @@ fn case(field: &Field, own: &Own) -> Result<Situation, Vec<Fault>> {
         others,
         earth: None,
         declared: declared(&field, own),
-        notes: Vec::new(),
+        remarks: Remarks::default(),
     })
 }
 
@@ -114,5 +114,6 @@ fn ship((index, field): (usize, &Field)) -> Option<Other> {
         name: format!("target {}", index + 1),
         hull: GivenHull::NotInFormat,
         track: Track::straight(start?, heading?, speed?),
+        off: 0.0,
     })
 }

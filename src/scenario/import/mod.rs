@@ -10,6 +10,7 @@ mod dnv;
 mod imazu;
 mod scenario_text;
 mod situation;
+mod status;
 pub(super) mod xml;
 
 pub use assumed::{Assumed, Assumption};
@@ -46,7 +47,7 @@ impl Contents {
         let text = text.trim_start_matches('\u{feff}').trim_start();
         match text.chars().next() {
             Some('{') => in_json(text, assumed),
-            Some('<') => in_xml(text),
+            Some('<') => in_xml(text, assumed),
             _ => match from_toml(text, &Faults::default()) {
                 Some(root) if root.get("strata").is_some() => Ok(Self::Other(
                     "the specification of a campaign, which `searoom campaign run` reads",
@@ -103,7 +104,7 @@ const RESULTS: [&str; 6] = [
 /// The kind of a plan document.
 pub const A_PLAN: &str = "a plan document, which `searoom verify` checks";
 
-fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
+fn in_xml(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
     let document = xml::parse(text).map_err(|fault| vec![fault])?;
     let root = document.root_element().tag_name().name();
     if root != "commonOcean" {
@@ -114,7 +115,9 @@ fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
         };
         return Err(vec![Fault::new(root, found, allowed)]);
     }
-    Ok(Contents::Situations(commonocean::situations(&document)?))
+    Ok(Contents::Situations(commonocean::situations(
+        &document, assumed,
+    )?))
 }
 
 fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
@@ -129,7 +132,7 @@ fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
         return Ok(Contents::Other(A_PLAN));
     }
     if has("ownShip") || has("targetShips") {
-        let situation = dnv::situation(&root, &faults);
+        let situation = dnv::situation(&root, &faults, assumed);
         return Ok(Contents::Situations(vec![situation]));
     }
     if has("cases") || has("own_ship") {

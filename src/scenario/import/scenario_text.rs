@@ -30,7 +30,7 @@ impl Situation {
         let mut writing = Writing {
             assumed,
             text: String::new(),
-            notes: self.notes.clone(),
+            notes: self.remarks.notes.clone(),
             faults: Vec::new(),
             sizeless: Vec::new(),
             taken: None,
@@ -48,8 +48,10 @@ impl Situation {
         }
         let heading: String = notes.iter().map(|note| format!("# {note}\n")).collect();
         let text = heading + &writing.text;
+        let scenario = Scenario::parse(&text)?;
+        let notes = [scenario.remarks.all(), notes].concat();
         Ok(Imported {
-            scenario: Scenario::parse(&text)?,
+            scenario,
             text,
             notes,
         })
@@ -72,6 +74,14 @@ impl Writing<'_> {
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
         let name = quoted(&situation.name);
         self.text += &format!("title = {name}\nhorizon_s = {horizon:?}\n");
+        let cautions = &situation.remarks.cautions;
+        if !cautions.is_empty() {
+            let lines: String = cautions
+                .iter()
+                .map(|c| format!("    {},\n", quoted(c)))
+                .collect();
+            self.text += &format!("cautions = [\n{lines}]\n");
+        }
         if let Some(earth) = situation.earth {
             let Geographic { lat_deg, lon_deg } = earth.origin();
             self.text += &format!("origin = {{ lat_deg = {lat_deg:?}, lon_deg = {lon_deg:?} }}\n");
@@ -85,9 +95,15 @@ impl Writing<'_> {
         let clearance = |margin: f64| hull.half_diagonal() + margin;
         for other in &situation.others {
             match other {
-                Other::Ship { name, hull, track } => {
+                Other::Ship {
+                    name,
+                    hull,
+                    track,
+                    off,
+                } => {
                     if let Some(theirs) = self.hull(name, hull) {
-                        self.ship(name, theirs, track, clearance(margin), horizon);
+                        let clearance = clearance(margin) + off;
+                        self.ship(name, theirs, track, (clearance, *off), horizon);
                     }
                 }
                 Other::Fixed {
@@ -144,6 +160,15 @@ impl Writing<'_> {
         let hull = match said {
             GivenHull::Known(hull) => return Some(*hull),
             GivenHull::NotInFormat => self.assumed.usual_hull(),
+            GivenHull::Unknown { length, beam } => {
+                let hull = self.assumed.large_hull(*length, *beam);
+                let Hull { length, beam } = hull;
+                self.notes.push(format!(
+                    "{whose}: size unknown, 0 in the file; {length} × {beam} m taken, which \
+                     --length-m and --beam-m change"
+                ));
+                return Some(hull);
+            }
             GivenHull::Missing(path) => {
                 let asked = self.assumed.asked_hull();
                 if asked.is_none() {
@@ -160,7 +185,21 @@ impl Writing<'_> {
         Some(hull)
     }
 
-    fn ship(&mut self, name: &str, hull: Hull, track: &Track, clearance: f64, horizon: f64) {
+    /// A target; `clearance` is the distance, metres, from its centre to own ship's in all, `off` how
+    /// far it may be off its track.
+    fn ship(
+        &mut self,
+        name: &str,
+        hull: Hull,
+        track: &Track,
+        (clearance, off): (f64, f64),
+        horizon: f64,
+    ) {
+        // the sets hold three standard deviations
+        let place = match off > 0.0 {
+            true => format!("position_std_m = {:?}\n", off / 3.0),
+            false => String::new(),
+        };
         let spread = Spread {
             speed: self.assumed.speed_spread,
             course: self.assumed.course_spread,
@@ -173,7 +212,7 @@ impl Writing<'_> {
             let course_spread =
                 deg_from_radians(steady.course_spread).min(limits::COURSE_SPREAD.high);
             self.text += &format!(
-                "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
+                "{}length_m = {length:?}\nbeam_m = {beam:?}\n{place}speed_spread_mps = {:?}\n\
                  course_spread_deg = {course_spread:?}\n",
                 under_way(&steady.pose, steady.speed),
                 steady.speed_spread
@@ -184,7 +223,7 @@ impl Writing<'_> {
             let places: Vec<String> = legs.iter().map(|leg| position(leg.to)).collect();
             let speeds: Vec<f64> = legs.iter().map(|leg| leg.speed).collect();
             self.text += &format!(
-                "{}length_m = {length:?}\nbeam_m = {beam:?}\nspeed_spread_mps = {:?}\n\
+                "{}length_m = {length:?}\nbeam_m = {beam:?}\n{place}speed_spread_mps = {:?}\n\
                  course_spread_deg = {:?}\nwaypoints = [{}]\nleg_speeds_mps = {speeds:?}\n",
                 under_way(&first, legs[0].speed),
                 spread.speed,

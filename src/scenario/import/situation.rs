@@ -2,6 +2,7 @@
 
 use crate::frame::{Georeference, Pose, Side, Vector};
 use crate::geometry::ConvexPolygon;
+use crate::input::Remarks;
 use crate::vessel::Hull;
 
 use crate::target::route::Track;
@@ -19,8 +20,8 @@ pub struct Situation {
     pub(super) earth: Option<Georeference>,
     /// Statements of the file about the situation.
     pub declared: Declared,
-    /// Assumptions and unused parts of the file, in sentences.
-    pub(super) notes: Vec<String>,
+    /// Assumptions and unused parts of the file.
+    pub(super) remarks: Remarks,
 }
 
 /// Statements of a file about its situation, to be compared with the ships and never planned with.
@@ -54,6 +55,11 @@ pub(super) enum GivenHull {
     NotInFormat,
     /// The file lacks it: the empty field.
     Missing(String),
+    /// The file says that it is unknown, all but these: metres.
+    Unknown {
+        length: Option<f64>,
+        beam: Option<f64>,
+    },
 }
 
 /// Another ship, or an object at rest.
@@ -63,6 +69,8 @@ pub(super) enum Other {
         name: String,
         hull: GivenHull,
         track: Track,
+        /// Metres by which it may be off its track, everywhere on it.
+        off: f64,
     },
     /// A convex part of an object at rest, metres.
     Fixed {

@@ -1,5 +1,6 @@
 //! An XML element with its place: the cursor with which XML is read.
 
+use std::collections::BTreeSet;
 use std::fmt::Display;
 
 use roxmltree::{Document, Node, ParsingOptions};
@@ -72,6 +73,10 @@ fn short(id: &str) -> String {
     let kept: String = id.chars().take(ID_LETTERS).collect();
     printable(&kept).replace('\n', " ")
 }
+
+/// Elements, and the names of their attributes and elements that are read or mean nothing here. An
+/// element without a row is not looked into.
+pub type Names = &'static [(&'static str, &'static [&'static str])];
 
 /// An element, its place, and the faults found so far.
 #[derive(Debug, Clone)]
@@ -155,6 +160,26 @@ impl<'a> Xml<'a> {
             );
         }
         found
+    }
+
+    /// Attributes and elements, below this element, that are not among `names`: each once, after the
+    /// name of its element.
+    pub fn unread(&self, names: Names) -> BTreeSet<String> {
+        let mut unread = BTreeSet::new();
+        let mut open = vec![self.node];
+        while let Some(node) = open.pop() {
+            let name = node.tag_name().name();
+            let Some((_, known)) = names.iter().find(|(element, _)| *element == name) else {
+                continue;
+            };
+            let elements = node.children().filter(Node::is_element);
+            let attributes = node.attributes().map(|attribute| attribute.name());
+            let all = attributes.chain(elements.clone().map(|child| child.tag_name().name()));
+            let others = all.filter(|other| !known.contains(other));
+            unread.extend(others.map(|other| format!("{name}/{}", short(other))));
+            open.extend(elements.filter(|child| known.contains(&child.tag_name().name())));
+        }
+        unread
     }
 
     pub fn attribute(&self, name: &str) -> Option<&'a str> {

@@ -31,7 +31,7 @@ pub fn harbour() -> Arc<Map> {
     let origin = Geographic::new(63.444, 10.39);
     let earth = Georeference::new(origin).expect("valid");
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/trondheim-harbour.geojson");
-    Arc::new(Map::read(&file, &earth).expect("a map"))
+    Arc::new(Map::read(&file, &earth, None).expect("a map"))
 }
 
 /// Area of the scenes, and own ship there.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::super::situation::GivenHull;
 use super::super::xml::Xml;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
@@ -14,13 +15,12 @@ const SIZE: Range = Range::between(1e-3, 1e6);
 /// Radians.
 const ANGLE: Range = Range::within(4.0 * std::f64::consts::PI);
 
+/// A hull, and how far its shape is off the position of the ship.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shape {
-    /// Metres.
-    pub(super) outline: ConvexPolygon,
-    /// Size of a hull that contains it, along and across.
-    pub(super) length: f64,
-    pub(super) width: f64,
+pub(super) struct Body {
+    pub(super) hull: GivenHull,
+    /// Metres from the position to the middle of the shape.
+    pub(super) off: f64,
 }
 
 /// A point in metres.
@@ -30,28 +30,86 @@ pub(super) fn point(entry: &Xml) -> Option<Vector> {
     Some(Vector::new(x?, y?))
 }
 
+/// The hull of a ship from its only shape, equally far to both sides of its position. A shape with a
+/// size of 0 is of unknown size, as ships that tell none by AIS are written.
+///
+/// The format does not say about which point a shape is turned. Here it is the position of the ship;
+/// CommonOcean's library (commonocean-io 2025.1) turns it about its own middle, which stays as far
+/// east and north of the position as the file has it (`findings/commonocean-off-centre-shape.sh`). The hull
+/// holds both: the shape about its middle, on every side of the position.
+pub(super) fn body(entry: &Xml) -> Option<Body> {
+    let all: Vec<Xml> = entry.elements().collect();
+    let [only] = &all[..] else {
+        return entry.reject(
+            format_args!("{} shapes", all.len()),
+            "one shape, the hull of the ship",
+        );
+    };
+    let sizes = |names: [&str; 2]| {
+        let sizes = names.map(|name| only.required_number(name, SIZE.or_zero().in_unit("m")));
+        Some([sizes[0]?, sizes[1]?].map(|size| Some(size).filter(|size| *size > 0.0)))
+    };
+    let [length, beam] = match only.name() {
+        "rectangle" => sizes(["length", "width"])?,
+        "circle" => sizes(["radius"; 2])?,
+        _ => [Some(0.0); 2],
+    };
+    if length.is_none() || beam.is_none() {
+        if let Some(center) = only.take("center") {
+            let middle = point(&center)?;
+            if middle != Vector::zeros() {
+                return center.reject("a middle of a shape without size", "0, 0, or none");
+            }
+        }
+        let hull = GivenHull::Unknown { length, beam };
+        return Some(Body { hull, off: 0.0 });
+    }
+    let outline = one(only)?;
+    let middle = match only.take("center") {
+        Some(center) if only.name() != "polygon" => point(&center)?,
+        None if only.name() != "polygon" => Vector::zeros(),
+        _ => outline.centroid(),
+    };
+    let off = match middle.norm() {
+        // no more than the rounding of a centroid
+        off if off > limits::LENGTH.low => off,
+        _ => 0.0,
+    };
+    let reach = |axis: Vector| {
+        let side = |axis: Vector| match off > 0.0 {
+            true => outline.support(axis) - middle.dot(&axis) + off,
+            false => outline.support(axis),
+        };
+        2.0 * side(axis).max(side(-axis))
+    };
+    Some(Body {
+        hull: GivenHull::Known(Hull::new(reach(Vector::x()), reach(Vector::y()))),
+        off,
+    })
+}
+
 /// The shapes in an element, at least one.
-pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
+pub(super) fn shapes(entry: &Xml) -> Option<Vec<ConvexPolygon>> {
     if entry.elements().next().is_none() {
         return entry.reject("no shape", "a rectangle, a circle or a polygon");
     }
     every(entry.elements().map(|shape| one(&shape)))
 }
 
-fn one(entry: &Xml) -> Option<Shape> {
+fn one(entry: &Xml) -> Option<ConvexPolygon> {
     let center = (entry.take("center")).map_or(Some(Vector::zeros()), |center| point(&center))?;
-    let outline = match entry.name() {
+    match entry.name() {
         "rectangle" => {
             let length = entry.required_number("length", SIZE.in_unit("m"));
             let width = entry.required_number("width", SIZE.in_unit("m"));
             let angle = entry.take("orientation");
             let angle = angle.map_or(Some(0.0), |angle| angle.number(ANGLE.in_unit("rad")))?;
             let hull = Hull::new(length?, width?);
-            hull.polygon(&Pose::new(center, angle))
+            Some(hull.polygon(&Pose::new(center, angle)))
         }
         "circle" => {
             let radius = entry.required_number("radius", SIZE.in_unit("m"))?;
-            outer_disc(radius, 0.0).translated(center)
+            Some(outer_disc(radius, 0.0).translated(center))
         }
         "polygon" => {
             let points = every(entry.all("point").map(|p| point(&p)))?;
@@ -60,18 +118,10 @@ fn one(entry: &Xml) -> Option<Shape> {
                 return entry.reject(format_args!("{count} points"), "at least 3");
             }
             // an outer approximation: a bay becomes land
-            ConvexPolygon::hull(&points).ok()?
+            ConvexPolygon::hull(&points).ok()
         }
-        other => {
-            return entry.reject(other, "a rectangle, a circle or a polygon");
-        }
-    };
-    let reach = |axis: Vector| 2.0 * outline.support(axis).max(outline.support(-axis));
-    Some(Shape {
-        length: reach(Vector::x()),
-        width: reach(Vector::y()),
-        outline,
-    })
+        other => entry.reject(other, "a rectangle, a circle or a polygon"),
+    }
 }
 
 /// Radians: twice the circle to either side.

@@ -3,18 +3,21 @@
 
 mod geometry;
 mod problem;
+mod recorded;
 
 use roxmltree::Document;
 
+use super::assumed::Assumed;
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::xml::Xml;
-use crate::frame::{Pose, Vector, wrap};
-use crate::input::{Fault, Faults, Range, abbreviated};
+use super::status;
+use super::xml::{Names, Xml};
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
+use crate::input::{Fault, Faults, Range, Remarks, abbreviated};
 use crate::scenario::limits;
-use crate::target::route::{RouteLeg, RoutePoint, Track};
 use crate::text::is_line;
-use crate::vessel::Hull;
-use geometry::{Shape, State, shapes, state};
+use geometry::{Body, State, body, shapes, state};
+use recorded::Recorded;
 
 /// Seconds of a step.
 const STEP: Range = Range::between(1e-3, 3600.0);
@@ -37,20 +40,95 @@ const TYPES: [&str; 14] = [
     "watersboundary",
 ];
 
-/// Elements that are read, or that say nothing about where ships may be.
-const KNOWN: [&str; 12] = [
-    "location",
-    "scenarioTags",
-    "navigationableArea",
-    "waterway",
-    "waters",
-    "shallow",
-    "draft",
-    "trafficSign",
-    "staticObstacle",
-    "dynamicObstacle",
-    "planningProblem",
-    "additionalInformation",
+/// Types of ships to which Rule 18 gives a right.
+const OF_RULE_18: [&str; 4] = [
+    "sailingvessel",
+    "fishingvessel",
+    "vesselNotUnderCommand",
+    "restrictedManeuverabilityVessel",
+];
+
+/// Metres between the position and the middle of a shape at rest from which on they are not one.
+const FIXED_OFF_M: f64 = 1e-3;
+
+/// What is read of each element, or says nothing about where ships may be.
+const NAMES: Names = &[
+    (
+        "commonOcean",
+        &[
+            "timeStepSize",
+            "commonOceanVersion",
+            "author",
+            "affiliation",
+            "source",
+            "benchmarkID",
+            "date",
+            "schemaLocation",
+            "location",
+            "scenarioTags",
+            "navigationableArea",
+            "waterway",
+            "waters",
+            "shallow",
+            "draft",
+            "trafficSign",
+            "staticObstacle",
+            "dynamicObstacle",
+            "planningProblem",
+            "additionalInformation",
+        ],
+    ),
+    // the depth has a note of its own
+    ("shallow", &["id", "shape", "depth", "watersType"]),
+    ("draft", &["id", "shape", "depth", "watersType"]),
+    (
+        "staticObstacle",
+        &["id", "type", "depth", "shape", "initialState"],
+    ),
+    (
+        "dynamicObstacle",
+        &[
+            "id",
+            "type",
+            "depth",
+            "shape",
+            "initialState",
+            "trajectory",
+            "occupancySet",
+        ],
+    ),
+    ("shape", &["rectangle", "circle", "polygon"]),
+    ("rectangle", &["length", "width", "orientation", "center"]),
+    ("circle", &["radius", "center"]),
+    ("polygon", &["point"]),
+    ("center", &["x", "y"]),
+    ("point", &["x", "y"]),
+    ("trajectory", &["state"]),
+    (
+        "initialState",
+        &["position", "orientation", "time", "velocity"],
+    ),
+    ("state", &["position", "orientation", "time", "velocity"]),
+    (
+        "position",
+        &["point", "rectangle", "circle", "polygon", "water"],
+    ),
+    (
+        "planningProblem",
+        &[
+            "id",
+            "initialState",
+            "goalState",
+            "waypoint",
+            "maxLateralDeviation",
+        ],
+    ),
+    // orientation and velocity have a note of their own
+    (
+        "goalState",
+        &["position", "time", "orientation", "velocity"],
+    ),
+    ("waypoint", &["id", "position"]),
 ];
 
 const VERSIONS: [&str; 2] = ["2022a", "2020a"];
@@ -58,6 +136,7 @@ const VERSIONS: [&str; 2] = ["2022a", "2020a"];
 /// The situations of a file, one per planning problem.
 pub(super) fn situations(
     document: &Document,
+    assumed: &Assumed,
 ) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
     let faults = Faults::default();
     let root = Xml::root(document, &faults);
@@ -78,25 +157,29 @@ pub(super) fn situations(
         ),
         None => Some("CommonOcean scenario"),
     };
-    let mut notes = Vec::new();
-    unused(&root, &mut notes);
+    let mut remarks = Remarks::default();
+    unused(&root, &mut remarks);
     let problems: Vec<Xml> = root.all("planningProblem").collect();
     if problems.is_empty() {
         root.fault("no planningProblem", "at least one");
     }
-    let others = step.and_then(|step| others(&root, step, &mut notes));
-    let owns: Vec<Option<Own>> = problems
-        .iter()
-        .map(|entry| step.and_then(|step| problem::own(entry, step, &mut notes)))
-        .collect();
+    let others = step.and_then(|step| others(&root, step, &mut remarks));
+    let own = |entry| {
+        let mut remarks = remarks.clone();
+        let (own, begins) = problem::own(entry, step?, assumed.own_speed, &mut remarks)?;
+        let others = others.as_ref()?.iter();
+        let others = others.filter_map(|other| other.from(begins, step?, &mut remarks));
+        Some((own, others.collect::<Vec<Other>>(), remarks))
+    };
+    let owns: Vec<_> = problems.iter().map(own).collect();
     let noted = faults.take();
-    let (Some(others), Some(name), true) = (others, name, noted.is_empty()) else {
+    let (Some(name), true) = (name, noted.is_empty()) else {
         return Err(noted);
     };
     let several = owns.len() > 1;
-    let situation = |(entry, own): (&Xml, Option<Own>)| {
+    let situation = |(entry, read): (&Xml, Option<(Own, Vec<Other>, Remarks)>)| {
         let id = several.then(|| format!("{name}-{}", entry.attribute("id").unwrap_or_default()));
-        let own = own.ok_or_else(Vec::new)?;
+        let (own, others, remarks) = read.ok_or_else(Vec::new)?;
         // relative to own ship's start: coordinates may be those of a global grid
         let origin = own.pose.position;
         let moved = |other: &Other| other.translated(-origin);
@@ -111,42 +194,59 @@ pub(super) fn situations(
             others: others.iter().map(moved).collect(),
             earth: None,
             declared: Declared::default(),
-            notes: notes.clone(),
+            remarks,
         })
     };
     Ok(problems.iter().zip(owns).map(situation).collect())
 }
 
-fn unused(root: &Xml, notes: &mut Vec<String>) {
+fn unused(root: &Xml, remarks: &mut Remarks) {
     let count = |name: &str| root.all(name).count();
     let ways = count("waterway") + count("waters");
     if ways > 0 {
-        notes.push(format!(
-            "{ways} waterways: not used, own ship may leave them"
-        ));
+        let ways = format_args!("{ways} waterways");
+        remarks.note(ways, "not used, own ship may leave them");
     }
-    for (name, said) in [
+    for (name, statement) in [
         ("navigationableArea", "not used, own ship may leave it"),
         ("trafficSign", "not used"),
     ] {
         if count(name) > 0 {
-            notes.push(format!("{} {name}: {said}", count(name)));
+            remarks.note(format_args!("{} {name}", count(name)), statement);
         }
     }
-    for element in root.elements().filter(|e| !KNOWN.contains(&e.name())) {
-        notes.push(format!("{}: not used", element.path()));
+    for name in root.unread(NAMES) {
+        remarks.note(name, "not used");
+    }
+}
+
+/// An obstacle of a file.
+enum Obstacle {
+    Fixed(Other),
+    Ship(Recorded),
+}
+
+impl Obstacle {
+    /// The obstacle from a step on, the time of which is then 0. `None` for a ship that is gone.
+    fn from(&self, begins: f64, step: f64, remarks: &mut Remarks) -> Option<Other> {
+        match self {
+            Self::Fixed(other) => Some(other.clone()),
+            Self::Ship(ship) => ship.from(begins, step, remarks),
+        }
     }
 }
 
 /// Every obstacle and every shallow. `None` if one is faulty.
-fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> {
+fn others(root: &Xml, step: f64, remarks: &mut Remarks) -> Option<Vec<Obstacle>> {
     let mut others = Vec::new();
     let mut sound = true;
     for element in root.elements() {
         let found = match element.name() {
-            "staticObstacle" => fixed(&element),
+            "staticObstacle" => fixed(&element, remarks),
             "shallow" | "draft" => shallow(&element),
-            "dynamicObstacle" => moving(&element, step, notes).map(|other| vec![other]),
+            "dynamicObstacle" => {
+                moving(&element, step, remarks).map(|ship| vec![Obstacle::Ship(ship)])
+            }
             _ => continue,
         };
         match found {
@@ -156,10 +256,9 @@ fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> 
     }
     let shallows = root.all("shallow").count() + root.all("draft").count();
     if shallows > 0 {
-        notes.push(format!(
-            "{shallows} shallows: own draught is not in the file, so all are kept out of, \
-             whatever their depth"
-        ));
+        let statement =
+            "own draught is not in the file, so all are kept out of, whatever their depth";
+        remarks.note(format_args!("{shallows} shallows"), statement);
     }
     if others.len() > limits::SHIPS {
         return root.reject(
@@ -191,7 +290,7 @@ fn named(element: &Xml, kind: &str, part: Option<usize>) -> String {
 }
 
 /// The convex parts of an object at rest.
-fn fixed(element: &Xml) -> Option<Vec<Other>> {
+fn fixed(element: &Xml, remarks: &mut Remarks) -> Option<Vec<Obstacle>> {
     let kind = kind(element);
     let parts = element
         .require("shape", "a rectangle, circle or polygon")
@@ -202,34 +301,50 @@ fn fixed(element: &Xml) -> Option<Vec<Other>> {
     let (kind, parts, initial) = (kind?, parts?, initial?);
     let ground = ["land", "watersboundary"].contains(&kind);
     let several = parts.len() > 1;
-    let placed = parts.iter().enumerate().map(|(index, part)| Other::Fixed {
-        name: named(element, kind, several.then_some(index)),
-        shape: part
-            .outline
-            .rotated(initial.orientation)
-            .translated(initial.position),
-        ground,
+    if initial.orientation != 0.0
+        && parts
+            .iter()
+            .any(|part| part.centroid().norm() > FIXED_OFF_M)
+    {
+        remarks.note(
+            named(element, kind, None),
+            "its shape is turned about its position; CommonOcean's library turns it about its middle",
+        );
+    }
+    let placed = parts.iter().enumerate().map(|(index, part)| {
+        Obstacle::Fixed(Other::Fixed {
+            name: named(element, kind, several.then_some(index)),
+            shape: part
+                .rotated(initial.orientation)
+                .translated(initial.position),
+            ground,
+        })
     });
     Some(placed.collect())
 }
 
-fn shallow(element: &Xml) -> Option<Vec<Other>> {
+fn shallow(element: &Xml) -> Option<Vec<Obstacle>> {
     let parts = shapes(&element.require("shape", "a rectangle, circle or polygon")?)?;
     let several = parts.len() > 1;
-    let part = |(index, part): (usize, Shape)| Other::Fixed {
-        name: named(element, "shallow", several.then_some(index)),
-        shape: part.outline,
-        ground: true,
+    let part = |(index, shape): (usize, ConvexPolygon)| {
+        Obstacle::Fixed(Other::Fixed {
+            name: named(element, "shallow", several.then_some(index)),
+            shape,
+            ground: true,
+        })
     };
     Some(parts.into_iter().enumerate().map(part).collect())
 }
 
 /// A ship with its recorded states.
-fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
+fn moving(element: &Xml, step: f64, remarks: &mut Remarks) -> Option<Recorded> {
     let kind = kind(element);
-    let hull = match element.take("shape") {
-        Some(entry) => shapes(&entry).and_then(|parts| hull(&entry, &parts)),
-        None => Some(GivenHull::Missing(format!("{}/shape", element.path()))),
+    let body = match element.take("shape") {
+        Some(entry) => body(&entry),
+        None => Some(Body {
+            hull: GivenHull::Missing(format!("{}/shape", element.path())),
+            off: 0.0,
+        }),
     };
     let initial = element
         .require("initialState", "position, orientation, time, velocity")
@@ -237,102 +352,24 @@ fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
     if let Some(sets) = element.take("occupancySet") {
         return sets.reject("occupancies", "a trajectory of states");
     }
-    let states: Option<Vec<State>> = element
+    let later: Option<Vec<State>> = element
         .take("trajectory")
         .map_or(Some(Vec::new()), |entry| {
             entry.all("state").map(|entry| state(&entry)).collect()
         });
-    let (kind, hull, initial, states) = (kind?, hull?, initial?, states?);
+    let (kind, body, initial, later) = (kind?, body?, initial?, later?);
     let name = named(element, kind, None);
-    let track = track(element, &initial, &states, step, &name, notes)?;
-    Some(Other::Ship { name, hull, track })
-}
-
-fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
-    let [only] = parts else {
-        return entry.reject(
-            format_args!("{} shapes", parts.len()),
-            "one shape, the hull of the ship",
+    if body.off > 0.0 {
+        let statement = format_args!(
+            "its shape is {:.1} m off its position; the hull taken holds it on every side, as \
+             CommonOcean's library turns shapes about their middle",
+            body.off
         );
-    };
-    Some(GivenHull::Known(Hull::new(only.length, only.width)))
-}
-
-/// Track with a leg between consecutive states, at the speed that it takes.
-fn track(
-    element: &Xml,
-    initial: &State,
-    states: &[State],
-    step: f64,
-    name: &str,
-    notes: &mut Vec<String>,
-) -> Option<Track> {
-    if states.len() > limits::TRACK_POINTS {
-        return element.reject(
-            format_args!("{} states", states.len()),
-            format_args!("at most {}", limits::TRACK_POINTS),
-        );
+        remarks.note(&name, statement);
     }
-    let appears = initial.time * step;
-    let mut points = vec![RoutePoint {
-        position: initial.position,
-        turn_radius: Some(0.0),
-    }];
-    let mut legs: Vec<RouteLeg> = Vec::new();
-    let (mut last, mut rests) = (*initial, 0);
-    for state in states {
-        let took = (state.time - last.time) * step;
-        let way = (state.position - last.position).norm();
-        if !(took > 0.0) {
-            return element.reject(
-                format_args!(
-                    "a state of step {} after one of step {}",
-                    state.time, last.time
-                ),
-                "states whose times increase",
-            );
-        }
-        let speed = way / took;
-        if !limits::SHIP_SPEED.contains(speed) {
-            return element.reject(
-                format_args!("{way:.1} m from step {} to step {}", last.time, state.time),
-                format_args!("at most {} m/s between two states", limits::SHIP_SPEED.high),
-            );
-        }
-        if way >= limits::LENGTH.low {
-            points.push(RoutePoint {
-                position: state.position,
-                turn_radius: Some(0.0),
-            });
-            legs.push(RouteLeg {
-                slow: if rests > 0 { 0.0 } else { speed },
-                fast: speed,
-            });
-            rests = 0;
-        } else {
-            rests += 1;
-        }
-        last = *state;
+    if OF_RULE_18.contains(&kind) {
+        status::remark(&name, "type", kind, remarks);
     }
-    // the motion after a rest at the end is unknown: the ship may stay
-    if rests > 0
-        && let Some(leg) = legs.last_mut()
-    {
-        leg.slow = 0.0;
-    }
-    let track = match legs.last() {
-        None if states.is_empty() => Track::straight(
-            initial.position,
-            wrap(initial.orientation),
-            initial.velocity?,
-        ),
-        None => Track::straight(initial.position, wrap(initial.orientation), 0.0),
-        Some(_) => Track::along(&points, &legs, 0.0, None).ok()?,
-    };
-    if appears > 0.0 {
-        notes.push(format!(
-            "{name}: appears after {appears} s; taken to stand there until then"
-        ));
-    }
-    Some(track.appearing(appears.max(0.0)))
+    let states = [vec![initial], later].concat();
+    Recorded::new(element, name, body.hull, &states, step, remarks)
 }

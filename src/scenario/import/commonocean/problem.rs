@@ -4,7 +4,7 @@ use super::super::situation::{GivenHull, Own};
 use super::super::xml::Xml;
 use super::geometry::{point, shapes, state};
 use crate::frame::{Pose, Vector, wrap};
-use crate::input::Range;
+use crate::input::{Range, Remarks, abbreviated};
 use crate::scenario::limits;
 
 /// Steps of a goal; it may begin before the scenario.
@@ -12,29 +12,54 @@ const STEPS: Range = Range::within(1e9);
 
 /// Own ship of a problem. Its route leads over the waypoints to the middle of the goal, at its
 /// speed, or at the speed that fits the goal's time.
-pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own> {
+///
+/// Time begins at the step of its initial state, which is returned with it. Without a speed of its
+/// own, and without a time of the goal, it has the `assumed` one.
+pub(super) fn own(
+    entry: &Xml,
+    step: f64,
+    assumed: Option<f64>,
+    remarks: &mut Remarks,
+) -> Option<(Own, f64)> {
     let initial = entry
         .require("initialState", "position, orientation, time, velocity")
         .and_then(|entry| state(&entry));
     let goal = entry.require("goalState", "the goal").and_then(|goal| {
         let place = goal.require("position", "a point or a shape")?;
-        Some((middle(&place)?, times(&goal, step)?))
+        Some((middle(&place)?, goal))
     });
     if entry.all("goalState").count() > 1 {
-        notes.push(format!(
-            "{}: the first of several goals taken",
-            entry.path()
-        ));
+        remarks.note(entry.path(), "the first of several goals taken");
     }
     let through: Option<Vec<Vector>> = entry
         .all("waypoint")
         .map(|waypoint| middle(&waypoint.require("position", "a point or a shape")?))
         .collect();
-    let (initial, (goal, [earliest, latest]), through) = (initial?, goal?, through?);
-    if initial.time > 0.0 {
-        return entry.reject(
-            format_args!("own ship at step {}", initial.time),
-            "own ship from step 0",
+    let (initial, (goal, goal_state), through) = (initial?, goal?, through?);
+    let begins = initial.time;
+    let [earliest, latest] = times(&goal_state, step, begins)?;
+    if begins > 0.0 {
+        let statement = format_args!(
+            "time begins at own ship's step {begins}, {} s after the first",
+            begins * step
+        );
+        remarks.note(entry.path(), statement);
+    }
+    let apart = entry.attribute("maxLateralDeviation").map(str::to_owned);
+    let apart = apart.or_else(|| Some(entry.take("maxLateralDeviation")?.text().to_owned()));
+    if let Some(apart) = apart {
+        let apart = apart
+            .trim()
+            .parse::<f64>()
+            .map_or(abbreviated(&apart), |m| m.to_string());
+        remarks.caution(
+            "maxLateralDeviation",
+            format_args!(
+                "not kept; {} allows {} m to the side of the route, and a plan may leave it \
+                 farther",
+                entry.path(),
+                apart
+            ),
         );
     }
     let mut route = vec![initial.position];
@@ -56,7 +81,14 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
         .windows(2)
         .map(|pair| (pair[1] - pair[0]).norm())
         .sum();
-    let speed = initial.velocity.unwrap_or(0.0);
+    let speed = match (initial.velocity, assumed) {
+        (Some(speed), _) => speed,
+        (None, Some(speed)) => {
+            remarks.note(entry.path(), "no velocity; that of --own-speed-mps taken");
+            speed
+        }
+        (None, None) => 0.0,
+    };
     if !(speed >= 0.0) {
         return entry.reject(format_args!("own ship at {speed} m/s"), "a speed ahead");
     }
@@ -70,21 +102,20 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
     if !limits::SHIP_WAY.contains(desired) {
         return entry.reject(
             format_args!("{length:.0} m to the goal in {took:.0} s"),
-            "a speed at the start, or a goal in time, so that a ship can run it",
+            "a speed at the start, or a goal in time, so that a ship can run it; or --own-speed-mps \
+             without a velocity",
         );
     }
-    notes.push(format!(
-        "{}: of the goal its middle and its time are used",
-        entry.path()
-    ));
-    Some(Own {
+    remarks.note(entry.path(), "of the goal its middle and its time are used");
+    let own = Own {
         pose: Pose::new(initial.position, wrap(initial.orientation)),
         speed,
         hull: GivenHull::NotInFormat,
         leg_speeds: vec![desired; route.len() - 1],
         route,
         horizon: latest.is_finite().then_some(latest),
-    })
+    };
+    Some((own, begins))
 }
 
 fn middle(place: &Xml) -> Option<Vector> {
@@ -97,24 +128,24 @@ fn middle(place: &Xml) -> Option<Vector> {
             "a point, a rectangle, a circle or a polygon",
         );
     }
-    Some(shapes(place)?.first()?.outline.centroid())
+    Some(shapes(place)?.first()?.centroid())
 }
 
-/// The earliest and the latest second of a goal.
-fn times(goal: &Xml, step: f64) -> Option<[f64; 2]> {
+/// The earliest and the latest second of a goal after the step at which own ship begins.
+fn times(goal: &Xml, step: f64, begins: f64) -> Option<[f64; 2]> {
     let Some(entry) = goal.take("time") else {
         return Some([0.0, f64::INFINITY]);
     };
     if entry.take("exact").is_some() {
-        let time = entry.exact(STEPS.in_unit("steps"))? * step;
+        let time = (entry.exact(STEPS.in_unit("steps"))? - begins) * step;
         return Some([time; 2]);
     }
     let start = entry.required_number("intervalStart", STEPS.in_unit("steps"));
     let end = entry.required_number("intervalEnd", STEPS.in_unit("steps"));
-    let [start, end] = [start?, end?];
+    let [start, end] = [start? - begins, end? - begins];
     if !(end > 0.0 && end >= start) {
         return entry.reject(
-            format_args!("steps {start} to {end}"),
+            format_args!("steps {} to {}", start + begins, end + begins),
             "an interval that ends after the start",
         );
     }

@@ -6,13 +6,14 @@ mod ship;
 
 use std::collections::BTreeSet;
 
-use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
+use super::assumed::{Assumed, TURNING_LENGTHS, USUAL_HULL};
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::status;
 use crate::frame::{
     Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
 };
-use crate::input::{Fault, Faults, Field, Range};
+use crate::input::{Fault, Faults, Field, Range, Remarks};
 use crate::scenario::{limits, plane};
 use crate::target::route::{RouteLeg, RoutePoint, TightTurn, Track};
 use ship::{Initial, fixed, initial};
@@ -34,9 +35,16 @@ const ROOT_KEYS: [&str; 8] = [
 const SHIP_KEYS: [&str; 3] = ["waypoints", "static", "initial"];
 
 /// The situation of a file; an error with every fault.
-pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<Fault>> {
-    let mut notes = Vec::new();
-    unused(root, &ROOT_KEYS, &mut notes);
+pub(super) fn situation(
+    root: &Field,
+    faults: &Faults,
+    assumed: &Assumed,
+) -> Result<Situation, Vec<Fault>> {
+    if let Some(fault) = other_version(root) {
+        return Err(vec![fault]);
+    }
+    let mut remarks = Remarks::default();
+    unused(root, &ROOT_KEYS, &mut remarks);
     let name = match root.get("title") {
         Some(title) => title.line_of_text().map(str::trim),
         None => Some("Traffic situation"),
@@ -45,14 +53,16 @@ pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<
     let earth = field.as_ref().and_then(origin);
     let own = field
         .zip(earth)
-        .and_then(|(field, earth)| own(&field, &earth, &mut notes));
+        .and_then(|(field, earth)| own(&field, &earth, assumed.own_speed, &mut remarks));
     let ships = match (root.get("targetShips"), earth) {
         (Some(list), Some(earth)) => list
             .list(0..=limits::SHIPS, "ships")
-            .and_then(|list| others(&list, &earth, &mut notes)),
+            .and_then(|list| others(&list, &earth, &mut remarks)),
         (Some(_), None) => None,
         (None, _) => {
-            notes.push("targetShips: none in the file".to_owned());
+            remarks
+                .notes
+                .push("targetShips: none in the file".to_owned());
             Some(Vec::new())
         }
     };
@@ -73,7 +83,7 @@ pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<
         others,
         earth,
         declared: declared(name),
-        notes,
+        remarks,
     })
 }
 
@@ -97,10 +107,43 @@ fn declared(title: &str) -> Declared {
     }
 }
 
-fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
+/// A fault for maritime-schema 0.0, whose positions have other keys. It is no small slip: speeds,
+/// sizes and dates have other places, too.
+fn other_version(root: &Field) -> Option<Fault> {
+    let own = root.get("ownShip").filter(Field::is_table)?;
+    let initial = own.get("initial").filter(Field::is_table);
+    let initial = initial.and_then(|initial| initial.get("position"));
+    let waypoints = own.get("waypoints");
+    let waypoints = waypoints.and_then(|list| list.list(0..=usize::MAX, "waypoints"));
+    let first = waypoints.and_then(|list| list.into_iter().next());
+    let first = first
+        .filter(Field::is_table)
+        .and_then(|first| first.get("position"));
+    let mut places = initial.into_iter().chain(first);
+    let old = places.find(|place| place.keys().any(|key| key == "latitude"))?;
+    Some(Fault::new(
+        old.path(),
+        "latitude and longitude, as maritime-schema 0.0 has them",
+        "lat and lon, as in a situation of maritime-schema 0.1 or 0.2",
+    ))
+}
+
+fn nav_status(ship: &Field, name: &str, remarks: &mut Remarks) {
+    let initial = ship.get("initial").filter(Field::is_table);
+    let Some(status) = initial.and_then(|initial| initial.get("navStatus")) else {
+        return;
+    };
+    let code = status.any_number().map(|code| code.to_string());
+    let word = status.any_text().map(str::to_owned).or(code);
+    status::remark(name, "navStatus", &word.unwrap_or_default(), remarks);
+}
+
+fn unused(field: &Field, known: &[&str], remarks: &mut Remarks) {
     for key in field.keys().filter(|key| !known.contains(key)) {
         let dot = if field.path().is_empty() { "" } else { "." };
-        notes.push(format!("{}{dot}{key}: not used", field.path()));
+        remarks
+            .notes
+            .push(format!("{}{dot}{key}: not used", field.path()));
     }
 }
 
@@ -148,14 +191,21 @@ fn knots(field: &Field, range: Range) -> Option<f64> {
         .map(mps_from_knots)
 }
 
-fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<Own> {
-    unused(field, &SHIP_KEYS, notes);
-    let initial = initial(field, earth, notes);
-    let fixed = fixed(field, notes);
+fn own(
+    field: &Field,
+    earth: &Georeference,
+    assumed_speed: Option<f64>,
+    remarks: &mut Remarks,
+) -> Option<Own> {
+    unused(field, &SHIP_KEYS, remarks);
+    let initial = initial(field, earth, remarks);
+    let fixed = fixed(field, remarks);
     let fields = waypoints(field, 2);
     let known = initial.unwrap_or_default();
-    let route = fields.and_then(|fields| route(&fields, &known, earth, notes));
+    let speed = assumed_speed.map(|speed| (speed, "taken, by --own-speed-mps"));
+    let route = fields.and_then(|fields| route(&fields, &known, speed, earth, remarks));
     let (initial, fixed, route) = (initial?, fixed?, route?);
+    nav_status(field, "own ship", remarks);
     if fixed.delay > 0.0 {
         return field.reject(
             format_args!("own ship {} s late (static.initDelay)", fixed.delay),
@@ -163,7 +213,7 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
         );
     }
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
-        notes.push(format!(
+        remarks.notes.push(format!(
             "{}: turn radii of own ship's waypoints not used; \
              its radius is {TURNING_LENGTHS} lengths",
             field.path()
@@ -181,11 +231,11 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
     })
 }
 
-fn others(list: &[Field], earth: &Georeference, notes: &mut Vec<String>) -> Option<Vec<Other>> {
+fn others(list: &[Field], earth: &Georeference, remarks: &mut Remarks) -> Option<Vec<Other>> {
     let mut names = BTreeSet::new();
     let mut others = Vec::with_capacity(list.len());
     for (index, field) in list.iter().enumerate() {
-        let ship = other(field, earth, notes);
+        let ship = other(field, earth, remarks);
         others.push(ship.map(|(name, hull, track)| {
             let wanted = name.unwrap_or_else(|| format!("target {}", index + 1));
             let mut name = wanted.clone();
@@ -194,7 +244,12 @@ fn others(list: &[Field], earth: &Georeference, notes: &mut Vec<String>) -> Opti
                 name = format!("{wanted} ({count})");
                 count += 1;
             }
-            Other::Ship { name, hull, track }
+            Other::Ship {
+                name,
+                hull,
+                track,
+                off: 0.0,
+            }
         }));
     }
     others.into_iter().collect()
@@ -203,23 +258,23 @@ fn others(list: &[Field], earth: &Georeference, notes: &mut Vec<String>) -> Opti
 fn other(
     field: &Field,
     earth: &Georeference,
-    notes: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Option<(Option<String>, GivenHull, Track)> {
-    unused(field, &SHIP_KEYS, notes);
-    let initial = initial(field, earth, notes);
-    let fixed = fixed(field, notes);
+    unused(field, &SHIP_KEYS, remarks);
+    let initial = initial(field, earth, remarks);
+    let fixed = fixed(field, remarks);
     let fields = waypoints(field, 1);
     let known = initial.unwrap_or_default();
     let route = fields
         .as_ref()
-        .and_then(|fields| route(fields, &known, earth, notes));
+        .and_then(|fields| route(fields, &known, None, earth, remarks));
     let (initial, fixed, fields, route) = (initial?, fixed?, fields?, route?);
     let track = match route.points.as_slice() {
         [only] => steady(field, only.position, &initial)?,
         _ => along(field, &fields, &route, &initial, &fixed.hull)?,
     };
     let track = if fixed.delay > 0.0 {
-        notes.push(format!(
+        remarks.notes.push(format!(
             "{}: appears after {} s; taken to stand at its start until then",
             field.path(),
             fixed.delay
@@ -228,6 +283,11 @@ fn other(
     } else {
         track
     };
+    nav_status(
+        field,
+        fixed.name.as_deref().unwrap_or(field.path()),
+        remarks,
+    );
     Some((fixed.name, fixed.hull, track))
 }
 
@@ -283,7 +343,9 @@ fn along(
     }
     let length = match hull {
         GivenHull::Known(hull) => hull.length,
-        GivenHull::NotInFormat | GivenHull::Missing(_) => USUAL_HULL.length,
+        GivenHull::NotInFormat | GivenHull::Missing(_) | GivenHull::Unknown { .. } => {
+            USUAL_HULL.length
+        }
     };
     let start = initial.heading.filter(turned);
     match Track::along(&route.points, &legs, TURNING_LENGTHS * length, start) {
@@ -310,16 +372,32 @@ struct Route {
     blends: Vec<[f64; 2]>,
 }
 
+/// A route. A leg without a speed has that of the initial state, else that of the first waypoint,
+/// else the `assumed` one, which has its reason.
 fn route(
     fields: &[Field],
     start: &Initial,
+    assumed: Option<(f64, &str)>,
     earth: &Georeference,
-    notes: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Option<Route> {
     let mut route = Route::default();
     let mut sound = true;
+    let usual = match start
+        .speed
+        .filter(|speed| limits::SHIP_WAY.contains(*speed))
+    {
+        Some(speed) => Some((speed, None)),
+        None => {
+            let first = fields.first().and_then(first_speed);
+            let first = first.map(|speed| (speed, "that of the first waypoint taken"));
+            first
+                .or(assumed)
+                .map(|(speed, reason)| (speed, Some(reason)))
+        }
+    };
     for (index, field) in fields.iter().enumerate() {
-        unused(field, &["position", "turnRadius", "leg"], notes);
+        unused(field, &["position", "turnRadius", "leg"], remarks);
         let position = field
             .require("position", "an object { lat, lon }")
             .and_then(|place| near(&place, earth));
@@ -332,7 +410,7 @@ fn route(
         let leg = if index == 0 {
             None
         } else {
-            Some(leg(field, start.speed, notes))
+            Some(leg(field, usual, remarks))
         };
         let (Some(position), Some(radius)) = (position, radius) else {
             sound = false;
@@ -359,20 +437,28 @@ fn route(
     sound.then_some(route)
 }
 
+/// Speed at the first waypoint, m/s, where no leg ends: trafficgen 0.9.1 writes a leg's speed there
+/// alone where own ship was asked for with one waypoint.
+fn first_speed(waypoint: &Field) -> Option<f64> {
+    let speed = waypoint.get("leg").filter(Field::is_table)?.get("sog")?;
+    let knots = speed.any_number()?;
+    Some(mps_from_knots(knots)).filter(|speed| limits::SHIP_WAY.contains(*speed))
+}
+
 /// Speed of the leg that ends at a waypoint, m/s, and the metres before and after the waypoint over
 /// which the speed changes.
 fn leg(
     waypoint: &Field,
-    initial_speed: Option<f64>,
-    notes: &mut Vec<String>,
+    usual: Option<(f64, Option<&str>)>,
+    remarks: &mut Remarks,
 ) -> Option<(f64, [f64; 2])> {
     let leg = waypoint.get("leg");
     if let Some(leg) = &leg {
-        unused(leg, &["sog", "data"], notes);
+        unused(leg, &["sog", "data"], remarks);
     }
     let data = leg.as_ref().and_then(|leg| leg.get("data"));
     if let Some(data) = &data {
-        unused(data, &["sog"], notes);
+        unused(data, &["sog"], remarks);
     }
     if let Some(point) = data.and_then(|data| data.get("sog")) {
         let speed = point
@@ -384,11 +470,20 @@ fn leg(
         });
         return Some((speed?, [blend[0]?, blend[1]?]));
     }
-    let speed = match (leg.as_ref().and_then(|leg| leg.get("sog")), initial_speed) {
+    let speed = match (leg.as_ref().and_then(|leg| leg.get("sog")), usual) {
         (Some(speed), _) => knots(&speed, limits::SHIP_WAY)?,
-        (None, Some(speed)) if limits::SHIP_WAY.contains(speed) => speed,
-        (None, _) => {
-            return waypoint.reject("no speed of the leg that ends here", "leg.sog in knots");
+        (None, Some((speed, reason))) => {
+            if let Some(reason) = reason {
+                remarks.notes.push(format!(
+                    "{}: no speed of this leg; {reason}",
+                    waypoint.path()
+                ));
+            }
+            speed
+        }
+        (None, None) => {
+            let allowed = "leg.sog in knots; or --own-speed-mps for own ship";
+            return waypoint.reject("no speed of the leg that ends here", allowed);
         }
     };
     Some((speed, [0.0; 2]))

@@ -3,7 +3,7 @@
 use super::super::situation::GivenHull;
 use super::{knots, near, unused};
 use crate::frame::{Georeference, Vector, heading_from_course_deg};
-use crate::input::{Field, Range};
+use crate::input::{Field, Range, Remarks};
 use crate::scenario::limits;
 use crate::vessel::Hull;
 
@@ -42,12 +42,12 @@ pub(super) struct Initial {
 pub(super) fn initial(
     ship: &Field,
     earth: &Georeference,
-    notes: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Option<Initial> {
     let Some(field) = ship.get("initial") else {
         return Some(Initial::default());
     };
-    unused(&field, &INITIAL_KEYS, notes);
+    unused(&field, &INITIAL_KEYS, remarks);
     let position = field.optional("position", |place| near(place, earth));
     let speed = field.optional("sog", |speed| knots(speed, limits::SHIP_SPEED));
     let [cog, heading] = ["cog", "heading"].map(|key| {
@@ -71,7 +71,7 @@ pub(super) struct Static {
     pub(super) delay: f64,
 }
 
-pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
+pub(super) fn fixed(ship: &Field, remarks: &mut Remarks) -> Option<Static> {
     let missing = || GivenHull::Missing(format!("{}.static.dimensions", ship.path()));
     let Some(field) = ship.get("static") else {
         return Some(Static {
@@ -80,10 +80,10 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
             delay: 0.0,
         });
     };
-    unused(&field, &STATIC_KEYS, notes);
+    unused(&field, &STATIC_KEYS, remarks);
     let name = field.optional("name", Field::line_of_text);
     let hull = match field.get("dimensions") {
-        Some(dimensions) => hull(&dimensions, notes),
+        Some(dimensions) => hull(&dimensions, remarks),
         None => Some(missing()),
     };
     if let Some(path) = field.get("pathType")
@@ -101,8 +101,8 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
 }
 
 /// Length and breadth. If the reference point is not in the middle, a larger hull about this point.
-fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
-    unused(field, &DIMENSION_KEYS, notes);
+fn hull(field: &Field, remarks: &mut Remarks) -> Option<GivenHull> {
+    unused(field, &DIMENSION_KEYS, remarks);
     let lengths = [("length", ["a", "b"]), ("width", ["c", "d"])].map(|(whole, ends)| {
         let size = field.optional_number(whole, limits::SHIP_LENGTH)?;
         let ends = ends.map(|key| field.optional_number(key, limits::DISTANCE.in_unit("m")));
@@ -124,7 +124,7 @@ fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
             return Some(size.or(Some(2.0 * fore)));
         }
         let around = 2.0 * fore.max(aft);
-        notes.push(format!(
+        remarks.notes.push(format!(
             "{}.{whole}: the reference point is not in the middle; {around} m taken, \
              which reaches as far to both sides",
             field.path()
