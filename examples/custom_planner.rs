@@ -8,7 +8,7 @@
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline;
 use searoom::planner::{
-    Minimises, NoPlan, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts,
+    Minimises, NoPlan, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner, PlannerFacts,
 };
 use searoom::report::plan_text;
 use searoom::scenario::{Compliance, Scenario};
@@ -51,7 +51,8 @@ impl Planner for SlowDown {
             segment.duration <= problem.horizon && !meets
         };
         let found = straight.into_iter().find(clear);
-        let plan = found.and_then(|segment| Plan::measured(problem, vec![segment], None));
+        let plan =
+            found.and_then(|segment| Plan::measured(problem, vec![segment], PlanMethod::Other));
         Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved))
     }
 }

@@ -33,6 +33,8 @@ pub enum PlanMethod {
     Waiting,
     /// Own ship stays where it is.
     Stay,
+    /// A planner of a library user.
+    Other,
 }
 
 words!(PlanMethod {
@@ -48,6 +50,7 @@ words!(PlanMethod {
     LeastHarm => "least-harm",
     Waiting => "waiting",
     Stay => "stay",
+    Other => "other",
 });
 
 impl PlanMethod {
@@ -75,6 +78,7 @@ impl PlanMethod {
             Self::LeastHarm => "escape with the least harm",
             Self::Waiting => "waits on its route",
             Self::Stay => "stays in place",
+            Self::Other => "another planner",
         }
     }
 
@@ -91,12 +95,10 @@ impl PlanMethod {
     /// of the plan may come from a search.
     pub(crate) fn has_statistics(self) -> Option<bool> {
         match self {
-            Self::Rules
-            | Self::OptimalControl
-            | Self::Remainder
-            | Self::Waiting
-            | Self::Stay => Some(false),
-            Self::LeastHarm => None,
+            Self::Rules | Self::OptimalControl | Self::Remainder | Self::Waiting | Self::Stay => {
+                Some(false)
+            }
+            Self::LeastHarm | Self::Other => None,
             Self::AStar
             | Self::Dijkstra
             | Self::Thorough

@@ -130,6 +130,7 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
         PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
         PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
         PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
+        PlanMethod::Other => !PLANNERS.contains(&file.planner.as_str()),
         _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
     };
     check(made_by, &format!("another with planner '{}'", file.planner));
