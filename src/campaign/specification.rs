@@ -222,6 +222,7 @@ fn specification(text: &str, folder: &Path, faults: &Faults) -> Option<Specifica
             scenario.simulation = SimulationSettings {
                 behaviours: of_file.behaviours,
                 not_reported: of_file.not_reported,
+                seen_from: of_file.seen_from,
                 ..settings
             };
         }
@@ -324,11 +325,12 @@ fn class_stratum(
         starboard_turn: radians_from_deg(own.number_or("starboard_turn_deg", TURN_DEG, 0.0)),
         turn_rate: radians_from_deg(own.number_or("turn_rate_deg_per_s", TURN_RATE, 0.0)),
     };
-    let (behaviour, not_reported) = true_motion(own);
+    let target = true_motion(own);
     let scenario = Scenario {
         simulation: SimulationSettings {
-            behaviours: vec![behaviour],
-            not_reported: vec![not_reported],
+            behaviours: vec![target.behaviour],
+            not_reported: vec![target.not_reported],
+            seen_from: vec![target.seen_from],
             ..shared_loop.clone()
         },
         ..base?.clone()

@@ -10,6 +10,7 @@ use searoom::report::{
     NO_BOUND, RouteError, RouteFormat, bound_line, legs_text, no_return_line, no_return_reason,
     plan_document_text, write_atomically,
 };
+use searoom::scenario::Scenario;
 use searoom::study::bound::lower_bound;
 use searoom::study::lint::findings;
 
@@ -37,6 +38,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     Ok(match attempt(&scene, &args.shared, previous.as_ref()) {
         Ok((run, mut notes)) => {
             notes.extend(findings(&run.scenario, &scene.declared()));
+            notes.extend(seen_late(&run.scenario));
             // the text has them below the verdict
             let cautions = &run.scenario.remarks.cautions;
             notes.retain(|note| args.shared.written.json || !cautions.contains(note));
@@ -96,6 +98,21 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
                 .max(args.shared.status(&run, &document))
         }
         Err(refused) => output.refused(&refused),
+    })
+}
+
+/// A note on the targets that `simulate` hides until later.
+fn seen_late(scenario: &Scenario) -> Option<String> {
+    let targets = scenario.targets.iter().zip(&scenario.simulation.seen_from);
+    let late = targets.filter(|(_, from)| **from > 0.0);
+    let late: Vec<String> = late
+        .map(|(target, from)| format!("'{}' from {from} s on", target.name))
+        .collect();
+    (!late.is_empty()).then(|| {
+        format!(
+            "seen_from_s: the plan knows of every target; in `simulate` own ship sees {}",
+            late.join(", ")
+        )
     })
 }
 

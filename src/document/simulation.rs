@@ -190,6 +190,9 @@ pub struct SimulationSettingsDocument {
     pub current_std_mps: f64,
     pub current_known: bool,
     pub sensor: String,
+    /// Distance of the centres beyond which no target is seen; absent without a limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor_range_m: Option<f64>,
     pub own_length_m: f64,
     pub own_beam_m: f64,
     /// True where the scenario has a map.
@@ -216,6 +219,10 @@ pub struct SimulatedTargetDocument {
     /// Plans at whose start the target was outside the set of positions or of velocities that they
     /// assume.
     pub outside_sets: usize,
+    /// Seconds until which own ship had not seen it, so that no plan knew of it: the duration of the
+    /// simulation where it never did; absent where it knew from the start.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub unknown_until_s: f64,
     /// The true states from which it kept course and speed until the next.
     pub track: Vec<StateDocument>,
     #[serde(flatten)]
@@ -314,7 +321,7 @@ pub struct ReplanDocument {
     pub off_plan_m: f64,
     pub outside_velocities: Vec<String>,
     pub outside_places: Vec<String>,
-    /// The targets that the plan assumes, at its start.
+    /// The targets that the plan assumes, at its start: those that own ship has seen.
     pub estimates: Vec<EstimateDocument>,
 }
 

@@ -218,6 +218,18 @@ pub(super) fn conduct_lines(
         };
         ("Land", text)
     });
+    let seen_late = simulation
+        .targets
+        .iter()
+        .filter(|t| t.unknown_until_s > 0.0);
+    let seen_late = seen_late.map(|target| {
+        let name = &target.name;
+        match target.unknown_until_s < simulation.duration_s {
+            true => format!("{name} from {} on", times.at(target.unknown_until_s, 0)),
+            false => format!("{name} never"),
+        }
+    });
+    let seen_late: Vec<String> = seen_late.collect();
     let mut lines = vec![
         (
             "Sailed",
@@ -265,7 +277,8 @@ pub(super) fn conduct_lines(
     ];
     let monitors = monitors_key(sailed.breaks.iter().map(String::as_str));
     let monitors = monitors.map(|key| ("Monitors", key)).into_iter();
-    lines.splice(1..1, monitors.chain(land));
+    let seen = (!seen_late.is_empty()).then(|| ("Seen", seen_late.join("; ")));
+    lines.splice(1..1, monitors.chain(land).chain(seen));
     lines
 }
 

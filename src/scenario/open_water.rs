@@ -55,7 +55,7 @@ pub(crate) fn simulation_of(root: &mut Table) -> SimulationSettings {
     simulation(root, Vec::new())
 }
 
-/// The keys `behaviour` and `not_reported` of a target.
+/// The keys of a target that only the simulation uses.
 pub(crate) fn true_motion(target: &mut Table) -> SimulatedTarget {
     simulated(target, &Plane::in_metres())
 }

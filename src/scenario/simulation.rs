@@ -33,6 +33,9 @@ pub struct SimulationSettings {
     /// Fields that the reports of each target leave out, in the scenario's order; none where there
     /// is none.
     pub not_reported: Vec<NotReported>,
+    /// Seconds from which own ship can see each target, in the scenario's order; from the start
+    /// where there is none.
+    pub seen_from: Vec<f64>,
 }
 
 /// Fields that the AIS reports of a target leave out.
@@ -134,6 +137,8 @@ pub struct Noise {
 pub struct Sensor {
     /// Kind of reports.
     pub kind: SensorKind,
+    /// Metres between the centres beyond which no target is seen.
+    pub range: f64,
     /// Standard deviations of the reports.
     pub noise: Noise,
     /// Standard deviations that the tracker assumes.
@@ -164,6 +169,7 @@ impl Sensor {
     /// The sensor without any error.
     pub const EXACT: Self = Self {
         kind: SensorKind::Exact,
+        range: f64::INFINITY,
         noise: Noise::NONE,
         assumed: Noise::NONE,
         acceleration: 0.0,
@@ -285,6 +291,7 @@ impl Default for SimulationSettings {
             sensor: Sensor::EXACT,
             behaviours: Vec::new(),
             not_reported: Vec::new(),
+            seen_from: Vec::new(),
         }
     }
 }
@@ -305,12 +312,12 @@ const SILENT_TIMES: usize = 1000;
 
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
 pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> SimulationSettings {
-    let (behaviours, not_reported) = targets.into_iter().unzip();
-    let standard = SimulationSettings {
-        behaviours,
-        not_reported,
-        ..SimulationSettings::default()
-    };
+    let mut standard = SimulationSettings::default();
+    for target in targets {
+        standard.behaviours.push(target.behaviour);
+        standard.not_reported.push(target.not_reported);
+        standard.seen_from.push(target.seen_from);
+    }
     let field = root.take("simulation");
     let Some(mut table) = field.and_then(|field| field.table("a table")) else {
         return standard;
@@ -403,11 +410,15 @@ fn sensor(field: &Field) -> Option<Sensor> {
     let mut kind = table
         .require_first("kind", "\"exact\", \"ais\" or \"radar\"")?
         .choice(&KINDS)?;
+    let range = table.number_or("range_m", limits::LENGTH, Sensor::EXACT.range);
     let mut default_hull = Sensor::EXACT.default_hull;
     let (interval, standard) = match kind {
         SensorKind::Exact => {
             table.finish();
-            return Some(Sensor::EXACT);
+            return Some(Sensor {
+                range,
+                ..Sensor::EXACT
+            });
         }
         SensorKind::Ais { .. } => {
             let Hull { length, beam } = &mut default_hull;
@@ -454,6 +465,7 @@ fn sensor(field: &Field) -> Option<Sensor> {
     });
     let sensor = Sensor {
         kind,
+        range,
         noise: found,
         assumed,
         acceleration,
@@ -478,15 +490,38 @@ fn silent(field: &Field) -> Option<Vec<[f64; 2]>> {
 }
 
 /// Fields of a target in the file that only the simulation uses.
-pub(super) type SimulatedTarget = (Behaviour, NotReported);
+pub(crate) struct SimulatedTarget {
+    pub behaviour: Behaviour,
+    pub not_reported: NotReported,
+    /// Seconds.
+    pub seen_from: f64,
+}
+
+impl SimulatedTarget {
+    /// The keys of [`simulated`].
+    pub const KEYS: [&str; 3] = ["behaviour", "not_reported", "seen_from_s"];
+}
+
+impl Default for SimulatedTarget {
+    fn default() -> Self {
+        Self {
+            behaviour: Behaviour::Constant,
+            not_reported: NotReported::default(),
+            seen_from: 0.0,
+        }
+    }
+}
 
 /// The keys of a target for the simulation, all of which may be absent.
 pub(super) fn simulated(target: &mut Table, plane: &Plane) -> SimulatedTarget {
-    let behaviour = target.read_or("behaviour", Behaviour::Constant, |field| {
-        behaviour(field, plane)
-    });
-    let not_reported = target.read_or("not_reported", NotReported::default(), not_reported);
-    (behaviour, not_reported)
+    let [behaves, leaves_out, seen] = SimulatedTarget::KEYS;
+    SimulatedTarget {
+        behaviour: target.read_or(behaves, Behaviour::Constant, |field| {
+            behaviour(field, plane)
+        }),
+        not_reported: target.read_or(leaves_out, NotReported::default(), not_reported),
+        seen_from: target.number_or(seen, limits::HOLD, 0.0),
+    }
 }
 
 fn not_reported(field: &Field) -> Option<NotReported> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::check::{hull, pose, waypoints_from};
 use super::plane::Plane;
 use super::simulation::{SimulatedTarget, simulated};
-use super::{Behaviour, NotReported, explicit_sets, limits};
+use super::{explicit_sets, limits};
 use crate::colregs::{Risk, Role, SteadyShip, TargetMemory};
 use crate::frame::{
     Pose, Vector, course_deg_from_heading, deg_from_radians, heading_from_course_deg,
@@ -71,10 +71,10 @@ pub(super) fn targets(
         let role = role(&mut table, time, own, ship);
         let simulated = match ship {
             None if motion.is_some() => {
-                for key in ["behaviour", "not_reported"] {
+                for key in SimulatedTarget::KEYS {
                     table.forbid(key, "nothing: only a tracked ship has one");
                 }
-                (Behaviour::Constant, NotReported::default())
+                SimulatedTarget::default()
             }
             _ => simulated(&mut table, plane),
         };

@@ -18,6 +18,8 @@ use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
 /// Name of the planner whose plans follow paths.
 pub(super) const PATH_TIME: &str = "path-time";
+/// The planner whose plans are free in the plane.
+pub(super) const SPACE_TIME: &str = "space-time";
 /// Name of the planner whose plans are motions under forces.
 pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 

@@ -1,6 +1,6 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
-use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
+use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME};
 use super::mismatch;
 use crate::document::{PlanMethod, RelaxationDocument};
 use crate::evaluation::{Evaluation, Violation, outcome_word, without_rules};
@@ -130,7 +130,7 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
         PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
         PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
         PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
-        PlanMethod::Other => !PLANNERS.contains(&file.planner.as_str()),
+        PlanMethod::Other => ![OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME].contains(&file.planner.as_str()),
         _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
     };
     check(made_by, &format!("another with planner '{}'", file.planner));

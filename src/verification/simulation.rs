@@ -287,12 +287,11 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let within = |time: f64| (0.0..=end + TIME_S * (1.0 + end)).contains(&time);
     let nearest = document.land.iter().all(|land| within(land.least_t_s));
     require(nearest, "a time outside the simulation", end);
-    let names: Vec<&str> = document.targets.iter().map(|t| t.name.as_str()).collect();
     for target in &document.targets {
         let times = target
             .contact_t_s
             .into_iter()
-            .chain([target.least_clearance_t_s]);
+            .chain([target.least_clearance_t_s, target.unknown_until_s]);
         require(
             times.into_iter().all(within),
             "a time outside the simulation",
@@ -319,8 +318,13 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             "a plan with a verdict that does not fit what it gives up and whether it is safe",
             last,
         );
-        let planned: Vec<&str> = replan.estimates.iter().map(|e| e.target.as_str()).collect();
-        let of_others = planned != names && end > 0.0;
+        // a plan knows of the targets that own ship has seen
+        let known = || {
+            let targets = document.targets.iter();
+            targets.filter(|target| target.unknown_until_s <= last)
+        };
+        let planned = replan.estimates.iter().map(|e| e.target.as_str());
+        let of_others = !planned.eq(known().map(|t| t.name.as_str())) && end > 0.0;
         require(!of_others, "a plan for other targets", last);
         let starts = last..=last + settings.delay_s + TIME_S * (1.0 + end);
         require(
@@ -328,7 +332,7 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             "a plan that begins at another time",
             last,
         );
-        let mut seen = replan.estimates.iter().zip(&document.targets);
+        let mut seen = replan.estimates.iter().zip(known());
         require(
             seen.all(|(seen, target)| {
                 let there = target.at(last).map(|ship| ship.pose.position);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use searoom::document::SimulationDocument;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::Polygon;
 use searoom::map::Map;
@@ -587,4 +588,278 @@ fn a_role_on_the_path_lasts_while_own_ship_is_off_it() {
     assert!((300..515).all(|time| (course(time) - course(300)).abs() < 0.01));
     // to port, back to the path
     assert!((540..700).any(|time| course(time) - course(300) > 0.2));
+}
+
+/// A sailed scenario of text, whose document the checker accepts.
+fn sailed_and_verified(text: &str) -> SimulationDocument {
+    let sailed = sail(parsed(text));
+    let document = serde_json::to_string(&sailed).expect("a document");
+    let checked = verify_simulations(&document).expect("a simulation");
+    assert!(checked[0].violations.is_empty(), "{checked:?}");
+    sailed
+}
+
+/// No plan knows of a target that has never been reported; the first plan after its first report
+/// does.
+#[test]
+fn no_plan_knows_of_a_target_before_it_is_seen() {
+    let silent = fault("target-seen-late.toml");
+    let sensor = "sensor = { kind = \"ais\", class = \"b\", settle_s = 0.0, \
+                  silent_s = [[0.0, 240.0]] }";
+    assert!(silent.contains(sensor));
+    let late = silent.replace("[simulation]", "seen_from_s = 240\n[simulation]");
+    let exact = late.replace(sensor, "");
+    let radar = late.replace(sensor, "sensor = { kind = \"radar\" }");
+    // the ships are this far apart after about 170 s
+    let near = silent.replace(sensor, "sensor = { kind = \"exact\", range_m = 1200 }");
+    for (text, window) in [
+        (&silent, 240.0..271.0),
+        (&exact, 240.0..240.1),
+        (&radar, 240.0..243.1),
+        (&near, 150.0..190.0),
+    ] {
+        let sailed = sailed_and_verified(text);
+        let target = &sailed.targets[0];
+        let seen = target.unknown_until_s;
+        assert!(window.contains(&seen), "{seen} {window:?}");
+        for replan in &sailed.replans {
+            let known = usize::from(replan.t_s >= seen);
+            assert_eq!(replan.estimates.len(), known, "at {} s", replan.t_s);
+        }
+        assert!(
+            sailed
+                .replans
+                .iter()
+                .any(|replan| !replan.estimates.is_empty())
+        );
+        assert!(sailed.alarms.is_empty(), "{:?}", sailed.alarms);
+        let roles = target.conduct.roles.iter();
+        assert!(roles.clone().all(|role| role.from_s >= seen), "{roles:?}");
+        assert!(!sailed.contact && sailed.safe);
+    }
+    let events = exact.replace("replan_s = 20.0", "replan_s = 900.0\nreplan = \"events\"");
+    let reasons = sailed_and_verified(&events).replans.into_iter();
+    let reasons: Vec<(f64, String)> = reasons.map(|replan| (replan.t_s, replan.reason)).collect();
+    assert_eq!(reasons[1], (240.0, "acquired: late".to_owned()));
+    let never = silent.replace("240.0]]", "900.0]]");
+    let sailed = sailed_and_verified(&never);
+    assert_eq!(sailed.targets[0].unknown_until_s, sailed.duration_s);
+    assert!(sailed.targets[0].conduct.roles.is_empty());
+}
+
+/// The tracker knows the turn rate of the file.
+#[test]
+fn a_target_that_turns_as_fast_as_it_may_stays_in_its_set() {
+    let sailed = sailed_and_verified(&fault("turns-as-it-may.toml"));
+    assert!(sailed.alarms.is_empty(), "{:?}", sailed.alarms);
+    assert!(sailed.targets[0].outside_sets == 0 && sailed.safe);
+    let last = sailed.replans.iter().rfind(|replan| replan.t_s <= 300.0);
+    let estimate = &last.expect("a plan").estimates[0];
+    // it has turned 45 degrees to port
+    assert!((estimate.course_deg - 175.0).abs() < 3.0, "{estimate:?}");
+    assert!(estimate.course_spread_deg < 3.5, "{estimate:?}");
+    // faster than it may
+    let twice = fault("turns-as-it-may.toml").replace("turn_rate_deg_per_s = 0.2", "");
+    assert!(sail(parsed(&twice)).targets[0].outside_sets > 5);
+}
+
+/// Text of a scene with one far target, seen by AIS.
+fn tracked(speed: f64, points: &[[f64; 3]]) -> String {
+    let points = points.iter().map(|[time, east, north]| {
+        format!("{{ t_s = {time}, position = {{ east_m = {east}, north_m = {north} }} }}")
+    });
+    let points: Vec<String> = points.collect();
+    let more = format!(
+        "simulation = {{ duration_s = 600, sensor = {{ kind = \"ais\" }} }}\n\
+         targets = [{{ name = \"other\", position = {{ east_m = 20000, north_m = 0 }}, \
+         course_deg = 0, speed_mps = {speed}, length_m = 60, beam_m = 12, \
+         speed_spread_mps = 0.25, course_spread_deg = 5, \
+         behaviour = {{ kind = \"track\", points = [{}] }} }}]",
+        points.join(", ")
+    );
+    let way = [[0.0, 0.0], [4000.0, 0.0]];
+    campaigns::documents::text("Tracked", 1000.0, &way, &more)
+}
+
+/// North at 5 m/s, a turn from 40 to 60 s, then east at 10 m/s.
+#[test]
+fn a_velocity_caught_in_mid_turn_is_not_kept() {
+    let turn = [
+        [40.0, 20_000.0, 200.0],
+        [45.0, 20_006.0, 226.0],
+        [50.0, 20_025.0, 250.0],
+        [55.0, 20_055.0, 268.0],
+        [60.0, 20_098.0, 277.0],
+        [600.0, 25_498.0, 277.0],
+    ];
+    for seed in 1..=5 {
+        let mut scenario = parsed(&tracked(5.0, &turn));
+        scenario.simulation.seed = seed;
+        let sailed = sail(scenario);
+        let after = sailed
+            .replans
+            .iter()
+            .filter(|r| (140.0..600.0).contains(&r.t_s));
+        for replan in after {
+            let estimate = &replan.estimates[0];
+            let off = (estimate.course_deg - 90.0).abs();
+            let faster = (estimate.speed_mps - 10.0).abs();
+            assert!(
+                off < 5.0 && faster < 0.7,
+                "{seed} {}: {estimate:?}",
+                replan.t_s
+            );
+            let spreads = [estimate.course_spread_deg, estimate.speed_spread_mps];
+            assert!(
+                spreads[0] < 10.0 && spreads[1] < 1.0,
+                "{seed} {}: {estimate:?}",
+                replan.t_s
+            );
+        }
+        // the turn is noticed once, or in two steps
+        let alarms = sailed
+            .alarms
+            .iter()
+            .filter(|a| a.alarm == "another velocity than assumed");
+        assert!(
+            (1..=3).contains(&alarms.count()),
+            "{seed} {:?}",
+            sailed.alarms
+        );
+    }
+}
+
+/// The reports of a ship at rest scatter about its place. One that is under way is noticed.
+#[test]
+fn a_moored_ship_is_at_rest_until_it_gets_under_way() {
+    let place = [20_000.0, 0.0];
+    let rest = [600.0, place[0], place[1]];
+    for (sensor, seeds) in [
+        ("ais\"", 1..=8),
+        ("ais\", interval_s = 6", 1..=8),
+        ("radar\"", 1..=4),
+    ] {
+        let kind = format!("kind = \"{sensor}");
+        for seed in seeds {
+            let mut scenario = parsed(&tracked(0.0, &[rest]).replace("kind = \"ais\"", &kind));
+            scenario.simulation.seed = seed;
+            let sailed = sail(scenario);
+            for replan in &sailed.replans {
+                let estimate = &replan.estimates[0];
+                let fastest = estimate.speed_mps + estimate.speed_spread_mps;
+                assert!(fastest <= 0.25 + 1e-9, "{sensor} {seed}: {estimate:?}");
+                assert!(
+                    estimate.course_spread_deg < 6.0,
+                    "{sensor} {seed}: {estimate:?}"
+                );
+            }
+            assert!(
+                sailed.alarms.is_empty(),
+                "{sensor} {seed} {:?}",
+                sailed.alarms
+            );
+        }
+    }
+    // under way after 200 s: fast, or so slowly that only its places tell
+    for (speed, noticed_by) in [(5.0, 225.0), (1.0, 420.0)] {
+        let way = [
+            [200.0, place[0], place[1]],
+            [600.0, place[0] + 400.0 * speed, 0.0],
+        ];
+        for seed in 1..=8 {
+            let mut scenario = parsed(&tracked(0.0, &way));
+            scenario.simulation.seed = seed;
+            let sailed = sail(scenario);
+            let noticed = sailed
+                .replans
+                .iter()
+                .find(|r| !r.outside_velocities.is_empty());
+            let time = noticed.map(|replan| replan.t_s);
+            assert!(
+                time.is_some_and(|t| t > 200.0 && t <= noticed_by),
+                "{speed} {seed} {time:?}"
+            );
+            let last = &sailed.replans.last().expect("plans").estimates[0];
+            let off = (last.speed_mps - speed).abs();
+            assert!(off <= last.speed_spread_mps, "{speed} {seed}: {last:?}");
+        }
+    }
+}
+
+/// A ship that comes to rest is at rest when its reports say so, and not before.
+#[test]
+fn a_ship_that_comes_to_rest_is_found_at_rest() {
+    let stops = [[100.0, 20_000.0, 300.0], [600.0, 20_000.0, 300.0]];
+    let text = tracked(3.0, &stops).replace("kind = \"ais\"", "kind = \"ais\", interval_s = 6");
+    for seed in 1..=5 {
+        let mut scenario = parsed(&text);
+        scenario.simulation.seed = seed;
+        let sailed = sail(scenario);
+        let fastest = |time: f64| {
+            let replan = sailed.replans.iter().find(|replan| replan.t_s >= time);
+            let estimate = &replan.expect("a plan").estimates[0];
+            estimate.speed_mps + estimate.speed_spread_mps
+        };
+        assert!(fastest(100.0) > 2.5, "{seed} {}", fastest(100.0));
+        assert!(fastest(500.0) <= 0.45 + 1e-9, "{seed} {}", fastest(500.0));
+    }
+}
+
+/// Own ship alters around an anchored ship, toward which it has no role.
+#[test]
+fn turns_around_a_ship_at_rest_are_counted() {
+    let anchored = "targets = [{ name = \"anchored\", position = { east_m = 1500, north_m = 0 }, \
+                    course_deg = 0, speed_mps = 0, length_m = 60, beam_m = 12 }]";
+    let way = [[0.0, 0.0], [3000.0, 0.0]];
+    let sailed = sailed_and_verified(&campaigns::documents::text("Rest", 900.0, &way, anchored));
+    let conduct = &sailed.targets[0].conduct;
+    assert!(conduct.roles.is_empty());
+    let manoeuvre = conduct.manoeuvre.as_ref().expect("turns");
+    assert!(manoeuvre.turns > 0 && manoeuvre.lead_s.is_some());
+    assert_eq!(sailed.conduct.turns, manoeuvre.turns);
+    // nothing is counted for one that is not in the way
+    let clear = anchored.replace("north_m = 0", "north_m = 900");
+    let sailed = sail(parsed(&campaigns::documents::text(
+        "Clear", 900.0, &way, &clear,
+    )));
+    assert!(sailed.targets[0].conduct.manoeuvre.is_none());
+    assert_eq!(sailed.conduct.turns, 0);
+}
+
+/// The clock cuts a target's plan: another run may differ, and the document says so.
+#[test]
+fn a_target_that_plans_against_the_clock_says_so() {
+    let text = fault("mutual-out-of-time.toml");
+    let cut = |deadline: f64| {
+        let mut scenario = parsed(&text);
+        scenario.deadline = deadline;
+        let alarms = sail(scenario).alarms.into_iter();
+        let cut = alarms.filter(|alarm| alarm.alarm == "plan cut by its deadline");
+        cut.collect::<Vec<_>>()
+    };
+    let alarms = cut(0.0);
+    assert!(!alarms.is_empty());
+    for alarm in &alarms {
+        assert_eq!(alarm.target.as_deref(), Some("é2"));
+        let reason = alarm.reason.as_deref().expect("a reason");
+        assert!(reason.starts_with("the budget of 0 s ran out"), "{reason}");
+    }
+    assert!(cut(60.0).is_empty());
+}
+
+#[test]
+fn a_current_that_is_faster_than_own_ship_is_an_alarm() {
+    let text = fault("current-faster-than-ship.toml");
+    let found = |text: &str| {
+        let mut scenario = parsed(text);
+        scenario.simulation.duration = Some(60.0);
+        let alarms = sail(scenario).alarms.into_iter();
+        let found = alarms.filter(|alarm| alarm.alarm == "current faster than own ship");
+        found.collect::<Vec<_>>()
+    };
+    let alarms = found(&text);
+    assert_eq!((alarms.len(), alarms[0].t_s), (1, 0.0));
+    let reason = alarms[0].reason.as_deref();
+    assert_eq!(reason, Some("3.00 m/s of current, own ship makes 2.57 m/s"));
+    assert!(found(&text.replace("speed_mps = 3.0", "speed_mps = 2.5")).is_empty());
 }

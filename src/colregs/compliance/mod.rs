@@ -15,7 +15,7 @@ pub use role_intervals::{RoleInterval, roles};
 pub use samples::EncounterSamples;
 pub(crate) use samples::OwnSamples;
 pub use score::Scores;
-use score::scores;
+use score::{around_ship_at_rest, scores};
 
 use super::{TargetMemory, Thresholds};
 use crate::target::ShipTrack;
@@ -42,7 +42,8 @@ pub struct ComplianceReport {
     pub violations: Vec<RuleViolation>,
     /// Results of the monitors over the whole encounter.
     pub monitors: [MonitorResult; 6],
-    /// The manoeuvre in the first role; `None` without a role.
+    /// The manoeuvre in the first role; `None` without a role. After a simulation also the one
+    /// around a ship at rest.
     pub manoeuvre: Option<Manoeuvre>,
 }
 
@@ -128,6 +129,17 @@ impl ComplianceReport {
         let soon = factor * thresholds.risk.time.max(thresholds.monitor.manoeuvre);
         let far = near + soon * track.closing(target);
         track.encounter(target, memory, far)
+    }
+
+    /// The report with own ship's alterations around a ship at rest, toward which it has no role.
+    pub(crate) fn with_ship_at_rest(
+        mut self,
+        encounter: &EncounterSamples,
+        thresholds: &Thresholds,
+    ) -> Self {
+        let around = || around_ship_at_rest(encounter, thresholds);
+        self.manoeuvre = self.manoeuvre.or_else(around);
+        self
     }
 
     /// True without a rule violation and without a violated monitor.

@@ -24,6 +24,15 @@ fn at_risk(sample: &EncounterSample, encounter: &EncounterSamples, t: &Threshold
         && ahead.distance <= encounter.risk_distance(t)
 }
 
+/// Seconds of the first sample at risk of meeting a ship at rest, toward which there is no role.
+pub(super) fn meets_ship_at_rest(encounter: &EncounterSamples, t: &Thresholds) -> Option<f64> {
+    let is_at_rest =
+        |s: &EncounterSample| role_within(&s.own, &s.target, &t.sectors) == Some(Role::Static);
+    let mut samples = encounter.samples().iter();
+    let first = samples.find(|s| is_at_rest(s) && at_risk(s, encounter, t))?;
+    Some(first.time)
+}
+
 /// The other ship is past and clear, Rule 13(d): the range opens, also on own ship's first course,
 /// and is large enough. Slackening of speed alone does not let it pass.
 fn past_and_clear(

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 
 #[cfg(doc)]
 use super::ComplianceReport;
-use super::role_intervals::RoleInterval;
+use super::role_intervals::{RoleInterval, meets_ship_at_rest};
 use super::samples::{
     EncounterSample, EncounterSamples, alterations, speed_changed, speed_changes,
 };
@@ -83,7 +83,39 @@ struct Act<'a> {
     target_length: f64,
 }
 
-impl Act<'_> {
+impl<'a> Act<'a> {
+    /// From the beginning of an interval to the closest approach of the hulls. O(samples).
+    fn within(
+        encounter: &'a EncounterSamples,
+        interval: RoleInterval,
+        excused_from: f64,
+        t: &'a Thresholds,
+    ) -> Self {
+        let all = encounter.samples();
+        let begin = all.partition_point(|s| s.time < interval.from);
+        let begin = begin.min(all.len() - 1);
+        // negated on purpose: a NaN is the nearest
+        let nearest = (begin..all.len()).fold(begin, |best, k| {
+            if !(all[k].apart >= all[best].apart) {
+                k
+            } else {
+                best
+            }
+        });
+        Self {
+            t,
+            role: interval.role,
+            length: encounter.length(),
+            own_length: encounter.own_length(),
+            ordered_speed: encounter.ordered_speed(),
+            excused_from,
+            until: interval.until,
+            samples: &all[begin..=nearest],
+            after: &all[nearest..],
+            target_length: encounter.target_length(),
+        }
+    }
+
     fn first(&self) -> &EncounterSample {
         &self.samples[0]
     }
@@ -448,6 +480,20 @@ impl Act<'_> {
     }
 }
 
+/// Own ship's alterations from the first risk of meeting a ship at rest to the closest approach of
+/// the hulls; `None` without that risk. O(samples).
+pub(super) fn around_ship_at_rest(
+    encounter: &EncounterSamples,
+    t: &Thresholds,
+) -> Option<Manoeuvre> {
+    let interval = RoleInterval {
+        role: Role::Static,
+        from: meets_ship_at_rest(encounter, t)?,
+        until: f64::INFINITY,
+    };
+    Some(Act::within(encounter, interval, f64::INFINITY, t).manoeuvre())
+}
+
 /// Scores, rule violations and the manoeuvre toward one target.
 pub(super) struct Judged {
     pub scores: Scores,
@@ -465,28 +511,12 @@ pub(super) fn scores(
     t: &Thresholds,
 ) -> Judged {
     let all = encounter.samples();
-    let from = interval.map_or(all[0].time, |interval| interval.from);
-    let begin = all.partition_point(|s| s.time < from).min(all.len() - 1);
-    // negated on purpose: a NaN is the nearest
-    let nearest = (begin..all.len()).fold(begin, |best, k| {
-        if !(all[k].apart >= all[best].apart) {
-            k
-        } else {
-            best
-        }
+    let interval_or_all = interval.copied().unwrap_or(RoleInterval {
+        role: Role::None,
+        from: all[0].time,
+        until: f64::INFINITY,
     });
-    let act = Act {
-        t,
-        role: interval.map_or(Role::None, |interval| interval.role),
-        length: encounter.length(),
-        own_length: encounter.own_length(),
-        ordered_speed: encounter.ordered_speed(),
-        excused_from,
-        until: interval.map_or(f64::INFINITY, |interval| interval.until),
-        samples: &all[begin..=nearest],
-        after: &all[nearest..],
-        target_length: encounter.target_length(),
-    };
+    let act = Act::within(encounter, interval_or_all, excused_from, t);
     Judged {
         scores: act.scores(),
         violations: act.violations(),

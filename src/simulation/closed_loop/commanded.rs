@@ -89,7 +89,8 @@ impl Simulation {
     }
 
     /// For the command that own ship follows, and for each of these: true where own ship is clear
-    /// of the hard set of every target, and of land, until the end of the simulation.
+    /// of the hard set of every target that it has seen, and of land, until the end of the
+    /// simulation.
     ///
     /// A command is clear where its turn enters no set, and its velocity is in no velocity obstacle
     /// seen from the end of the turn: the contact test of a straight motion
@@ -117,10 +118,11 @@ impl Simulation {
         (is_clear(&present), each.collect())
     }
 
-    /// The hard sets of the targets, from t = 0 now.
+    /// The hard sets of the targets that own ship has seen, from t = 0 now.
     fn hard_sets(&mut self) -> Vec<Obstacle> {
-        let mut scenario = self.scenario.clone();
-        for (target, simulated) in scenario.targets.iter_mut().zip(&mut self.targets) {
+        let mut scenario = self.scenario_of_known_targets();
+        let known = self.targets.iter_mut().filter(|target| target.is_known());
+        for (target, simulated) in scenario.targets.iter_mut().zip(known) {
             let ship = simulated.track.set_at(self.time, 0.0);
             simulated.outside_sets += usize::from(simulated.track.is_broken());
             target.motion = Motion::Ship(ship);
@@ -135,9 +137,11 @@ impl Simulation {
         sets.map(|sets| sets.hard).collect()
     }
 
-    /// The hulls, and the names, of the targets as own ship knows them, at this time.
+    /// The names and the states of the targets that own ship has seen, as it knows them, at this
+    /// time.
     pub fn estimates(&self) -> impl Iterator<Item = (&str, SteadyShip)> {
-        self.targets.iter().map(|target| {
+        let known = self.targets.iter().filter(|target| target.is_known());
+        known.map(|target| {
             let estimate = target.track.estimate();
             let pose = Pose::new(estimate.position, estimate.heading);
             let ship = SteadyShip::new(pose, estimate.speed);

@@ -53,9 +53,10 @@ impl Simulation {
     pub(super) fn plan(&mut self, delay: f64, reason: String) -> Cycle {
         let start = self.time + delay;
         let off_plan_m = self.off_plan();
-        let mut scenario = self.scenario.clone();
-        let mut estimates = Vec::with_capacity(self.targets.len());
-        for (target, simulated) in scenario.targets.iter_mut().zip(&mut self.targets) {
+        let mut scenario = self.scenario_of_known_targets();
+        let mut estimates = Vec::with_capacity(scenario.targets.len());
+        let known = self.targets.iter_mut().filter(|target| target.is_known());
+        for (target, simulated) in scenario.targets.iter_mut().zip(known) {
             let ship = simulated
                 .track
                 .set_at(start, self.scenario.simulation.delay);
@@ -108,15 +109,19 @@ impl Simulation {
                 let reason = format!("{} m", tenths(off_plan_m));
                 self.alarm("far off the plan", None, Some(reason));
             }
-            for (target, simulated) in scenario.targets.iter_mut().zip(&self.targets) {
-                if let (Motion::Ship(ship), true) =
-                    (&mut target.motion, simulated.track.is_broken())
-                {
+            let known = self.targets.iter().filter(|target| target.is_known());
+            for (target, simulated) in scenario.targets.iter_mut().zip(known) {
+                let Motion::Ship(ship) = &mut target.motion else {
+                    continue;
+                };
+                if simulated.track.is_broken() {
                     // nothing of the last set is known to hold
                     (ship.kept_positions, ship.kept_velocities) = (None, None);
                     if !scenario.memory.is_outside(&target.name) {
                         scenario.memory.outside_velocities.push(target.name.clone());
                     }
+                } else if simulated.track.has_begun_anew() {
+                    ship.kept_velocities = None;
                 }
             }
         }
@@ -152,6 +157,20 @@ impl Simulation {
             replan,
             left_out: left_out_m + to_go,
         }
+    }
+
+    /// The scenario without the targets that own ship has not seen.
+    pub(super) fn scenario_of_known_targets(&self) -> Scenario {
+        let mut scenario = self.scenario.clone();
+        let targets = self.targets.iter().enumerate().rev();
+        for (index, _) in targets.filter(|(_, target)| !target.is_known()) {
+            scenario.targets.remove(index);
+            // one per target in the same order, or none at all
+            if index < scenario.memory.targets.len() {
+                scenario.memory.targets.remove(index);
+            }
+        }
+        scenario
     }
 
     /// Plans to where own ship is due within the horizon, or to the end of the present plan if that is

@@ -34,7 +34,7 @@ use crate::obstacle::LandObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Minimises, NoPlan, Outcome, Plan};
 use crate::scenario::{
-    Behaviour, Fault, NotReported, Scenario, SensorKind, SimulationSettings, VesselModel,
+    Behaviour, Fault, NotReported, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
 use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::text::{rounded, tenths};
@@ -102,6 +102,10 @@ pub struct Simulation {
     sailed: Vec<GroundSegment>,
     /// True while own ship is beyond its tracking margin.
     is_beyond: bool,
+    /// True while the current is faster than own ship.
+    is_overpowered: bool,
+    /// Why the clock cut a plan, until it is reported.
+    out_of_time: Option<String>,
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
     plan_seconds: Vec<f64>,
@@ -127,6 +131,10 @@ struct Simulated {
     clearance: Clearance,
     states: Vec<(f64, SteadyShip)>,
     outside_sets: usize,
+    /// Seconds from which own ship can see it.
+    seen_from: f64,
+    /// When own ship saw it first, seconds from the start; `None` for one that no plan knows of.
+    known_from: Option<f64>,
     is_stale: bool,
     /// True where it was reported for the first time, or again after it was stale, since the last
     /// plan.
@@ -143,7 +151,7 @@ struct Active {
     /// Metres of the mission after the end of the plan; infinite without a plan.
     left_out: f64,
     /// The targets that the plan assumes at its start, in the scenario's order; `None` for explicit
-    /// sets.
+    /// sets, and for those that own ship does not know of.
     assumed: Vec<Option<ShipTrack>>,
 }
 
@@ -190,48 +198,60 @@ impl Simulation {
         if !faults.is_empty() {
             return Err(faults);
         }
-        let exact = settings.sensor.kind == SensorKind::Exact;
         let mut mutual_targets = mutual::mutual_targets(&scenario)?.into_iter();
         let behaviours = settings.behaviours.iter().cloned();
         let behaviours = behaviours.chain(std::iter::repeat(Behaviour::Constant));
         let not_reported = settings.not_reported.iter().copied();
         let not_reported = not_reported.chain(std::iter::repeat(NotReported::default()));
+        let seen_from = settings
+            .seen_from
+            .iter()
+            .copied()
+            .chain(std::iter::repeat(0.0));
         let ships = scenario.targets.iter().zip(behaviours).zip(not_reported);
-        let targets = ships.map(|((target, behaviour), not_reported)| {
-            let (ship, set) = match &target.motion {
-                Motion::Ship(ship) => (ship, None),
-                Motion::Sets(sets) => (&middle_of(sets), Some(sets)),
-            };
-            let shapes = match set {
-                None => (scenario.own_ship.hull, Shape::Hull(ship.hull)),
-                Some(sets) => (Hull::new(0.0, 0.0), Shape::Set(outline(sets))),
-            };
-            let assumed = ShipTrack {
-                hull: not_reported.outer_hull(ship.hull, settings.sensor.default_hull),
-                ..ship.clone()
-            };
-            let seed = settings.seed;
-            let mut simulated = Simulated {
-                name: target.name.clone(),
-                set: set.cloned(),
-                truth: TrueTarget::new(&target.name, ship, behaviour, seed),
-                mutual: mutual_targets.next().flatten(),
-                sensor: TargetSensor::new(&settings.sensor, &target.name, seed),
-                track: Track::new(&assumed, &settings.sensor),
-                clearance: Clearance::new(shapes.0, shapes.1),
-                states: Vec::new(),
-                outside_sets: 0,
-                is_stale: false,
-                is_acquired: false,
-            };
-            let steps = (settings.sensor.settle / settings.step).ceil() as usize;
-            for step in (1..=steps).rev().filter(|_| !exact) {
-                let time = -(step as f64) * settings.step;
-                simulated.observe(time, &SteadyShip::on_track(ship, time), false);
-            }
-            simulated.track.assume_anew();
-            simulated
-        });
+        let own = SteadyShip::new(scenario.own_ship.pose, scenario.own_ship.speed);
+        let targets =
+            ships
+                .zip(seen_from)
+                .map(|(((target, behaviour), not_reported), seen_from)| {
+                    let (ship, set) = match &target.motion {
+                        Motion::Ship(ship) => (ship, None),
+                        Motion::Sets(sets) => (&middle_of(sets), Some(sets)),
+                    };
+                    let shapes = match set {
+                        None => (scenario.own_ship.hull, Shape::Hull(ship.hull)),
+                        Some(sets) => (Hull::new(0.0, 0.0), Shape::Set(outline(sets))),
+                    };
+                    let assumed = ShipTrack {
+                        hull: not_reported.outer_hull(ship.hull, settings.sensor.default_hull),
+                        ..ship.clone()
+                    };
+                    let seed = settings.seed;
+                    let mut simulated = Simulated {
+                        name: target.name.clone(),
+                        set: set.cloned(),
+                        truth: TrueTarget::new(&target.name, ship, behaviour, seed),
+                        mutual: mutual_targets.next().flatten(),
+                        sensor: TargetSensor::new(&settings.sensor, &target.name, seed),
+                        track: Track::new(&assumed, &settings.sensor),
+                        clearance: Clearance::new(shapes.0, shapes.1),
+                        states: Vec::new(),
+                        outside_sets: 0,
+                        seen_from,
+                        known_from: None,
+                        is_stale: false,
+                        is_acquired: false,
+                    };
+                    let steps = (settings.sensor.settle / settings.step).ceil() as usize;
+                    let measured = settings.sensor.kind != SensorKind::Exact;
+                    for step in (1..=steps).rev().filter(|_| measured) {
+                        let time = -(step as f64) * settings.step;
+                        let there = SteadyShip::on_track(ship, time);
+                        simulated.observe(time, &there, &own.moved(time), &settings.sensor);
+                    }
+                    simulated.track.assume_anew();
+                    simulated
+                });
         let own = Own::new(&scenario);
         Ok(Self {
             targets: targets.collect(),
@@ -251,6 +271,8 @@ impl Simulation {
             next_cycle: scenario.simulation.replan,
             sailed: Vec::new(),
             is_beyond: false,
+            is_overpowered: false,
+            out_of_time: None,
             replans: Vec::new(),
             alarms: Vec::new(),
             plan_seconds: Vec::new(),
@@ -422,7 +444,8 @@ impl Simulation {
             return None;
         }
         let first = |is: fn(&Simulated) -> bool, what: &str| {
-            let target = self.targets.iter().find(|target| is(target))?;
+            let mut known = self.targets.iter().filter(|target| target.is_known());
+            let target = known.find(|target| is(target))?;
             Some(format!("{what}: {}", target.name))
         };
         let margin = self.scenario.own_ship.tracking_margin;
@@ -434,14 +457,14 @@ impl Simulation {
     }
 
     fn observe(&mut self) {
-        let exact = self.settings().sensor.kind == SensorKind::Exact;
-        let stale = self.settings().sensor.stale;
+        let own = self.own();
+        let sensor = &self.scenario.simulation.sensor;
         for target in &mut self.targets {
             let now = target.truth.now;
-            let was_silent = target.is_stale || !(exact || target.track.has_report());
-            target.observe(self.time, &now, exact);
+            let was_silent = target.is_stale || !target.is_known();
+            target.observe(self.time, &now, &own, sensor);
             let silent = self.time - target.track.estimate().time;
-            let is_stale = silent > stale;
+            let is_stale = target.is_known() && silent > sensor.stale;
             if is_stale && !target.is_stale {
                 self.alarms.push(AlarmDocument {
                     t_s: self.time,
@@ -450,8 +473,7 @@ impl Simulation {
                     reason: None,
                 });
             }
-            let is_reported = exact || target.track.has_report();
-            target.is_acquired |= was_silent && is_reported && !is_stale;
+            target.is_acquired |= was_silent && target.is_known() && !is_stale;
             target.is_stale = is_stale;
         }
     }
@@ -489,6 +511,9 @@ impl Simulation {
         self.conduct.without_plan += usize::from(replan.cost_m2.is_none());
         self.conduct.unsafe_plans += usize::from(replan.cost_m2.is_some() && !replan.safe);
         let reason = run.reason();
+        if matches!(run.planned.outcome, Outcome::Deadline(_)) {
+            self.out_of_time.clone_from(&reason);
+        }
         if replan.cost_m2.is_none() {
             self.alarm("no plan", None, reason);
         } else if !replan.followed {
@@ -517,13 +542,16 @@ impl Simulation {
             if self.keep_plans {
                 self.plans.push(document.clone());
             }
-            let targets = run.scenario.targets.iter();
+            let assumed = |name: &str| {
+                let target = run.scenario.targets.iter().find(|t| t.name == name);
+                target.and_then(|target| target.ship().cloned())
+            };
             self.pending = Some(Active {
                 start: self.time + delay,
                 trajectory: plan.trajectory.clone(),
                 document: Some(document),
                 left_out,
-                assumed: targets.map(|target| target.ship().cloned()).collect(),
+                assumed: self.targets.iter().map(|t| assumed(&t.name)).collect(),
             });
         }
         self.replans.push(replan);
@@ -567,10 +595,24 @@ impl Simulation {
         let time = self.time;
         let in_plan = time - self.active.start;
         let now = self.own();
+        let (current, most) = (self.own.current_speed(), self.scenario.own_ship.max_speed());
+        let is_overpowered = current > most;
+        if is_overpowered && !self.is_overpowered {
+            let reason = format!("{current:.2} m/s of current, own ship makes {most:.2} m/s");
+            self.alarm("current faster than own ship", None, Some(reason));
+        }
+        self.is_overpowered = is_overpowered;
         for target in &mut self.targets {
             target.truth.steer(time, step, &now);
-            if let Some(mutual) = &mut target.mutual {
-                mutual.steer(&mut target.truth.now, &now, step);
+            if let Some(mutual) = &mut target.mutual
+                && let Some(reason) = mutual.steer(&mut target.truth.now, &now, step)
+            {
+                self.alarms.push(AlarmDocument {
+                    t_s: time,
+                    alarm: "plan cut by its deadline".to_owned(),
+                    target: Some(target.name.clone()),
+                    reason: Some(reason),
+                });
             }
             let ship = target.truth.now;
             let course_and_speed = |ship: &SteadyShip| (ship.pose.heading, ship.speed);
@@ -616,15 +658,32 @@ impl Simulation {
 }
 
 impl Simulated {
-    /// Takes in what arrives at `time`.
-    fn observe(&mut self, time: f64, ship: &SteadyShip, exact: bool) {
-        if exact {
+    /// Takes in what arrives at `time`, with the true state of both ships.
+    fn observe(&mut self, time: f64, ship: &SteadyShip, own: &SteadyShip, sensor: &Sensor) {
+        let distance = (ship.pose.position - own.pose.position).norm();
+        // an explicit set has no sight: it is where the file has it
+        let in_sight = self.set.is_some()
+            || time.max(0.0) >= self.seen_from - INSTANT && distance <= sensor.range;
+        let mut is_reported = false;
+        if sensor.kind != SensorKind::Exact {
+            for report in self.sensor.reports(time, ship, in_sight) {
+                self.track.update(&report);
+                is_reported = true;
+            }
+        } else if in_sight {
             self.track.set_exact(time, ship);
-            return;
+            is_reported = true;
         }
-        for report in self.sensor.reports(time, ship) {
-            self.track.update(&report);
+        if is_reported && self.known_from.is_none() {
+            self.known_from = Some(time.max(0.0));
+            // nothing was assumed of it before
+            self.track.assume_anew();
         }
+    }
+
+    /// True where own ship has seen the target.
+    fn is_known(&self) -> bool {
+        self.known_from.is_some()
     }
 }
 
@@ -710,9 +769,9 @@ fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
                     ("several sets of velocities", "one, whose middle it keeps")
                 }
                 _ if acts => ("explicit sets that act", "behaviour = \"constant\""),
-                _ if seen != SensorKind::Exact => (
+                _ if seen != SensorKind::Exact || settings.sensor.range.is_finite() => (
                     "explicit sets that are measured",
-                    "simulation.sensor = { kind = \"exact\" }",
+                    "simulation.sensor = { kind = \"exact\" }, without range_m",
                 ),
                 _ => continue,
             };

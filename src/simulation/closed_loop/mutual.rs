@@ -90,19 +90,21 @@ impl MutualTarget {
     }
 
     /// Sees own ship, plans where a plan is due, and sets course and speed of the target for a step
-    /// so that it is on its plan at the end. At the end of its plan it keeps both.
-    pub fn steer(&mut self, ship: &mut SteadyShip, own: &SteadyShip, step: f64) {
+    /// so that it is on its plan at the end. At the end of its plan it keeps both. Returns why the
+    /// clock cut a plan, if it did: then another run may differ.
+    pub fn steer(&mut self, ship: &mut SteadyShip, own: &SteadyShip, step: f64) -> Option<String> {
         let simulation = &mut self.0;
         if simulation.finished() {
-            return;
+            return None;
         }
         for target in &mut simulation.targets {
             target.truth.now = *own;
         }
         simulation.observe_and_plan();
         simulation.advance(step);
+        let out_of_time = simulation.out_of_time.take();
         if simulation.finished() {
-            return;
+            return out_of_time;
         }
         let plan = &simulation.active;
         let pose = simulation
@@ -113,5 +115,6 @@ impl MutualTarget {
         if ship.speed > NO_WAY {
             ship.pose.heading = heading_of(way);
         }
+        out_of_time
     }
 }

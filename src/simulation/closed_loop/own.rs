@@ -71,6 +71,11 @@ impl Own {
             .unwrap_or_else(|| plan.pose_at(time))
     }
 
+    /// Speed of the current, m/s.
+    pub fn current_speed(&self) -> f64 {
+        (self.current.mean + self.current_noise).norm()
+    }
+
     /// Own ship on its course at its speed for `duration` seconds.
     pub fn held(&self, scenario: &Scenario, duration: f64) -> Trajectory {
         let (pose, speed) = (scenario.own_ship.pose, scenario.own_ship.speed);

@@ -1,6 +1,7 @@
 //! The document of a simulation, with the judges' verdicts on what was sailed.
 
 use super::{Simulated, Simulation};
+use crate::colregs::SteadyShip;
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
     ConductDocument, CycleTimingDocument, GroundSegmentDocument, SIMULATION_FORMAT, SailedDocument,
@@ -22,18 +23,18 @@ impl Simulation {
     pub fn record(&self) -> SimulationDocument {
         let own = &self.scenario.own_ship;
         let track: Vec<Segment> = self.sailed.iter().map(|s| s.track).collect();
-        // explicit sets have no rules
-        let ships = self.targets.iter().filter(|target| target.set.is_none());
-        let samples: Vec<EncounterSamples> = ships
+        let judged = self.targets.iter().filter(|target| self.is_judged(target));
+        let samples: Vec<EncounterSamples> = judged
             .map(|target| {
-                EncounterSamples::of_tracks(&self.sailed, own, &target.states, target.truth.hull)
+                let hull = target.truth.hull;
+                EncounterSamples::of_tracks(&self.sailed, own, &target.seen_states(), hull)
             })
             .collect();
-        let reports = if self.sailed.is_empty() {
-            Vec::new()
-        } else {
-            ComplianceReport::of_all(samples.iter(), self.scenario.judged_by())
-        };
+        let limits = self.scenario.judged_by();
+        let reports = ComplianceReport::of_all(samples.iter(), limits);
+        let reports = reports.into_iter().zip(&samples);
+        let reports = reports.map(|(report, met)| report.with_ship_at_rest(met, limits));
+        let reports: Vec<ComplianceReport> = reports.collect();
         let mut breaks: Vec<String> = (reports.iter())
             .flat_map(ComplianceReport::broken)
             .map(str::to_owned)
@@ -113,6 +114,12 @@ impl Simulation {
         }
     }
 
+    /// True for a target toward which there are rules: a ship that own ship has seen before the end.
+    fn is_judged(&self, target: &Simulated) -> bool {
+        let is_seen = |from: f64| from < self.time;
+        target.set.is_none() && target.known_from.is_some_and(is_seen)
+    }
+
     /// Own hull's least distance from the land of the map over the sailed motion.
     fn sailed_land(&self) -> Option<SailedLandDocument> {
         let map = &self.scenario.land.as_ref()?.map;
@@ -161,6 +168,7 @@ impl Simulation {
             current_std_mps: settings.current.std,
             current_known: settings.current.known,
             sensor: settings.sensor.kind.word().to_owned(),
+            sensor_range_m: finite(settings.sensor.range),
             own_length_m: own.hull.length,
             own_beam_m: own.hull.beam,
             map: self.scenario.land.is_some(),
@@ -189,13 +197,25 @@ fn simulated_targets(
     let mut reports = reports.iter();
     let targets = simulation.targets.iter().enumerate();
     let targets = targets.map(|(index, target)| {
-        let report = match target.set {
-            None => reports.next(),
-            Some(_) => None,
-        };
+        let is_judged = simulation.is_judged(target);
+        let report = is_judged.then(|| reports.next()).flatten();
         simulated(simulation, index, target, report)
     });
     targets.collect()
+}
+
+impl Simulated {
+    /// The true states from when own ship saw it first.
+    fn seen_states(&self) -> Vec<(f64, SteadyShip)> {
+        let from = self.known_from.unwrap_or(f64::INFINITY);
+        let before = self.states.partition_point(|(time, _)| *time <= from);
+        let first = before.checked_sub(1).map(|index| self.states[index]);
+        let first = first.map(|(time, ship)| (from, ship.moved(from - time)));
+        first
+            .into_iter()
+            .chain(self.states[before..].iter().copied())
+            .collect()
+    }
 }
 
 fn simulated(
@@ -215,6 +235,7 @@ fn simulated(
         least_clearance_t_s: clearance.time,
         contact_t_s: clearance.contact,
         outside_sets: target.outside_sets,
+        unknown_until_s: target.known_from.unwrap_or(simulation.time),
         track: (target.states.iter())
             .map(|(time, ship)| state_document(*time, ship))
             .collect(),

@@ -56,24 +56,33 @@ impl TargetSensor {
     }
 
     /// Measures the target where a report is due at `time`, seconds; returns those that arrive.
-    pub fn reports(&mut self, time: f64, target: &SteadyShip) -> Vec<Report> {
+    /// The report of a target out of sight is lost.
+    pub fn reports(&mut self, time: f64, target: &SteadyShip, in_sight: bool) -> Vec<Report> {
+        if self.sensor.interval.is_none() {
+            // a ship that gets under way reports before a ship at rest would
+            self.next = self.next.min(time + self.interval(target, false));
+        }
         if time >= self.next - INSTANT {
-            self.next = time + self.interval(time, target);
-            if let Some(report) = self.measure(time, target) {
-                self.coming.push(report);
-            }
+            let altering = self.is_altering(time, target);
+            self.next = time + self.interval(target, altering);
+            let report = self.measure(time, target);
+            self.coming.extend(report.filter(|_| in_sight));
         }
         let arrived = self.coming.partition_point(|r| r.arrives <= time + INSTANT);
         self.coming.drain(..arrived).collect()
     }
 
-    /// Seconds to the next report. Class A: ITU-R M.1371, annex 1, table 1.
-    fn interval(&mut self, time: f64, target: &SteadyShip) -> f64 {
+    /// True where the target has altered its course since the last report.
+    fn is_altering(&mut self, time: f64, target: &SteadyShip) -> bool {
         let heading = target.pose.heading;
         let before = self.last_heading.replace((time, heading));
-        let altering = before.is_some_and(|(then, was)| {
+        before.is_some_and(|(then, was)| {
             wrap(heading - was).abs() > ALTERING * (time - then).max(1e-9)
-        });
+        })
+    }
+
+    /// Seconds to the next report. Class A: ITU-R M.1371, annex 1, table 1.
+    fn interval(&self, target: &SteadyShip, altering: bool) -> f64 {
         if let Some(interval) = self.sensor.interval {
             return interval;
         }
@@ -162,7 +171,8 @@ mod tests {
 
     fn times(sensor: Sensor, knots: f64) -> Vec<f64> {
         let mut sensor = TargetSensor::new(&sensor, "a", 1);
-        let reports = (0..1200).flat_map(|k| sensor.reports(f64::from(k) * 0.5, &target(knots)));
+        let reports =
+            (0..1200).flat_map(|k| sensor.reports(f64::from(k) * 0.5, &target(knots), true));
         reports.map(|r| r.time).collect()
     }
 
@@ -179,7 +189,9 @@ mod tests {
         let mut found = Vec::new();
         for k in 0..200 {
             turning.pose.heading += 0.01;
-            let reports = sensor.reports(f64::from(k) / 3.0, &turning).into_iter();
+            let reports = sensor
+                .reports(f64::from(k) / 3.0, &turning, true)
+                .into_iter();
             found.extend(reports.map(|r| r.time));
         }
         let mut steps = found.windows(2).skip(1).map(|t| t[1] - t[0]);
@@ -223,7 +235,7 @@ mod tests {
         let mut sensor = TargetSensor::new(&sensor, "a", 1);
         let ship = target(10.0);
         let all: Vec<Report> = (0..8000)
-            .flat_map(|k| sensor.reports(f64::from(k) * 0.5, &ship))
+            .flat_map(|k| sensor.reports(f64::from(k) * 0.5, &ship, true))
             .collect();
         let std = |of: &dyn Fn(&Report) -> f64| {
             (all.iter().map(|r| of(r).powi(2)).sum::<f64>() / all.len() as f64).sqrt()

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Matrix4, SymmetricEigen, Vector4};
 
 use super::sensor::{Report, velocity_covariance};
-use crate::colregs::SteadyShip;
+use crate::colregs::{Sectors, SteadyShip};
 use crate::frame::{Pose, Vector, heading_of, to_port, wrap};
 use crate::scenario::Sensor;
 use crate::target::ShipTrack;
@@ -25,6 +25,14 @@ const SETTLED_S: f64 = 5.0;
 
 /// Fraction of the spreads within which a settled target stays.
 const SETTLED: f64 = 0.25;
+
+/// A turn has ended where the target has settled for this time in seconds. The estimate of a filter
+/// lags behind a turn, so this is longer than [`SETTLED_S`].
+const TURN_ENDED_S: f64 = 20.0;
+
+/// Square of the distance, in standard deviations, between two estimates above which they are not of
+/// the same motion: 5. Two normal numbers exceed it with a probability of 4e-6, four with 5e-5.
+const ANOTHER_MOTION: f64 = 25.0;
 
 /// m/s and radians: rounding of velocities.
 const ROUNDING: f64 = 1e-9;
@@ -116,6 +124,28 @@ impl Filter {
     fn velocity_variance(&self) -> Matrix2<f64> {
         self.covariance.fixed_view::<2, 2>(2, 2).into_owned()
     }
+
+    /// The greatest speed within three standard deviations, m/s.
+    fn greatest_speed(&self) -> f64 {
+        let variance = SymmetricEigen::new(self.velocity_variance());
+        let std = variance.eigenvalues.max().max(0.0).sqrt();
+        self.velocity().norm() + SIGMAS * std
+    }
+
+    /// True where a measured velocity is likely.
+    fn explains(&self, velocity: Vector, covariance: Matrix2<f64>) -> bool {
+        let off = velocity - self.velocity();
+        let inverse = (self.velocity_variance() + covariance).try_inverse();
+        inverse.is_some_and(|inverse| off.dot(&(inverse * off)) <= ANOTHER_MOTION)
+    }
+
+    /// True where another estimate of the same motion at the same time is likely, by the covariance
+    /// of this one.
+    fn agrees_with(&self, other: &Self) -> bool {
+        let off = self.state - other.state;
+        let inverse = self.covariance.try_inverse();
+        inverse.is_some_and(|inverse| off.dot(&(inverse * off)) <= ANOTHER_MOTION)
+    }
 }
 
 /// Estimate of a target at the time of its last report.
@@ -150,30 +180,63 @@ impl Estimate {
 /// The middle and the half-widths of the velocities that plans are made for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AssumedVelocities {
+    /// When the heading was the middle, seconds.
+    time: f64,
     heading: f64,
     speed: f64,
     heading_spread: f64,
     speed_spread: f64,
     /// How much farther to starboard the heading may be.
     starboard_turn: f64,
+    /// Radians per second by which the middle may turn.
+    turn_rate: f64,
 }
 
 impl AssumedVelocities {
     /// The spreads of the behaviour and of the estimate about the estimate.
     fn at(estimate: &Estimate, file: &ShipTrack) -> Self {
         Self {
+            time: estimate.time,
             heading: estimate.heading,
             speed: estimate.speed,
             heading_spread: file.course_spread + SIGMAS * estimate.heading_std,
             speed_spread: file.speed_spread + SIGMAS * estimate.speed_std,
             starboard_turn: file.starboard_turn,
+            turn_rate: file.turn_rate.abs(),
         }
+    }
+
+    /// How far the middle may have turned until an estimate, radians.
+    fn may_turn(&self, estimate: &Estimate) -> f64 {
+        self.turn_rate * (estimate.time - self.time).max(0.0)
+    }
+
+    /// The set at the time of an estimate: its middle has turned toward the estimate, no farther
+    /// than it may. With the same turn rate, all that this set may come to hold is in the set before.
+    fn turned_to(&self, estimate: &Estimate) -> Self {
+        let (beyond, _) = self.off(estimate);
+        let side = wrap(estimate.heading - self.heading + 0.5 * self.starboard_turn);
+        let turned = beyond.clamp(0.0, self.may_turn(estimate));
+        Self {
+            time: estimate.time,
+            heading: self.heading + turned.copysign(side),
+            ..*self
+        }
+    }
+
+    /// True where every velocity of a set of the same turns is in this one.
+    fn contains(&self, other: &Self) -> bool {
+        let turned = wrap(other.heading - self.heading).abs() + other.heading_spread;
+        let faster = (other.speed - self.speed).abs() + other.speed_spread;
+        (turned <= self.heading_spread + ROUNDING || self.heading_spread >= std::f64::consts::PI)
+            && faster <= self.speed_spread + ROUNDING
     }
 
     /// True for an estimate that may be of a velocity in the set of `factor` times the spreads.
     fn holds(&self, estimate: &Estimate, factor: f64) -> bool {
         let (turned, faster) = self.off(estimate);
-        turned <= factor * self.heading_spread + SIGMAS * estimate.heading_std + ROUNDING
+        let may_turn = self.may_turn(estimate);
+        turned <= factor * self.heading_spread + may_turn + SIGMAS * estimate.heading_std + ROUNDING
             && faster <= factor * self.speed_spread + SIGMAS * estimate.speed_std + ROUNDING
     }
 
@@ -211,10 +274,20 @@ pub(super) struct Track {
     file: ShipTrack,
     sensor: Sensor,
     filter: Option<Filter>,
+    /// The present motion at constant velocity, without any acceleration, since it began.
+    steady: Option<Filter>,
+    /// True for a ship that the file has at rest, as long as no report contradicts it.
+    is_known_at_rest: bool,
     estimate: Estimate,
     velocities: AssumedVelocities,
+    /// True where the velocities are those of a ship at rest that is not at rest any more.
+    has_left_rest: bool,
+    /// True where the velocities began in a turn.
+    began_in_turn: bool,
     /// True where the last set does not keep the velocities of the one before.
     is_broken: bool,
+    /// True where it does not keep them though the target has not left them.
+    has_begun_anew: bool,
     /// The estimate from which the later ones do not differ by much.
     settled: Estimate,
 }
@@ -228,8 +301,13 @@ impl Track {
             file: file.clone(),
             sensor: sensor.clone(),
             filter: None,
+            steady: None,
+            is_known_at_rest: file.speed + SIGMAS * file.speed_std <= Sectors::STANDARD.at_rest,
             estimate,
+            has_left_rest: false,
+            began_in_turn: false,
             is_broken: false,
+            has_begun_anew: false,
             settled: estimate,
         }
     }
@@ -244,6 +322,7 @@ impl Track {
     fn settle(&mut self) {
         let still = AssumedVelocities {
             starboard_turn: 0.0,
+            turn_rate: 0.0,
             ..AssumedVelocities::at(&self.settled, &self.file)
         };
         if !still.holds(&self.estimate, SETTLED) {
@@ -258,23 +337,65 @@ impl Track {
         let position = (report.position, Matrix2::identity() * (std * std));
         let unknown = Matrix2::identity() * (ANY_VELOCITY * ANY_VELOCITY);
         let velocity = (report.velocity).map(|v| (v, velocity_covariance(assumed, v)));
-        let filter = match &mut self.filter {
-            Some(filter) if report.time < filter.time => return,
-            Some(filter) => {
-                filter.predict(report.time);
-                filter.update(0, position.0, position.1);
-                if let Some((velocity, covariance)) = velocity {
-                    filter.update(2, velocity, covariance);
-                }
-                filter
+        let taken_in = |mut filter: Filter| {
+            filter.predict(report.time);
+            filter.update(0, position.0, position.1);
+            if let Some((velocity, covariance)) = velocity {
+                filter.update(2, velocity, covariance);
             }
-            None => self.filter.insert(Filter::new(
-                report.time,
-                position,
-                velocity.unwrap_or((Vector::zeros(), unknown)),
-                self.sensor.acceleration * self.sensor.acceleration,
-            )),
+            filter
         };
+        let begun = |velocity, density| Filter::new(report.time, position, velocity, density);
+        let measured = velocity.unwrap_or((Vector::zeros(), unknown));
+        if (self.filter.as_ref()).is_some_and(|filter| report.time < filter.time) {
+            return;
+        }
+        let density = self.sensor.acceleration * self.sensor.acceleration;
+        let filter = self.filter.take().map(|mut filter| {
+            filter.predict(report.time);
+            filter
+        });
+        // a target that has turned since is another motion, behind which the filter would lag
+        let filter = filter.filter(|filter| velocity.is_none_or(|(v, c)| filter.explains(v, c)));
+        let filter = filter.map_or_else(|| begun(measured, density), taken_in);
+        let in_file = match self.is_known_at_rest {
+            true => (
+                self.file.velocity(),
+                Matrix2::identity() * (self.file.speed_std * self.file.speed_std),
+            ),
+            false => measured,
+        };
+        let steady = self.steady.take();
+        let mut steady = steady.map_or_else(|| begun(in_file, 0.0), taken_in);
+        let was_at_rest = self.is_at_rest();
+        if !filter.agrees_with(&steady) {
+            steady = begun(measured, 0.0);
+            self.is_known_at_rest = false;
+            self.has_left_rest |= was_at_rest;
+        }
+        self.estimate = self.estimated(report.time, &filter, &steady);
+        (self.filter, self.steady) = (Some(filter), Some(steady));
+        self.settle();
+    }
+
+    /// The estimate of a filter; of a ship at rest that of its steady motion, which is none.
+    fn estimated(&self, time: f64, filter: &Filter, steady: &Filter) -> Estimate {
+        let greatest_speed = steady.greatest_speed();
+        if greatest_speed <= Sectors::STANDARD.at_rest {
+            let (heading, heading_std) = match self.is_known_at_rest {
+                true => (self.file.pose.heading, self.file.course_std),
+                false => (self.estimate.heading, std::f64::consts::PI),
+            };
+            return Estimate {
+                time,
+                position: steady.position(),
+                position_std: steady.position_std(),
+                heading,
+                speed: 0.0,
+                heading_std,
+                speed_std: greatest_speed / SIGMAS,
+            };
+        }
         let velocity = filter.velocity();
         let speed = velocity.norm();
         let ahead = velocity.try_normalize(ROUNDING).unwrap_or_else(Vector::x);
@@ -282,8 +403,8 @@ impl Track {
             let variance = axis.dot(&(filter.velocity_variance() * axis));
             variance.max(0.0).sqrt()
         };
-        self.estimate = Estimate {
-            time: report.time,
+        Estimate {
+            time,
             position: filter.position(),
             position_std: filter.position_std(),
             heading: heading_of(ahead),
@@ -291,33 +412,45 @@ impl Track {
             heading_std: (std_along(to_port(ahead)) / speed.max(ROUNDING))
                 .min(std::f64::consts::PI),
             speed_std: std_along(ahead),
-        };
-        self.settle();
+        }
+    }
+
+    /// True where no speed above that of a ship at rest is likely.
+    fn is_at_rest(&self) -> bool {
+        let steady = self.steady.as_ref();
+        steady.is_some_and(|steady| steady.greatest_speed() <= Sectors::STANDARD.at_rest)
     }
 
     /// Begins the velocity set anew about the present estimate.
     pub fn assume_anew(&mut self) {
         self.velocities = AssumedVelocities::at(&self.estimate, &self.file);
-    }
-
-    /// True from the first report on.
-    pub fn has_report(&self) -> bool {
-        self.filter.is_some()
+        (self.has_left_rest, self.began_in_turn) = (false, false);
     }
 
     /// True where the present estimate is outside the velocities that the last plan assumes.
     fn is_outside(&self) -> bool {
-        !self.velocities.holds(&self.estimate, 1.0)
+        self.has_left_rest || !self.velocities.holds(&self.estimate, 1.0)
     }
 
     /// True where the target has left the velocities that the last plan assumes and holds on.
     pub fn has_left(&self) -> bool {
-        self.is_outside() && self.estimate.time - self.settled.time >= SETTLED_S
+        self.is_outside() && self.has_settled(SETTLED_S)
+    }
+
+    /// True where the estimate has been about the same for a time in seconds.
+    fn has_settled(&self, time: f64) -> bool {
+        self.estimate.time - self.settled.time >= time
     }
 
     /// True where the last set does not keep the velocities of the one before.
     pub fn is_broken(&self) -> bool {
         self.is_broken
+    }
+
+    /// True where the last set does not keep the velocities of the one before, which still hold the
+    /// target: they were those of a turn that has ended, or of a ship that has come to rest.
+    pub fn has_begun_anew(&self) -> bool {
+        self.has_begun_anew
     }
 
     pub fn estimate(&self) -> &Estimate {
@@ -326,16 +459,28 @@ impl Track {
 
     /// The set for a plan that starts at `time`. Its velocities stay as they are as long as they
     /// hold the present estimate. A target that does little more than assumed may do so again: its
-    /// spreads are widened. One that does much more has turned, and its set begins anew. Its disc
+    /// spreads are widened. One that does much more has turned, and its set begins anew, and once
+    /// more when it has settled. So does that of a ship at rest that gets under way, and that of one
+    /// that comes to rest. The course turns as the turn rate of the file allows. Its disc
     /// of positions holds every motion since the last report, and during the `delay` of a plan also
     /// in the first one: each set then holds the next one.
     pub fn set_at(&mut self, time: f64, delay: f64) -> ShipTrack {
         self.is_broken = self.is_outside();
-        if self.is_broken && self.velocities.holds(&self.estimate, WIDENED) {
-            self.velocities.widen(&self.estimate);
-        } else if self.is_broken {
+        let before = self.velocities;
+        let is_new_motion = self.has_left_rest || !before.holds(&self.estimate, WIDENED);
+        let has_turned = self.began_in_turn && self.has_settled(TURN_ENDED_S);
+        if self.is_broken && is_new_motion {
             self.assume_anew();
+            self.began_in_turn = true;
+        } else if has_turned || self.is_at_rest() {
+            self.assume_anew();
+        } else {
+            self.velocities = before.turned_to(&self.estimate);
+            if self.is_broken {
+                self.velocities.widen(&self.estimate);
+            }
         }
+        self.has_begun_anew = !before.turned_to(&self.estimate).contains(&self.velocities);
         let age = (time - self.estimate.time).max(0.0);
         let elapsed = age.max(delay);
         let turned = self.file.turn_rate * elapsed;

@@ -270,6 +270,40 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     assert!((60.0..63.0).contains(&time), "{time}");
 }
 
+/// Text, document and check agree on a target that is seen late; a plan knows of it and says so.
+#[test]
+fn a_target_seen_late_is_named_by_simulate_and_plan() {
+    let folder = Folder::new();
+    let file = folder.write("late.toml", head_on("seen_from_s = 90", ""));
+    let shown = stdout(&searoom(&["simulate", &file]));
+    says(&shown, "Seen: target from 90 s on");
+    let sailed = document(&searoom(&["simulate", &file, "--json"]));
+    assert_eq!(sailed["targets"][0]["unknown_until_s"], 90.0);
+    let estimates = |index: usize| list(&sailed["replans"][index]["estimates"]).len();
+    assert_eq!([4, 5].map(estimates), [0, 1]);
+    let name = folder.write("sailed.json", sailed.to_string());
+    says(&stdout(&searoom(&["verify", &name])), "verified");
+    for until in [10.0, 150.0, -1.0] {
+        let mut altered = sailed.clone();
+        altered["targets"][0]["unknown_until_s"] = until.into();
+        let name = folder.write("altered.json", altered.to_string());
+        says(&stdout(&searoom(&["verify", &name]).code(1)), "REJECTED");
+    }
+    let planned = run(&format!("plan {file} --json")).success();
+    says(
+        &stderr(&planned),
+        "seen_from_s: the plan knows of every target; in `simulate` own ship sees 'target' from \
+         90 s on",
+    );
+    assert_eq!(
+        untimed(document(&planned)),
+        untimed(json(&format!("plan {HEAD_ON_FILE} --json")))
+    );
+    let never = folder.write("never.toml", head_on("seen_from_s = 900", ""));
+    let blind = stdout(&searoom(&["simulate", &never]).code(1));
+    says(&blind, "CONTACT with target | Seen: target never");
+}
+
 /// Fields that a target does not report, a sensor, and the fault.
 const NOT_REPORTED: &str = r#"
 "heading", "size" | kind = "radar" | : found a sensor of kind "radar"
