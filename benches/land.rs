@@ -108,7 +108,7 @@ fn plan(criterion: &mut Criterion) {
         .into_iter()
         .map(|s| s.with_domain)
         .collect();
-    let land = pipeline::land_within_reach(&scenario);
+    let land = pipeline::land_within_reach(&scenario).pieces;
     let land_obstacle = pipeline::land_obstacle(&scenario, &land);
     let asked = pipeline::problem(&scenario, &obstacles, &land_obstacle);
     let id = format!("plan/3 targets, {} pieces of land", land.len());

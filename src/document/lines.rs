@@ -96,6 +96,11 @@ pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
     add("planner", planner_words(plan));
+    if let Some(all) = plan.land_outer_of {
+        let pieces = plan.land.len();
+        let text = format!("{pieces} pieces around {all} of the map: an outer approximation");
+        add("land", text);
+    }
     if let Some(reason) = &plan.reason {
         add("reason", reason.clone());
     }

@@ -72,6 +72,9 @@ pub struct PlanDocument {
     pub own_ship: OwnShipDocument,
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
+    /// Number of the map's pieces that `land` holds, where it is an outer approximation of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub land_outer_of: Option<usize>,
     pub outcome: String,
     /// Empty in an old document.
     #[serde(default)]
@@ -145,7 +148,8 @@ impl PlanDocument {
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
-            land: run.land.iter().map(vertices).collect(),
+            land: run.land.pieces.iter().map(vertices).collect(),
+            land_outer_of: run.land.simplified,
             outcome: verdict.word().to_owned(),
             verdict: run.word(),
             reason: run.reason(),

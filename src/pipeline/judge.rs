@@ -1,9 +1,11 @@
 //! The independent evaluation of a motion.
 
+use super::land::NearLand;
 use super::relaxation::Attempt;
 use crate::evaluation::{
     Evaluation, Freedom, Request, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
+use crate::geometry::Polygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::Plan;
 use crate::scenario::Scenario;
@@ -12,33 +14,38 @@ use crate::trajectory::Trajectory;
 /// Evaluates a trajectory against the obstacles that it was planned against.
 pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajectory) -> Evaluation {
     let risk = scenario.max_risk;
-    judge_plan(scenario, obstacles, &[], risk, trajectory, true)
+    let sets = (obstacles, &[][..], risk);
+    judge_plan(scenario, sets, polygons(scenario), trajectory, true)
 }
 
 /// Evaluates an answer at its accepted risk; sets that it enters count from when they are left.
+/// Where the land is simplified, the plan is compared with the larger pieces, as it claims.
 pub(super) fn judge_answer(
     scenario: &Scenario,
     answer: &Attempt,
+    land: &NearLand,
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let (obstacles, released) = (&answer.obstacles, &answer.released);
+    let sets = (&answer.obstacles[..], &answer.released[..], answer.risk);
     let plan = answer.planned.outcome.plan();
     let arrives = plan.is_none_or(Plan::arrives);
-    judge_plan(
-        scenario,
-        obstacles,
-        released,
-        answer.risk,
-        trajectory,
-        arrives,
-    )
+    let simplified = land.polygons();
+    let land = simplified.as_deref().unwrap_or_else(|| polygons(scenario));
+    judge_plan(scenario, sets, land, trajectory, arrives)
 }
+
+/// The land of the map.
+fn polygons(scenario: &Scenario) -> &[Polygon] {
+    scenario.land.as_ref().map_or(&[], |l| l.map.polygons())
+}
+
+/// Level sets, from when each counts, and their risk.
+type Avoided<'a> = (&'a [Obstacle], &'a [Option<f64>], f64);
 
 fn judge_plan(
     scenario: &Scenario,
-    obstacles: &[Obstacle],
-    released: &[Option<f64>],
-    risk: f64,
+    avoided: Avoided,
+    land: &[Polygon],
     trajectory: &Trajectory,
     arrives: bool,
 ) -> Evaluation {
@@ -50,7 +57,7 @@ fn judge_plan(
         true if arrives => Freedom::Paths(&paths),
         true => Freedom::PathsToHorizon(&paths),
     };
-    judged(scenario, obstacles, released, risk, trajectory, freedom)
+    judged(scenario, avoided, land, trajectory, freedom)
 }
 
 /// Evaluates a motion that is not a plan: start, sets, hulls, land and figures, without own ship's
@@ -60,17 +67,17 @@ pub fn judge_free(
     obstacles: &[Obstacle],
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let risk = scenario.max_risk;
-    judged(scenario, obstacles, &[], risk, trajectory, Freedom::Any)
+    let sets = (obstacles, &[][..], scenario.max_risk);
+    let land = polygons(scenario);
+    judged(scenario, sets, land, trajectory, Freedom::Any)
 }
 
-/// `released` holds per set the time in seconds from which it counts, where the trajectory enters
-/// it. The obstacles are the level sets of `risk`.
+/// The second part of `avoided` holds per set the time in seconds from which it counts, where the
+/// trajectory enters it.
 fn judged(
     scenario: &Scenario,
-    obstacles: &[Obstacle],
-    released: &[Option<f64>],
-    risk: f64,
+    (obstacles, released, risk): Avoided,
+    land: &[Polygon],
     trajectory: &Trajectory,
     freedom: Freedom,
 ) -> Evaluation {
@@ -92,7 +99,7 @@ fn judged(
         desired: &scenario.desired,
         targets: &scenario.targets,
         sets: &sets,
-        land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
+        land,
         land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         arrival_hold: scenario.arrival_hold,

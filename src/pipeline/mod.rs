@@ -13,7 +13,7 @@ mod sets;
 mod thorough;
 
 pub use judge::{judge, judge_free};
-pub use land::{land_obstacle, land_within_reach};
+pub use land::{NearLand, land_obstacle, land_within_reach};
 pub use no_return::{NO_RETURN_STEP_S, NoReturn};
 pub use outcome::{Relaxation, Verdict};
 pub use relaxation::{RISK_STEP, RelaxationLevel};
@@ -28,7 +28,6 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::evaluation::Evaluation;
-use crate::geometry::ConvexPolygon;
 use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::parallel;
 use crate::planner::{NoPlan, Outcome, Plan, Planned, Problem};
@@ -45,8 +44,8 @@ pub struct Run {
     pub level: RelaxationLevel,
     /// The accepted risk, in `[0, 1)`: the scenario's, or more where there was no plan at that.
     pub max_risk: f64,
-    /// The convex pieces of land that were planned against: all that own ship could reach.
-    pub land: Vec<ConvexPolygon>,
+    /// The land that was planned against: all that own ship could reach.
+    pub land: NearLand,
     /// The planner's answer.
     pub planned: Planned,
     /// Why no plan satisfies the whole request; `None` where one does, or where there is no plan.
@@ -181,7 +180,7 @@ pub fn run(mut scenario: Scenario) -> Run {
     let land_obstacle = if scenario.planner.facts().follows_paths {
         LandObstacle::none()
     } else {
-        around_land = land_obstacle(&scenario, &land);
+        around_land = land_obstacle(&scenario, &land.pieces);
         &around_land
     };
     let relaxer = Relaxer {
@@ -229,7 +228,7 @@ pub fn run(mut scenario: Scenario) -> Run {
     }
     let evaluation = answer
         .trajectory()
-        .map(|trajectory| judge_answer(&scenario, &answer, trajectory));
+        .map(|trajectory| judge_answer(&scenario, &answer, &land, trajectory));
     let mut peaks = risks.into_iter();
     let avoided = answer.whole.into_iter().zip(answer.obstacles);
     let targets = (sets.into_iter().zip(avoided).zip(answer.released))

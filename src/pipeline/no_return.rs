@@ -43,7 +43,7 @@ impl Run {
             return None;
         }
         let hard: Vec<Obstacle> = self.targets.iter().map(|t| t.sets.hard.clone()).collect();
-        let land_obstacle = land_obstacle(scenario, &self.land);
+        let land_obstacle = land_obstacle(scenario, &self.land.pieces);
         let asked = problem(scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {

@@ -3,6 +3,7 @@
 use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
 use crate::obstacle::PolytopeObstacle;
 use crate::planner::SearchKind;
 use crate::planner::path_time::PathTimePlanner;

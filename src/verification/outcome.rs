@@ -130,7 +130,9 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
         PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
         PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
         PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
-        PlanMethod::Other => ![OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME].contains(&file.planner.as_str()),
+        PlanMethod::Other => {
+            ![OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME].contains(&file.planner.as_str())
+        }
         _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
     };
     check(made_by, &format!("another with planner '{}'", file.planner));

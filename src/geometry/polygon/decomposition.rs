@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use spade::handles::DirectedEdgeHandle;
+use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::{Polygon, turn};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 
 type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
+type Edge<'a> = DirectedEdgeHandle<'a, Point2<f64>, (), CdtEdge<()>, ()>;
 
 /// Why a polygon could not be decomposed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -25,18 +27,7 @@ pub enum DecompositionError {
 /// four times the minimum number of pieces. Exact predicates; every vertex of a piece is a vertex
 /// of the polygon.
 pub fn convex_pieces(polygon: &Polygon) -> Result<Vec<ConvexPolygon>, DecompositionError> {
-    let mut index_of: BTreeMap<[u64; 2], usize> = BTreeMap::new();
-    let mut points: Vec<Vector> = Vec::new();
-    let mut index = |p: Vector| {
-        *index_of
-            .entry([p.x.to_bits(), p.y.to_bits()])
-            .or_insert_with(|| {
-                points.push(p);
-                points.len() - 1
-            })
-    };
-    let edges: Vec<[usize; 2]> = polygon.edges().map(|(a, b)| [index(a), index(b)]).collect();
-    let sites = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
+    let (sites, edges) = sites(polygon);
     let mut crossed = false;
     let mesh = Mesh::try_bulk_load_cdt(sites, edges, |_| crossed = true)
         .map_err(|_| DecompositionError::OutOfRange)?;
@@ -48,27 +39,39 @@ pub fn convex_pieces(polygon: &Polygon) -> Result<Vec<ConvexPolygon>, Decomposit
     Ok(merged(&mesh, &inside))
 }
 
+/// The distinct vertices of a polygon, and its edges between them.
+fn sites(polygon: &Polygon) -> (Vec<Point2<f64>>, Vec<[usize; 2]>) {
+    let mut index_of: BTreeMap<[u64; 2], usize> = BTreeMap::new();
+    let mut points = Vec::new();
+    let mut index = |p: Vector| {
+        *index_of
+            .entry([p.x.to_bits(), p.y.to_bits()])
+            .or_insert_with(|| {
+                points.push(Point2::new(p.x, p.y));
+                points.len() - 1
+            })
+    };
+    let edges = polygon.edges().map(|(a, b)| [index(a), index(b)]).collect();
+    (points, edges)
+}
+
 /// The faces inside the polygon: every edge of the polygon separates inside from outside.
 fn inner_faces(mesh: &Mesh) -> Vec<bool> {
-    let mut beyond: Vec<Vec<(usize, bool)>> = vec![Vec::new(); mesh.num_all_faces()];
-    for edge in mesh.undirected_edges() {
-        let directed = edge.as_directed();
-        let a = directed.face().fix().index();
-        let b = directed.rev().face().fix().index();
-        let of_the_polygon = mesh.is_constraint_edge(edge.fix());
-        beyond[a].push((b, of_the_polygon));
-        beyond[b].push((a, of_the_polygon));
-    }
     let mut inside: Vec<Option<bool>> = vec![None; mesh.num_all_faces()];
-    let mut open = vec![(mesh.outer_face().fix().index(), false)];
-    while let Some((face, here)) = open.pop() {
-        if inside[face].is_none() {
-            inside[face] = Some(here);
-            open.extend(
-                beyond[face]
-                    .iter()
-                    .map(|(f, crossed)| (*f, here != *crossed)),
-            );
+    inside[mesh.outer_face().fix().index()] = Some(false);
+    let is_edge = |edge: Edge| mesh.is_constraint_edge(edge.as_undirected().fix());
+    // edges to cross, from a face that is inside or not
+    let mut open: Vec<(Edge, bool)> = mesh.convex_hull().map(|edge| (edge, false)).collect();
+    while let Some((edge, here)) = open.pop() {
+        let beyond = edge.rev().face();
+        let there = here != is_edge(edge);
+        let Some(face) = beyond.as_inner() else {
+            continue;
+        };
+        let known = &mut inside[beyond.fix().index()];
+        if known.is_none() {
+            *known = Some(there);
+            open.extend(face.adjacent_edges().map(|edge| (edge, there)));
         }
     }
     inside.into_iter().map(|i| i == Some(true)).collect()

@@ -53,7 +53,7 @@ fn an_escape_exists_until_the_time_of_no_return_and_mostly_none_later() {
             panic!("there is a time: {target:?}");
         };
         let hard: Vec<Obstacle> = run.targets.iter().map(|t| t.sets.hard.clone()).collect();
-        let land_obstacle = land_obstacle(&run.scenario, &run.land);
+        let land_obstacle = land_obstacle(&run.scenario, &run.land.pieces);
         let asked = problem(&run.scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked).expect("a straight path");
         // to either side, every half degree
@@ -76,7 +76,7 @@ fn a_ship_that_stands_on_escapes_while_there_is_a_way_out() {
     ] {
         let run = run(scenario(target.clone(), Compliance::Rules));
         let reported = run.planned.escape.expect("it stands on").held_until;
-        let land_obstacle = land_obstacle(&run.scenario, &run.land);
+        let land_obstacle = land_obstacle(&run.scenario, &run.land.pieces);
         let obstacles: Vec<Obstacle> = run.obstacles().cloned().collect();
         let asked = problem(&run.scenario, &obstacles, &land_obstacle);
         let held = space_time::nominal_motion(&asked).expect("a straight path");

@@ -101,7 +101,7 @@ impl Judge<'_> {
         let Some(set) = self.run.obstacles().nth(obstacle) else {
             let land_obstacle = self
                 .land_obstacle
-                .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land));
+                .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land.pieces));
             let depth = tolerance::GRAZE_M;
             let met = edge
                 .iter()
