@@ -117,7 +117,7 @@ fn plan(criterion: &mut Criterion) {
         b.iter(|| {
             pipeline::land_obstacle(
                 &scenario,
-                &pipeline::land_within_reach(black_box(&scenario)),
+                &pipeline::land_within_reach(black_box(&scenario)).pieces,
             )
         })
     });

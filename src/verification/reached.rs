@@ -76,7 +76,7 @@ pub(super) struct Known<'a> {
 /// Further motion of the target.
 enum Moving {
     /// Every speed and course within the spreads.
-    Ship(ShipTrack),
+    Ship(Box<ShipTrack>),
     /// For each velocity set: its end, its support in each direction, and its diameter in m/s.
     Sets(Vec<(f64, Vec<f64>, f64)>),
 }
@@ -104,7 +104,7 @@ impl<'a> Known<'a> {
             Motion::Ship(ship)
                 if scale == 1.0 && ship.kept_velocities.is_none() && ship.route.is_empty() =>
             {
-                Moving::Ship(ship.clone())
+                Moving::Ship(Box::new(ship.clone()))
             }
             _ => {
                 let sets = at_level(target, scale, claim.file.horizon_s);

@@ -133,6 +133,9 @@ const NAMES: Names = &[
 
 const VERSIONS: [&str; 2] = ["2022a", "2020a"];
 
+/// Own ship and the others of one planning problem, with what was assumed.
+type Read = (Own, Vec<Other>, Remarks);
+
 /// The situations of a file, one per planning problem.
 pub(super) fn situations(
     document: &Document,
@@ -177,7 +180,7 @@ pub(super) fn situations(
         return Err(noted);
     };
     let several = owns.len() > 1;
-    let situation = |(entry, read): (&Xml, Option<(Own, Vec<Other>, Remarks)>)| {
+    let situation = |(entry, read): (&Xml, Option<Read>)| {
         let id = several.then(|| format!("{name}-{}", entry.attribute("id").unwrap_or_default()));
         let (own, others, remarks) = read.ok_or_else(Vec::new)?;
         // relative to own ship's start: coordinates may be those of a global grid
