@@ -192,7 +192,7 @@ const CORRUPTIONS: [Corruption; 16] = [
     ),
     (
         |s| s[0].start.heading += 1e-8,
-        &["start", "position", "heading"],
+        &["start", "position", "heading", "position"],
     ),
     // cut off
     (|s| s.truncate(6), &["arrival:"]),

@@ -106,9 +106,13 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     findings
 }
 
-/// Targets that meet own ship where it lies after its mission, on their nominal motion.
+/// Targets that meet own ship where it lies, on their nominal motion, after a mission that is shorter
+/// than its hull: it is at anchor or on station. After a longer one the verdict of the plan says so.
 fn met_at_rest(scenario: &Scenario) -> Vec<String> {
     let desired = &scenario.desired;
+    if desired.length() > scenario.own_ship.hull.length {
+        return Vec::new();
+    }
     let last = desired
         .legs()
         .iter()

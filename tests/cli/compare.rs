@@ -211,7 +211,7 @@ fn a_baseline_that_turns_says_its_speed() {
     let mut slower = 0;
     for name in ["give-way", "head-on", "overtaking", "stand-on"] {
         let file = format!("scenarios/colregs/{name}.toml");
-        let compared = json(&format!("compare {file} --planner path-time --json"));
+        let compared = document(&run(&format!("compare {file} --planner path-time --json")));
         let entries = list(&compared["comparisons"][0]["entries"]);
         let held = entries.iter().find(|e| e["method"] == "constant velocity");
         let held = held.expect("one");

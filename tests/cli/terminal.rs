@@ -92,8 +92,9 @@ fn every_target_of_a_plan_has_one_block() {
     }
     let both = "head-on on the desired trajectory, no role on the plan\n";
     assert!(text.contains(both), "{text}");
-    let text = stdout(&run("plan tests/faults/turning-beside-ellipsoid.toml"));
-    let new = "'t2': no role on the desired trajectory; on the plan own ship is give-way from 0 to";
+    let text = stdout(&run("plan tests/faults/horizon-at-a-turn.toml"));
+    let new =
+        "'4 turning': no role on the desired trajectory; on the plan own ship is stand-on from";
     assert!(text.contains(new), "{text}");
     let text = stdout(&run("plan scenarios/harbour/ferry-crossing.toml").success());
     let without =

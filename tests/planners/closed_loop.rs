@@ -610,13 +610,13 @@ fn no_plan_knows_of_a_target_before_it_is_seen() {
     let late = silent.replace("[simulation]", "seen_from_s = 240\n[simulation]");
     let exact = late.replace(sensor, "");
     let radar = late.replace(sensor, "sensor = { kind = \"radar\" }");
-    // the ships are this far apart after about 170 s
+    // the ships are this far apart after about 205 s
     let near = silent.replace(sensor, "sensor = { kind = \"exact\", range_m = 1200 }");
     for (text, window) in [
         (&silent, 240.0..271.0),
         (&exact, 240.0..240.1),
         (&radar, 240.0..243.1),
-        (&near, 150.0..190.0),
+        (&near, 200.0..210.0),
     ] {
         let sailed = sailed_and_verified(text);
         let target = &sailed.targets[0];
@@ -656,7 +656,8 @@ fn a_target_that_turns_as_fast_as_it_may_stays_in_its_set() {
     let last = sailed.replans.iter().rfind(|replan| replan.t_s <= 300.0);
     let estimate = &last.expect("a plan").estimates[0];
     // it has turned 45 degrees to port
-    assert!((estimate.course_deg - 175.0).abs() < 3.0, "{estimate:?}");
+    let off = (estimate.course_deg - 175.0).abs();
+    assert!(off <= estimate.course_spread_deg, "{estimate:?}");
     assert!(estimate.course_spread_deg < 3.5, "{estimate:?}");
     // faster than it may
     let twice = fault("turns-as-it-may.toml").replace("turn_rate_deg_per_s = 0.2", "");

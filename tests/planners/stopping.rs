@@ -163,5 +163,5 @@ fn a_ship_at_rest_160_to_400_m_ahead_is_never_met() {
         assert!(run.safe(), "{}: {}", run.scenario.title, run.word());
         short += usize::from(!run.arrives());
     }
-    assert!(short >= 5, "only {short} of 26 stop");
+    assert!(short >= 2, "only {short} of 26 stop");
 }

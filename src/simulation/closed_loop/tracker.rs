@@ -211,12 +211,13 @@ impl AssumedVelocities {
         self.turn_rate * (estimate.time - self.time).max(0.0)
     }
 
-    /// The set at the time of an estimate: its middle has turned toward the estimate, no farther
-    /// than it may. With the same turn rate, all that this set may come to hold is in the set before.
+    /// The set at the time of an estimate: its middle has turned toward the estimate as far as is
+    /// needed to hold it, and no farther than it may. With the same turn rate, all that this set may
+    /// come to hold is in the set before.
     fn turned_to(&self, estimate: &Estimate) -> Self {
         let (beyond, _) = self.off(estimate);
         let side = wrap(estimate.heading - self.heading + 0.5 * self.starboard_turn);
-        let turned = beyond.clamp(0.0, self.may_turn(estimate));
+        let turned = (beyond - self.heading_spread).clamp(0.0, self.may_turn(estimate));
         Self {
             time: estimate.time,
             heading: self.heading + turned.copysign(side),
