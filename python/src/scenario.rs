@@ -13,7 +13,7 @@ use crate::error::{argument, detached, faults, scenario};
 use crate::value::toml_text;
 
 /// Names of the options for an imported file.
-const ASSUMPTIONS: [(&str, Assumption); 5] = [
+const ASSUMPTIONS: [(&str, Assumption); 6] = [
     ("speed_spread_mps", Assumption::SpeedSpread),
     ("course_spread_deg", Assumption::CourseSpread),
     ("margin_m", Assumption::SafetyMargin),

@@ -100,7 +100,7 @@ fn speeds_of_a_route_are_sailed_and_the_rest_is_noted() {
         assert!(notes(&plan).contains(&note), "{name}: {}", notes(&plan));
         let sailed = list(&plan["trajectory"]["segments"]).len();
         assert!(
-            sailed <= segments.parse().expect("a number"),
+            sailed <= segments.parse::<usize>().expect("a number"),
             "{name}: {sailed} segments"
         );
         // each speed within the largest is one of own ship's
