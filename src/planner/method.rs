@@ -75,7 +75,7 @@ impl PlanMethod {
             Self::PathTimeGraph => "path-time graph",
             Self::OptimalControl => "optimal control",
             Self::Remainder => "remainder of the last plan",
-            Self::LeastHarm => "escape with the least harm",
+            Self::LeastHarm => "least harm",
             Self::Waiting => "waits on its route",
             Self::Stay => "stays in place",
             Self::Other => "another planner",

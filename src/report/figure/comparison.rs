@@ -442,7 +442,7 @@ mod tests {
         assert_eq!(cost_within_risk(&along.run(&forces)), None);
         let svg = comparison_figure(&[(&scenario, &entries)], &FigureOptions::default());
         let svg = svg.expect("drawn").svg();
-        assert!(svg.contains("path-time, escape with the least harm: none within the risk"));
+        assert!(svg.contains("least harm: none within the risk"));
         // sorted from the least risk, independent of the requested order
         assert!(svg.contains(&format!("by the rules: {clear:.0} to {risked:.0} m²")));
     }

@@ -34,6 +34,10 @@ const TURN_ENDED_S: f64 = 20.0;
 /// the same motion: 5. Two normal numbers exceed it with a probability of 4e-6, four with 5e-5.
 const ANOTHER_MOTION: f64 = 25.0;
 
+/// Fraction of the spread from the middle at which a target that turns as it may is held: it may turn
+/// on, and a target that swings within its spread may turn back.
+const HELD: f64 = 0.5;
+
 /// m/s and radians: rounding of velocities.
 const ROUNDING: f64 = 1e-9;
 
@@ -212,12 +216,12 @@ impl AssumedVelocities {
     }
 
     /// The set at the time of an estimate: its middle has turned toward the estimate as far as is
-    /// needed to hold it, and no farther than it may. With the same turn rate, all that this set may
+    /// needed to hold it well inside, and no farther than it may. With the same turn rate, all that this set may
     /// come to hold is in the set before.
     fn turned_to(&self, estimate: &Estimate) -> Self {
         let (beyond, _) = self.off(estimate);
         let side = wrap(estimate.heading - self.heading + 0.5 * self.starboard_turn);
-        let turned = (beyond - self.heading_spread).clamp(0.0, self.may_turn(estimate));
+        let turned = (beyond - HELD * self.heading_spread).clamp(0.0, self.may_turn(estimate));
         Self {
             time: estimate.time,
             heading: self.heading + turned.copysign(side),

@@ -318,7 +318,7 @@ fn a_plan_says_what_made_it() {
         (
             "tests/faults/least-harm-at-anchor.toml",
             "least-harm",
-            "escape with the least harm",
+            "least harm",
         ),
     ] {
         let searched = !["rules", "optimal-control", "least-harm"].contains(&method);
