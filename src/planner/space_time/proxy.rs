@@ -200,7 +200,9 @@ impl<'a> Proxy<'a> {
 
     /// The interval during which a position is inside, deeper than touching.
     pub(crate) fn covers(&self, position: Vector, from: f64, to: f64) -> Option<Interval> {
-        let wait = Segment::straight(Pose::new(position, 0.0), from, to - from, 0.0);
+        // an arrival at the horizon may be after it by rounding
+        let duration = (to - from).max(0.0);
+        let wait = Segment::straight(Pose::new(position, 0.0), from, duration, 0.0);
         let wait = match &self.window {
             None => wait,
             Some(window) => Self::during(window, &wait)?,

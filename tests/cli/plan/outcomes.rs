@@ -281,6 +281,14 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
     assert!((0.4..1.2).contains(&took), "{took}");
 }
 
+/// Own ship would arrive a few nanoseconds after the horizon.
+#[test]
+fn an_arrival_at_the_horizon_is_no_fault_of_the_program() {
+    let planned = run("plan tests/faults/arrives-at-the-horizon.toml");
+    let status = planned.get_output().status.code();
+    assert!(matches!(status, Some(0 | 1)), "{status:?}");
+}
+
 /// Text, document and table say what made the plan, and have nodes where a graph was searched.
 #[test]
 fn a_plan_says_what_made_it() {
