@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{
-    CostDocument, EncounterDocument, EscapeDocument, ScenarioComparisonDocument,
+    CostDocument, EncounterDocument, EscapeDocument, PlanMethod, ScenarioComparisonDocument,
     SearchStatsDocument, SimulationDocument,
 };
 use crate::input::Fault;
@@ -71,8 +71,9 @@ pub struct InspectionDocument {
     pub safe: Value,
     #[schemars(with = "Option<CostDocument>")]
     pub cost: Value,
-    #[schemars(with = "Option<SearchStatsDocument>")]
+    #[schemars(with = "Option<PlanMethod>")]
     pub method: Value,
+    #[schemars(with = "Option<SearchStatsDocument>")]
     pub search_stats: Value,
     /// Escape; null unless own ship stands on.
     #[schemars(with = "Option<EscapeDocument>")]
