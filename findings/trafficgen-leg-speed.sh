@@ -4,7 +4,7 @@
 # waypoint, it gives a speed to the first waypoint, where no leg ends, and none to the second.
 #
 # Guess of an engineer: `leg.sog`, "speed reference for the waypoint leg", moves the ship, and each leg
-# has one. Searoom therefore reads the first waypoint's speed where no leg has one, with a note.
+# has one. A reader has to take the first waypoint's speed where no leg has one.
 #
 # Exit status: 0 while this is so, 1 when it has changed, 2 when the package cannot be installed.
 set -u

@@ -41,7 +41,7 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus
     }))
 }
 
-/// What is said of a recording that another program wrote again.
+/// Note about a recording that another program wrote again.
 const GONE: &str =
     "another program wrote the recording again: its checksum is gone, and no byte is checked";
 

@@ -223,7 +223,7 @@ fn without_index(path: &str) -> String {
         .collect()
 }
 
-/// What was assumed or left out when files were read.
+/// Assumptions made, and input left out, when files were read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Remarks {
     /// Assumptions and unused parts, in sentences of the form `subject: statement`.

@@ -253,7 +253,7 @@ pub struct Plan {
     pub trajectory: Trajectory,
     /// Minimised quantity, in the objective's unit.
     pub cost: f64,
-    /// What made it.
+    /// Method that made it.
     pub method: PlanMethod,
     /// Cost of the first plan on the graph before refinement, in the same unit. For one target it
     /// is the graph's optimum; for several it is at most four times that. `None` where the graph

@@ -389,7 +389,7 @@ struct Mission {
     most: Option<f64>,
 }
 
-/// What the mission needs of the rest of the file.
+/// Values of the file that the mission needs.
 struct Reading<'a> {
     plane: &'a Plane,
     folder: &'a Path,

@@ -1,4 +1,4 @@
-//! What a scenario holds that is probably a mistake.
+//! Probable mistakes of a scenario.
 
 use crate::frame::{
     Vector, course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap,
@@ -133,7 +133,7 @@ fn under_ships(scenario: &Scenario) -> Vec<String> {
     .collect()
 }
 
-/// What own ship cannot do, or does not want.
+/// Findings about own ship: speeds and courses it cannot or would hardly have.
 fn of_own_ship(scenario: &Scenario) -> Vec<String> {
     let (own, desired) = (&scenario.own_ship, &scenario.desired);
     let most = own.max_speed();
