@@ -4,8 +4,7 @@
 # polygon turns about its centroid.
 #
 # Guess of an engineer: shapes are in the body frame, so a bridge or an antenna that is off the middle
-# of the hull is turned with the ship. A reader is safe with a hull that
-# holds both readings.
+# of the hull is turned with the ship. A reader is safe with a hull that holds both readings.
 #
 # Exit status: 0 while this is so, 1 when it has changed, 2 when the packages cannot be installed.
 set -u

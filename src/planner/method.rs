@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::SearchKind;
 
-/// Method that made a plan. The graph search that was asked for is a [`SearchKind`]; it need not have run.
+/// Method that made a plan. The graph search that was asked for is a [`SearchKind`]; it need not have
+/// run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlanMethod {
