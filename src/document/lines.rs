@@ -577,13 +577,25 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
     let error = square_metres(cost.space_time_error_m2);
     let by_length = cost.space_time_error_arc_length_m2;
     let by_length = square_metres(by_length.unwrap_or(f64::NAN));
-    add("J", format!("{error} m² ({by_length} m² by arc length)"));
+    match (plan.stay(), cost.space_time_error_arc_length_m2) {
+        (Some(stay), _) => {
+            add("J", format!("{error} m² until the stay begins"));
+            add("stay", stay.words(times));
+        }
+        // a motion of no length has none
+        (None, None) => add("J", format!("{error} m²")),
+        (None, Some(_)) => add("J", format!("{error} m² ({by_length} m² by arc length)")),
+    }
     let (lasts, length) = (times.at(cost.duration_s, 1), significant(cost.length_m));
     let way = format!("{lasts} and {length} m");
     match cost.delay_s {
         Some(delay) => {
             let delay = signed(delay);
-            add("delay", format!("{delay} s (arrives after {way})"));
+            let arrives = match plan.mission.stay_until_s {
+                Some(_) => "ends",
+                None => "arrives",
+            };
+            add("delay", format!("{delay} s ({arrives} after {way})"));
         }
         None if plan.optimal_control.is_some() => {
             add("horizon", format!("{way}; no arrival is asked for"));

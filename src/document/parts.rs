@@ -48,6 +48,9 @@ pub struct MissionDocument {
     /// Metres that the closed loop leaves out after an intermediate end.
     #[serde(default, skip_serializing_if = "super::is_zero")]
     pub left_out_m: f64,
+    /// Time until which own ship lies at the last waypoint; absent where the mission ends there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stay_until_s: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Vec<PositionDocument>>,
 }

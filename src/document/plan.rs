@@ -6,6 +6,7 @@ pub(super) mod legs;
 pub(super) mod path_time;
 pub(super) mod phases;
 mod reasons;
+mod stay;
 
 use control::{ControlDocument, control};
 use path_time::{PathTimeDocument, path_time_document};
@@ -293,6 +294,7 @@ fn mission(run: &Run) -> MissionDocument {
         duration_s: desired.duration(),
         length_m: desired.length(),
         left_out_m: 0.0,
+        stay_until_s: run.scenario.stay,
         alternatives: (run.scenario.alternatives.iter())
             .map(|path| path.iter().copied().map(position).collect())
             .collect(),

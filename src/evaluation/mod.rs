@@ -45,7 +45,7 @@ use crate::frame::Side;
 use crate::geometry::Polygon;
 use crate::parallel;
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, before_rest_at};
 use crate::vessel::Hull;
 
 /// One violated requirement.
@@ -184,8 +184,18 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let land_distance = land_distance(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
+    let lies = segments.first().map(|first| first.between(0.0, 0.0));
+    let before = match request.stay {
+        None => segments,
+        Some(_) => match before_rest_at(request.desired.end(), segments) {
+            // she lies there from the start
+            [] => lies.as_slice(),
+            before => before,
+        },
+    };
+    let arrival = before.last().map_or(f64::NAN, Segment::end_time);
     let (space_time_error, counted) =
-        cost::counted::error_to_end(segments, request.desired, request.time_weight);
+        cost::counted::error_to_end(before, request.desired, request.time_weight);
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&land_distance, request)),
@@ -200,7 +210,9 @@ pub fn evaluate(request: &Request) -> Evaluation {
         length: or_nan(segments.iter().map(Segment::length).sum()),
         delay: match request.freedom {
             Freedom::PathsToHorizon(_) | Freedom::LimitsWithoutArrival => f64::NAN,
-            Freedom::Limits | Freedom::Paths(_) | Freedom::Any => end - request.desired.duration(),
+            Freedom::Limits | Freedom::Paths(_) | Freedom::Any => {
+                arrival - request.desired.duration()
+            }
         },
         waypoint_distances: waypoint_distances(segments, request.desired),
         min_clearance: or_nan(least_of(&passages, |p| p.min_clearance)),

@@ -89,6 +89,10 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     let short = (last.end().position - desired.end()).norm();
     let unit = "m from the last waypoint";
     found.limit("arrival", unit, short, tolerance::ARRIVAL_M);
+    if let Some(stay) = request.stay {
+        let allowed = tolerance::TIME_S * (1.0 + stay);
+        found.limit("end", "s before that of the stay", stay - end, allowed);
+    }
     let sailed: f64 = segments.iter().map(Segment::length).sum();
     // Negated on purpose: a NaN length is no motion.
     if !(sailed > tolerance::ARRIVAL_M) && desired.comes_by(own.pose.position) {

@@ -49,6 +49,9 @@ pub struct Request<'a> {
     /// Time after the end of the motion over which clearances at rest are reported, seconds. They
     /// do not affect the verdict.
     pub arrival_hold: f64,
+    /// Time until which own ship lies at the last waypoint after arrival, seconds; `None` where the
+    /// motion ends there. Costs and delay are those before her first rest there.
+    pub stay: Option<f64>,
     /// `q` of paper eq. (30), m²/s².
     pub time_weight: f64,
     /// Accepted risk of paper eq. (25), in `[0, 1)`. The sets are already the level sets of this
@@ -76,6 +79,7 @@ impl<'a> Request<'a> {
             land_margin: 0.0,
             horizon,
             arrival_hold: 60.0,
+            stay: None,
             time_weight: own.speed * own.speed,
             max_risk: 0.0,
         }

@@ -103,6 +103,7 @@ fn judged(
         land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         arrival_hold: scenario.arrival_hold,
+        stay: scenario.stay,
         time_weight: scenario.time_weight,
         max_risk: risk,
     };

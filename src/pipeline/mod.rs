@@ -10,6 +10,7 @@ mod remainder;
 mod risk;
 mod rules;
 mod sets;
+mod stay;
 mod thorough;
 
 pub use judge::{judge, judge_free};
@@ -183,12 +184,13 @@ pub fn run(mut scenario: Scenario) -> Run {
         around_land = land_obstacle(&scenario, &land.pieces);
         &around_land
     };
+    let is_cut_short = Cell::new(false);
     let relaxer = Relaxer {
         scenario: &scenario,
         sets: &sets,
         land_obstacle,
         begun,
-        is_cut_short: &Cell::new(false),
+        is_cut_short: &is_cut_short,
     };
     let mut answer = relaxer.answer();
     if let Some((scenario, others)) = &without
@@ -201,6 +203,14 @@ pub fn run(mut scenario: Scenario) -> Run {
         }
         sets = others;
     }
+    let relaxer = Relaxer {
+        scenario: &scenario,
+        sets: &sets,
+        land_obstacle,
+        begun,
+        is_cut_short: &is_cut_short,
+    };
+    let answer = relaxer.with_stay(answer);
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
         parallel::map(&answer.whole, |index, set| {
@@ -265,6 +275,7 @@ fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
     let barring = match answer.why.as_ref() {
         Some(
             NoPlan::Barred { target, .. }
+            | NoPlan::StayCovered { target, .. }
             | NoPlan::OutOfTime { target, .. }
             | NoPlan::StartCovered { target, .. }
             | NoPlan::EndCovered { target, .. }

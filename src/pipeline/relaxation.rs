@@ -714,12 +714,7 @@ impl Relaxer<'_> {
         } else {
             planned.outcome
         };
-        let reductions = match self.scenario.compliance {
-            Compliance::Shape | Compliance::Rules => {
-                self.sets.iter().map(|s| s.shape_reach).collect()
-            }
-            Compliance::None => attempt.reductions,
-        };
+        let reductions = self.given_up(&attempt.reductions);
         Attempt {
             level: RelaxationLevel::Inside,
             obstacles: hard.clone(),
@@ -735,6 +730,21 @@ impl Relaxer<'_> {
             },
             why: attempt.why,
         }
+    }
+
+    /// Metres by which domains are reduced where all are given up that are asked for.
+    pub(super) fn given_up(&self, reductions: &[f64]) -> Vec<f64> {
+        match self.scenario.compliance {
+            Compliance::Shape | Compliance::Rules => {
+                self.sets.iter().map(|s| s.shape_reach).collect()
+            }
+            Compliance::None => reductions.to_vec(),
+        }
+    }
+
+    /// The level sets of the hard sets.
+    pub(super) fn against_hard_sets(&self, risk: f64) -> Vec<Obstacle> {
+        level_sets(&self.asked(&self.scales(0.0)).0, risk)
     }
 
     /// The plan without any set.
@@ -788,7 +798,7 @@ impl Relaxer<'_> {
     }
 
     /// The planning problem of the scenario against these sets, with the time that is left.
-    fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
+    pub(super) fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
         let with_domain = self.scenario.compliance.shapes();
         Problem {
             deadline: self.time_left(),
@@ -894,7 +904,12 @@ impl Relaxer<'_> {
     }
 
     /// The plan of an attempt, claimed to be clear of domains of these scale factors.
-    fn clear_of(&self, attempt: &Attempt, scales: &[f64], level: RelaxationLevel) -> Attempt {
+    pub(super) fn clear_of(
+        &self,
+        attempt: &Attempt,
+        scales: &[f64],
+        level: RelaxationLevel,
+    ) -> Attempt {
         let (whole, reductions) = self.scaled(scales);
         Attempt {
             level,
@@ -909,7 +924,7 @@ impl Relaxer<'_> {
     }
 
     /// Scale factor of each domain that a motion is clear of, from below, by bisection.
-    fn retained_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
+    pub(super) fn retained_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
         parallel::map(self.sets, |_, sets| {
             let clear = |scale: f64| {
                 let set = sets.scaled(scale).obstacle;

@@ -1,8 +1,8 @@
 //! Interface between planners and the rest of the program: facts and requests.
 
-use super::{NoPlan, Outcome, PLANNERS, Planned, PlannerSettings, Problem, SearchKind};
+use super::{NoPlan, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
 use crate::obstacle::Obstacle;
-use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::Hull;
 
 /// A planner of the registry [`PLANNERS`].
@@ -37,6 +37,12 @@ pub trait Planner: Sync {
     /// the end is not covered, or own ship is far off its path.
     fn short_of_end(&self, _problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         None
+    }
+
+    /// Clear motions that go on from an `arrival` while sets pass over the last waypoint, or arrive
+    /// later, until a stay ends at `until`, seconds. None is known to a planner by default.
+    fn off_station(&self, _problem: &Problem, _arrival: &[Segment], _until: f64) -> Vec<Plan> {
+        Vec::new()
     }
 
     /// The motion with the least harm, which may enter sets. `nominal` belongs to the obstacles.

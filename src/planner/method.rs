@@ -32,6 +32,9 @@ pub enum PlanMethod {
     /// Own ship slows or waits on its route, short of the sets: dynamic programming over its length
     /// and time, without a graph.
     Waiting,
+    /// Own ship lies at the last waypoint, leaves it while sets pass over it, and returns: a grid of
+    /// departures, without a graph.
+    OffStation,
     /// Own ship stays where it is.
     Stay,
     /// A planner of a library user.
@@ -50,6 +53,7 @@ words!(PlanMethod {
     Remainder => "remainder",
     LeastHarm => "least-harm",
     Waiting => "waiting",
+    OffStation => "off-station",
     Stay => "stay",
     Other => "other",
 });
@@ -78,6 +82,7 @@ impl PlanMethod {
             Self::Remainder => "remainder of the last plan",
             Self::LeastHarm => "least harm",
             Self::Waiting => "waits on its route",
+            Self::OffStation => "clears its place and returns",
             Self::Stay => "stays in place",
             Self::Other => "another planner",
         }
@@ -96,9 +101,12 @@ impl PlanMethod {
     /// of the plan may come from a search.
     pub(crate) fn has_statistics(self) -> Option<bool> {
         match self {
-            Self::Rules | Self::OptimalControl | Self::Remainder | Self::Waiting | Self::Stay => {
-                Some(false)
-            }
+            Self::Rules
+            | Self::OptimalControl
+            | Self::Remainder
+            | Self::Waiting
+            | Self::OffStation
+            | Self::Stay => Some(false),
             Self::LeastHarm | Self::Other => None,
             Self::AStar
             | Self::Dijkstra

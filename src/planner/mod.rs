@@ -14,6 +14,7 @@ pub mod space_time;
 
 pub use crate::search::Counts as SearchStats;
 pub use control_settings::ControlSettings;
+pub(crate) use cost::whole_space_time_error;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use method::PlanMethod;

@@ -103,6 +103,18 @@ pub enum NoPlan {
         /// Earliest possible arrival, straight and at the greatest speed, seconds.
         earliest: f64,
     },
+    /// A set covers the last waypoint while own ship is to lie there.
+    #[error(
+        "the set of '{target}' reaches the last waypoint {from:.1} s from the start, where own ship is to stay until {until:.1} s"
+    )]
+    StayCovered {
+        /// Name of the obstacle that comes first.
+        target: String,
+        /// Time of the contact, seconds.
+        from: f64,
+        /// End of the stay, seconds.
+        until: f64,
+    },
     /// No candidate is clear of every set.
     #[error(
         "no trajectory of the graph or its refinement is clear of every set and arrives before the horizon; held on the desired \
@@ -183,6 +195,7 @@ impl NoPlan {
     pub fn is_for_the_sets(&self) -> bool {
         match self {
             Self::EndCovered { .. }
+            | Self::StayCovered { .. }
             | Self::NoCandidate { .. }
             | Self::NoneComplies { .. }
             | Self::Barred { .. }

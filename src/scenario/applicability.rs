@@ -1,6 +1,6 @@
 //! Requirements of each planner on a scenario, beyond those of the single fields.
 
-use super::{Compliance, Land, Scenario};
+use super::{Compliance, Land, Scenario, limits};
 use crate::frame::{Vector, heading_of, wrap};
 use crate::input::Fault;
 use crate::planner::{Minimises, Objective};
@@ -33,6 +33,7 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
             "nothing: it chooses its way; or the path-time planner",
         ));
     }
+    faults.extend(stay(scenario));
     let own = &scenario.own_ship;
     let land_margin = scenario.land.as_ref().map(|land| land.margin);
     let room = own.safety_margin.min(land_margin.unwrap_or(f64::INFINITY));
@@ -78,6 +79,22 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     faults
 }
 
+/// A ship that lies at her place needs a planner and a speed for that.
+fn stay(scenario: &Scenario) -> Option<Fault> {
+    let stay = scenario.stay?;
+    let planner = scenario.planner.facts();
+    let fault = |found: String, allowed| Some(Fault::new("mission.stay_until_s", found, allowed));
+    if let Minimises::Own(_) = planner.minimises {
+        let found = format!("a stay until {stay} s for the {} planner", planner.name);
+        return fault(found, "nothing: its motions end at the horizon");
+    }
+    if !planner.follows_paths && scenario.own_ship.min_speed() > 0.0 {
+        let found = format!("a stay until {stay} s of a ship that cannot lie still");
+        return fault(found, "a stay only where own ship's speeds have 0");
+    }
+    None
+}
+
 /// Plans change speed at once. Own ship, which needs the time `du / a`, is `du² / 2a` ahead or
 /// behind after a change by `du`: beyond its tracking margin this is a fault.
 fn lag(scenario: &Scenario) -> Option<Fault> {
@@ -112,6 +129,11 @@ fn lag(scenario: &Scenario) -> Option<Fault> {
 fn for_paths(scenario: &Scenario) -> Vec<Fault> {
     let mut faults = Vec::new();
     let first = scenario.desired.legs()[0].start;
+    if scenario.stay.is_some() && scenario.desired.length() < 2.0 * limits::LENGTH.low {
+        let found = "one, where own ship is, for the path-time planner";
+        let allowed = "a path of at least two waypoints, or the space-time planner";
+        return vec![Fault::new("mission.waypoints", found, allowed)];
+    }
     let away = (scenario.own_ship.pose.position - first).norm();
     // negated on purpose: a NaN is away
     if !(away <= tolerance::JOINT_M) {

@@ -102,7 +102,8 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         plane: &plane,
         folder,
         own_speed: speed,
-        own_place: own_ship.as_ref().map(|own| own.pose.position),
+        own_pose: own_ship.as_ref().map(|own| own.pose),
+        own_fastest: own_ship.as_ref().map(OwnShip::max_speed),
         turning_radius: own_ship.as_ref().map_or(0.0, |own| own.turning_radius),
         time,
         horizon,
@@ -151,6 +152,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         time: time?,
         start,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
+        stay: mission.stay,
         alternatives: mission.alternatives,
         targets,
         acceleration,
@@ -194,6 +196,7 @@ pub(super) fn bare(
         own_ship,
         acceleration: None,
         desired,
+        stay: None,
         alternatives: Vec::new(),
         targets: Vec::new(),
         planner: kind,
@@ -383,6 +386,8 @@ struct Mission {
     /// The date and time at 0 s on the clock of the file, by the schedule of the route.
     date: Option<DateTime<Utc>>,
     alternatives: Vec<Vec<Vector>>,
+    /// See [`Scenario::stay`].
+    stay: Option<f64>,
     /// True where the speeds are those of a route file.
     is_route: bool,
     /// The least of the highest speeds that the legs of a route allow, m/s.
@@ -395,7 +400,9 @@ struct Reading<'a> {
     folder: &'a Path,
     /// m/s.
     own_speed: Option<f64>,
-    own_place: Option<Vector>,
+    own_pose: Option<Pose>,
+    /// m/s.
+    own_fastest: Option<f64>,
     /// Metres.
     turning_radius: f64,
     time: Option<f64>,
@@ -416,6 +423,7 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
     let of_route = from.iter().chain(&schedule).next().cloned();
     let schedule = schedule.map(|field| field.line_of_text());
     let mut part: Option<Part> = None;
+    let mut is_place = false;
     let (waypoints, speeds) = if let Some(field) = table.take("route") {
         table.forbid("waypoints", "nothing: the route has them");
         part = match (schedule, from_read) {
@@ -442,19 +450,39 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
         let fields = table
             .require(
                 "waypoints",
-                "a list of at least 2 positions, or 'route', a file",
+                "a list of positions, one where own ship stays, or 'route', a file",
             )
-            .and_then(|field| positions(&field));
+            .and_then(|field| field.list(1..=limits::WAYPOINTS, "positions"));
+        is_place = fields.as_ref().is_some_and(|fields| fields.len() == 1);
         let legs = fields
             .as_ref()
-            .map(|fields| vec![LegSpeeds::default(); fields.len() - 1]);
-        let waypoints = fields.and_then(|fields| waypoints(&fields, plane));
+            .map(|fields| vec![LegSpeeds::default(); (fields.len() - 1).max(1)]);
+        let waypoints = fields.and_then(|fields| match &fields[..] {
+            [place] => to_place(place, plane, reading.own_pose),
+            fields => waypoints(fields, plane),
+        });
+        let makes_way = |speed: &f64| limits::WAY.contains(*speed);
+        let own_speed = match is_place {
+            true => (reading.own_speed.filter(makes_way)).or(reading.own_fastest),
+            false => reading.own_speed,
+        };
         (
             waypoints,
-            leg_speeds(&mut table, legs.as_deref(), reading.own_speed),
+            leg_speeds(&mut table, legs.as_deref(), own_speed),
         )
     };
+    let horizon = reading.horizon;
+    let stays = table.take("stay_until_s").map(|field| {
+        let now = time?;
+        let allowed = Range::between(now, now + horizon?).in_unit("s (the end of 'horizon_s')");
+        Some(field.number(allowed)? - now)
+    });
     table.finish();
+    let stay = match stays {
+        Some(stay) => Some(stay?),
+        None if is_place => Some(horizon?),
+        None => None,
+    };
     // every leg is long and fast enough by now
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
     let elapsed = time? - start?;
@@ -477,6 +505,7 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
         date: departs.and_then(|departs| after(departs, -start?)),
         desired,
         alternatives,
+        stay,
         is_route: part.is_some(),
         most: most.reduce(f64::min),
     })
@@ -580,7 +609,9 @@ fn route(
         Some(from) => (from - 1, 0.0),
         None if is_whole => (0, 0.0),
         None => {
-            let own = reading.own_place.unwrap_or_default();
+            let own = reading
+                .own_pose
+                .map_or_else(Vector::zeros, |own| own.position);
             let Some(nearest) = nearest(&route.legs, own, &earth) else {
                 near(field, route.places[0], &earth)?;
                 return None;
@@ -698,6 +729,21 @@ fn nearest(legs: &[RouteLeg], own: Vector, earth: &Georeference) -> Option<(usiz
         true => (index + 1, 0.0),
         false => (index, fraction),
     })
+}
+
+/// The path to a single waypoint: from own ship, or a millimetre where she is there.
+fn to_place(field: &Field, plane: &Plane, own: Option<Pose>) -> Option<Vec<Vector>> {
+    let (place, own) = (plane.position(field)?, own?);
+    let length = (place - own.position).norm();
+    if length > limits::LEG_M {
+        let found = format_args!("{:.1} km from own ship", length / 1e3);
+        return field.reject(found, format_args!("at most {} km", limits::LEG_M / 1e3));
+    }
+    let start = match length < limits::LENGTH.low {
+        true => place - own.ahead() * limits::LENGTH.low,
+        false => own.position,
+    };
+    Some(vec![start, place])
 }
 
 fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {

@@ -100,7 +100,7 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     findings.extend(met);
     if targets.is_empty() {
         findings.push("no targets".to_owned());
-    } else if !is_met && targets.iter().all(|t| t.matters != MEETS) {
+    } else if !is_met && scenario.stay.is_none() && targets.iter().all(|t| t.matters != MEETS) {
         findings.push("no target in the way: own ship may hold its course".to_owned());
     }
     findings
@@ -110,7 +110,8 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
 /// than its hull: it is at anchor or on station. After a longer one the verdict of the plan says so.
 fn met_at_rest(scenario: &Scenario) -> Vec<String> {
     let desired = &scenario.desired;
-    if desired.length() > scenario.own_ship.hull.length {
+    // a plan keeps clear until the stay ends
+    if desired.length() > scenario.own_ship.hull.length || scenario.stay.is_some() {
         return Vec::new();
     }
     let last = desired

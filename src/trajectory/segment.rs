@@ -211,6 +211,16 @@ impl Mover {
     }
 }
 
+/// The part of a motion before its first rest at a place, and all of a motion without one.
+pub(crate) fn before_rest_at(place: Vector, motion: &[Segment]) -> &[Segment] {
+    let rests = |segment: &Segment| {
+        let off = (segment.start.position - place).norm();
+        segment.speed == 0.0 && segment.duration > 0.0 && off <= tolerance::ARRIVAL_M
+    };
+    let first = motion.iter().position(rests);
+    &motion[..first.unwrap_or(motion.len())]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

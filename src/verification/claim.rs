@@ -142,6 +142,9 @@ impl<'a> Claim<'a> {
             let allowed = "at least two waypoints, with a speed for each leg";
             fault("mission", format!("what makes no way ({e})"), allowed)
         })?;
+        if let Some(stay) = mission.stay_until_s {
+            within("mission.stay_until_s", stay, 0.0, file.horizon_s)?;
+        }
         let paths = (file.planner == PATH_TIME).then(|| {
             let others = mission.alternatives.iter();
             let others = others.map(|path| points(path));

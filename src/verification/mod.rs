@@ -235,6 +235,7 @@ fn request<'a>(claim: &'a Claim) -> Request<'a> {
         land_margin: claim.file.own_ship.land_margin_m,
         horizon: claim.file.horizon_s,
         arrival_hold: claim.arrival_hold(),
+        stay: claim.file.mission.stay_until_s,
         time_weight: claim.file.time_weight_m2_per_s2,
         max_risk: claim.file.max_risk,
     }

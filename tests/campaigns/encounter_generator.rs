@@ -198,6 +198,7 @@ fn scene(
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,
             arrival_hold: 60.0,
+            stay: None,
             max_risk: 0.0,
             deadline: DEADLINE,
             limits: std::sync::Arc::new(Thresholds::STANDARD),

@@ -48,7 +48,7 @@ fn files() -> Vec<Value> {
         },
         "mission": {
             "waypoints": [position, { "lat_deg": 59.0, "lon_deg": 10.1 }],
-            "leg_speeds_mps": [1.0],
+            "leg_speeds_mps": [1.0], "stay_until_s": 1e10,
             "alternatives": [[position, position]],
         },
         "planner": {

@@ -19,4 +19,5 @@ mod path_time;
 mod roles;
 mod rules;
 mod simulated_documents;
+mod stays;
 mod stopping;

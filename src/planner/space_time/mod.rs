@@ -42,6 +42,7 @@ use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use covered_end::end_covered;
+use fallback::off_station::off_station;
 use fallback::waiting::waiting;
 use fallback::{hybrid_a_star, sequential};
 use graph::Graph;
@@ -107,6 +108,10 @@ impl Planner for SpaceTimePlanner {
 
     fn short_of_end(&self, problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
         covered_end::short_of_end(problem)
+    }
+
+    fn off_station(&self, problem: &Problem, arrival: &[Segment], until: f64) -> Vec<Plan> {
+        off_station(problem, arrival, until)
     }
 
     fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {

@@ -85,6 +85,7 @@ impl Simulation {
         let forced = (self.own).forced_state(&self.active.trajectory, in_plan, delay);
         if start > 0.0 {
             scenario.time += start;
+            scenario.stay = scenario.stay.map(|until| (until - start).max(0.0));
             scenario.own_ship.pose = self.pose_at(start);
             scenario.memory = Memory::default();
             scenario.desired = match forced {
@@ -194,6 +195,8 @@ impl Simulation {
             };
             let mut scenario = scenario.clone();
             (scenario.desired, scenario.deadline) = (desired, deadline);
+            // she stays at the last waypoint alone
+            scenario.stay = scenario.stay.filter(|_| cut == 0.0);
             Some(pipeline::run(scenario))
         };
         let present = self.active.left_out;

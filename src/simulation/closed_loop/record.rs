@@ -13,7 +13,7 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
 use crate::scenario::VesselModel;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, before_rest_at};
 
 impl Simulation {
     /// The result so far.
@@ -62,9 +62,13 @@ impl Simulation {
             && self.active.left_out == 0.0
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
+        let before_stay = match self.scenario.stay {
+            Some(_) => before_rest_at(desired.end(), &track),
+            None => &track,
+        };
         let mut cost_m2 = match arrived {
-            true => whole_space_time_error(desired, &track, weight),
-            false => sailed_space_time_error(desired, &track, weight),
+            true => whole_space_time_error(desired, before_stay, weight),
+            false => sailed_space_time_error(desired, before_stay, weight),
         };
         if super::is_under_forces(&self.scenario) {
             // as in its plans, where arrival is not required

@@ -21,7 +21,7 @@ use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
 
 /// Moves from the start to the horizon. The second number is used where the first finds nothing.
-const MOVES: [u32; 2] = [80, 240];
+pub(super) const MOVES: [u32; 2] = [80, 240];
 
 /// Distances on the route of which one motion each is kept, per move at the greatest speed.
 const CELLS_PER_MOVE: f64 = 2.0;
@@ -53,7 +53,7 @@ pub(crate) fn waiting(problem: &Problem, clock: Clock) -> Planned {
     let on = |desired: &DesiredTrajectory, moves: &[u32]| {
         let way = Way::of(problem, desired, clock)?;
         let mut moves = moves.iter();
-        moves.find_map(|moves| way.waiting(&proxies, *moves, clock))
+        moves.find_map(|moves| way.waiting(&proxies, *moves, 0.0, clock))
     };
     let found = on(&problem.desired.straightened(), &MOVES)
         .or_else(|| beside(problem).find_map(|desired| on(&desired, &MOVES[..1])));
@@ -189,9 +189,15 @@ impl<'a> Way<'a> {
         speeds
     }
 
-    /// The motion in this many moves that is clear until the horizon, or until it arrives, at the
-    /// least cost. One that arrives comes first.
-    fn waiting(&self, proxies: &[Proxy], moves: u32, clock: Clock) -> Option<Vec<Segment>> {
+    /// The motion in this many moves that is clear until the horizon, or until it arrives and the
+    /// rest there until `stays`, seconds, is over, at the least cost. One that arrives comes first.
+    pub(super) fn waiting(
+        &self,
+        proxies: &[Proxy],
+        moves: u32,
+        stays: f64,
+        clock: Clock,
+    ) -> Option<Vec<Segment>> {
         let (own, horizon) = (self.problem.own, self.problem.horizon);
         let duration = horizon / f64::from(moves);
         let cell = own.max_speed() * duration / CELLS_PER_MOVE;
@@ -223,6 +229,9 @@ impl<'a> Way<'a> {
                         continue;
                     }
                     let is_end = self.is_end(at);
+                    if is_end && !self.may_rest(proxies, &part, stays) {
+                        continue;
+                    }
                     let error = match is_end {
                         true => self.problem.error_to_end(&part),
                         false => self.problem.error_of(&part),
@@ -261,6 +270,15 @@ impl<'a> Way<'a> {
         let meets = first_met(proxies, &motion).is_some()
             || land::meets(self.problem.land_obstacle, &motion);
         (!meets).then_some(motion)
+    }
+
+    /// True where own ship may lie at the end of a motion until `stays`, seconds.
+    fn may_rest(&self, proxies: &[Proxy], motion: &[Segment], stays: f64) -> bool {
+        motion.last().is_none_or(|last| {
+            let left = (stays - last.end_time()).max(0.0);
+            let rest = Segment::straight(last.end(), last.end_time(), left, 0.0);
+            left == 0.0 || first_met(proxies, &[rest]).is_none()
+        })
     }
 
     /// The motion to a state. Moves at one speed are joined.
