@@ -160,11 +160,11 @@ fn other(text: &str) -> Option<&'static str> {
     }
 }
 
-/// What a recording holds for this command.
+/// Content of a recording that this command reads.
 pub struct RecordedPlans {
     /// The plan documents, or the kind of a recording without.
     pub texts: Result<Vec<String>, &'static str>,
-    /// What there is to note.
+    /// Notes.
     pub note: Option<&'static str>,
 }
 

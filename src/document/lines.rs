@@ -25,7 +25,7 @@ const LISTED: usize = 3;
 const FULL_SCORE: f64 = 0.995;
 pub(crate) const TIME_LINE: &str = "time";
 
-/// What every claim rests on, and how often it held: docs/measured.md.
+/// The assumption of every claim, and how often it held: docs/measured.md.
 const ASSUMED: &str = "each target's mean velocity stays in V, which is assumed: sets of ±0.97 kn \
                        and ±5° held ships of US AIS after 1, 5 and 10 min in 83, 57 and 45 % of \
                        cases (docs/guarantees.md). Near land safety comes from planning again";
@@ -162,7 +162,7 @@ fn planner_words(plan: &PlanDocument) -> String {
     parts.join(", ")
 }
 
-/// What was searched for the plan.
+/// The search for the plan.
 fn search_words(stats: &SearchStatsDocument) -> String {
     let SearchStatsDocument {
         expanded: Some(expanded),

@@ -55,7 +55,7 @@ pub struct PlanDocument {
     pub scenario: String,
     pub planner: String,
     pub search: String,
-    /// What made the plan; null without one, absent in an old document.
+    /// Method that made the plan; null without one, absent in an old document.
     #[serde(default)]
     pub method: Option<PlanMethod>,
     pub compliance: String,

@@ -36,7 +36,7 @@ pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
-    /// What made the plan; null without one.
+    /// Method that made the plan; null without one.
     #[serde(default)]
     pub method: Option<PlanMethod>,
     pub outcome: String,

@@ -61,7 +61,7 @@ impl Map {
         })
     }
 
-    /// What the file of the map has that is not used.
+    /// Content of the map file that is not used.
     pub fn remarks(&self) -> &Remarks {
         &self.remarks
     }

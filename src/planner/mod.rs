@@ -437,7 +437,7 @@ impl Planned {
         }
     }
 
-    /// What made the plan; `None` without one.
+    /// Method that made the plan; `None` without one.
     pub fn method(&self) -> Option<PlanMethod> {
         self.outcome.plan().map(|plan| plan.method)
     }

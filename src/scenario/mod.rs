@@ -109,7 +109,7 @@ pub struct Scenario {
     pub memory: Memory,
     /// How the scenario is sailed in the closed loop, without effect on plans.
     pub simulation: SimulationSettings,
-    /// What its files have that no plan uses, without effect on plans.
+    /// Content of its files that no plan uses, without effect on plans.
     pub remarks: Remarks,
 }
 

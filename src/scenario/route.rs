@@ -30,7 +30,7 @@ const WAYPOINTS: usize = 10_000;
 /// Nautical miles: radii, cross-track limits.
 const MILES: Range = Range::between(0.0, 1e4).in_unit("nautical miles");
 
-/// What is read of each element, or says nothing about where and how fast a ship goes.
+/// Names that are read of each element, or say nothing about where and how fast a ship goes.
 const NAMES: Names = &[
     (
         "route",
@@ -80,7 +80,7 @@ pub(super) struct Route {
     pub legs: Vec<RouteLeg>,
     /// The departure from each waypoint, where the schedule has it in UTC.
     pub departs: Vec<Option<DateTime<Utc>>>,
-    /// What is not used.
+    /// Content that is not used.
     pub remarks: Remarks,
 }
 

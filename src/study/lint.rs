@@ -2,7 +2,7 @@
 //! targets, impossible speeds, a mission that own ship cannot begin, targets that never matter,
 //! missing ships and mirrored geometry.
 //!
-//! What is found is no fault: the scenario can be planned, and may be meant as it is.
+//! A finding is no fault: the scenario can be planned, and may be meant as it is.
 
 mod mistakes;
 

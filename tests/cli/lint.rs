@@ -1,4 +1,4 @@
-//! What is probably wrong with a scenario that can be planned: one list for three commands.
+//! Probable mistakes of a scenario that can be planned: one list for three commands.
 
 use super::program::{Folder, HEAD_ON, document, list, run, stderr};
 

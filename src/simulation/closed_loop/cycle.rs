@@ -41,7 +41,7 @@ const NEAREST_TIME: f64 = 0.01;
 
 pub(super) struct Cycle {
     pub run: Run,
-    /// Of the plan, if there is one.
+    /// That of the plan, if there is one.
     pub document: Option<PlanDocument>,
     pub replan: ReplanDocument,
     /// Metres of the mission after the end of the plan, which may be before the intermediate end.

@@ -51,7 +51,7 @@ const OF_RULE_18: [&str; 4] = [
 /// Metres between the position and the middle of a shape at rest from which on they are not one.
 const FIXED_OFF_M: f64 = 1e-3;
 
-/// What is read of each element, or says nothing about where ships may be.
+/// Names that are read of each element, or say nothing about where ships may be.
 const NAMES: Names = &[
     (
         "commonOcean",
