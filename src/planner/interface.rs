@@ -1,6 +1,6 @@
 //! Interface between planners and the rest of the program: facts and requests.
 
-use super::{NoPlan, Outcome, PLANNERS, Planned, PlannerSettings, Problem, SearchKind};
+use super::{NoPlan, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
 use crate::obstacle::Obstacle;
 use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::Hull;
@@ -36,6 +36,17 @@ pub trait Planner: Sync {
     /// mission cut before them; without one where nothing ahead of own ship is free. `None` where
     /// the end is not covered, or own ship is far off its path.
     fn short_of_end(&self, _problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
+        None
+    }
+
+    /// A plan that slows down until the encountered ships have passed. It is the one that breaks the
+    /// fewest rules by `broken`, fewer than `most`.
+    fn let_pass(
+        &self,
+        _problem: &Problem,
+        _broken: &dyn Fn(&Trajectory) -> usize,
+        _most: usize,
+    ) -> Option<Plan> {
         None
     }
 
