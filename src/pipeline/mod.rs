@@ -162,7 +162,8 @@ fn deadline(scenario: &Scenario) -> Duration {
 /// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
 ///
 /// Under the rules the run's scenario has a risk of collision with every ship whose set own ship
-/// alters for ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
+/// alters for, and with those toward which the first plan would break rules
+/// ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
 pub fn run(mut scenario: Scenario) -> Run {
     let mut sets = sets(&scenario);
     let mut without = None;
@@ -200,6 +201,8 @@ pub fn run(mut scenario: Scenario) -> Run {
             other.encounter = with_risk.encounter;
         }
         sets = others;
+    } else if let Some((with_risk, with_sets, other)) = relaxer.answer_with_roles_of(&answer) {
+        (scenario, sets, answer) = (with_risk, with_sets, other);
     }
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {

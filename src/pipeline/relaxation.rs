@@ -222,6 +222,28 @@ impl Relaxer<'_> {
         (other.relaxation_cmp(answer).is_lt() && is_lawful(&other)).then_some(other)
     }
 
+    /// The answer with a role toward the ships that have none, but toward which `answer` breaks
+    /// rules, and its scenario and sets. It is taken where it relaxes no more and breaks fewer rules,
+    /// and no more than `answer` without these roles.
+    pub(super) fn answer_with_roles_of(
+        &self,
+        answer: &Attempt,
+    ) -> Option<(Scenario, Vec<TargetSets>, Attempt)> {
+        if self.time_left().is_zero() {
+            return None;
+        }
+        let plan = answer.trajectory()?;
+        let scenario = rules::with_risk_of_plan(self.scenario, self.sets, plan)?;
+        let sets = super::sets(&scenario);
+        let other = self.of(&scenario, &sets).answer();
+        let broken = rules::breaks(self.scenario, plan);
+        let again = other.trajectory()?;
+        let is_better = other.relaxation_cmp(answer).is_le()
+            && rules::breaks(&scenario, again) < broken
+            && rules::breaks(self.scenario, again) <= broken;
+        is_better.then_some((scenario, sets, other))
+    }
+
     /// For another scenario and its sets, in the same time.
     pub(super) fn of<'b>(&'b self, scenario: &'b Scenario, sets: &'b [TargetSets]) -> Relaxer<'b> {
         Relaxer {
