@@ -155,6 +155,13 @@ fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
 }
 
+/// [`sets`] as [`run`] plans against them at first: with the risks of collision that sets alone give.
+pub fn planned_sets(scenario: &Scenario) -> Vec<TargetSets> {
+    let found = sets(scenario);
+    let with_risk = rules::with_risk_of_sets(scenario, &found);
+    with_risk.map_or(found, |scenario| sets(&scenario))
+}
+
 /// Plans a scenario and evaluates the plan.
 ///
 /// Where no plan satisfies the whole request, requirements are given up level by level
