@@ -1,7 +1,5 @@
 //! A valid plan and its corruptions: each must be found, and nothing else.
 
-use std::collections::BTreeSet;
-
 use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
@@ -147,9 +145,7 @@ fn faults(segments: &[Segment]) -> Vec<String> {
 fn words(found: &Evaluation) -> Vec<String> {
     let word = |what: &str| what.split(' ').next().unwrap_or_default().to_owned();
     let mut words: Vec<String> = found.violations.iter().map(|v| word(&v.what)).collect();
-    // a joint that is off alone is so in the sum of all, too
-    let mut seen = BTreeSet::new();
-    words.retain(|word| seen.insert(word.clone()));
+    words.dedup();
     words
 }
 
@@ -173,7 +169,8 @@ fn a_valid_plan_passes_with_its_figures() {
     assert_eq!(passage.min_margin, f64::INFINITY);
 }
 
-/// A corruption of a plan, and the first words of the violations that it causes.
+/// A corruption of a plan, and the first words of the violations that it causes. Joints are judged one
+/// by one, then in sum.
 type Corruption = (fn(&mut Vec<Segment>), &'static [&'static str]);
 
 const CORRUPTIONS: [Corruption; 16] = [
@@ -196,7 +193,7 @@ const CORRUPTIONS: [Corruption; 16] = [
     ),
     (
         |s| s[0].start.heading += 1e-8,
-        &["start", "position", "heading"],
+        &["start", "position", "heading", "position"],
     ),
     // cut off
     (|s| s.truncate(6), &["arrival:"]),
@@ -212,7 +209,7 @@ const CORRUPTIONS: [Corruption; 16] = [
     ),
     (
         |s| s[5].turn_rate *= 1.0 + 1e-6,
-        &["position", "heading", "turn"],
+        &["position", "heading", "position", "turn"],
     ),
     // a turn on the spot
     (
@@ -227,7 +224,7 @@ const CORRUPTIONS: [Corruption; 16] = [
         |s| {
             s.remove(4);
         },
-        &["position", "time"],
+        &["position", "time", "position", "time"],
     ),
     (|_| {}, &[]),
 ];

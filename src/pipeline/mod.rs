@@ -156,6 +156,13 @@ fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
 }
 
+/// [`sets`] as [`run`] plans against them at first: with the risks of collision that sets alone give.
+pub fn planned_sets(scenario: &Scenario) -> Vec<TargetSets> {
+    let found = sets(scenario);
+    let with_risk = rules::with_risk_of_sets(scenario, &found);
+    with_risk.map_or(found, |scenario| sets(&scenario))
+}
+
 /// Plans a scenario and evaluates the plan.
 ///
 /// Where no plan satisfies the whole request, requirements are given up level by level
@@ -163,7 +170,8 @@ fn deadline(scenario: &Scenario) -> Duration {
 /// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
 ///
 /// Under the rules the run's scenario has a risk of collision with every ship whose set own ship
-/// alters for ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
+/// alters for, and with those toward which the first plan would break rules
+/// ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
 pub fn run(mut scenario: Scenario) -> Run {
     let mut sets = sets(&scenario);
     let mut without = None;
@@ -202,6 +210,8 @@ pub fn run(mut scenario: Scenario) -> Run {
             other.encounter = with_risk.encounter;
         }
         sets = others;
+    } else if let Some((with_risk, with_sets, other)) = relaxer.answer_with_roles_of(&answer) {
+        (scenario, sets, answer) = (with_risk, with_sets, other);
     }
     let relaxer = Relaxer {
         scenario: &scenario,

@@ -222,6 +222,28 @@ impl Relaxer<'_> {
         (other.relaxation_cmp(answer).is_lt() && is_lawful(&other)).then_some(other)
     }
 
+    /// The answer with a role toward the ships that have none, but toward which `answer` breaks
+    /// rules, and its scenario and sets. It is taken where it relaxes no more and breaks fewer rules,
+    /// and no more than `answer` without these roles.
+    pub(super) fn answer_with_roles_of(
+        &self,
+        answer: &Attempt,
+    ) -> Option<(Scenario, Vec<TargetSets>, Attempt)> {
+        if self.time_left().is_zero() {
+            return None;
+        }
+        let plan = answer.trajectory()?;
+        let scenario = rules::with_risk_of_plan(self.scenario, self.sets, plan)?;
+        let sets = super::sets(&scenario);
+        let other = self.of(&scenario, &sets).answer();
+        let broken = rules::breaks(self.scenario, plan);
+        let again = other.trajectory()?;
+        let is_better = other.relaxation_cmp(answer).is_le()
+            && rules::breaks(&scenario, again) < broken
+            && rules::breaks(self.scenario, again) <= broken;
+        is_better.then_some((scenario, sets, other))
+    }
+
     /// For another scenario and its sets, in the same time.
     pub(super) fn of<'b>(&'b self, scenario: &'b Scenario, sets: &'b [TargetSets]) -> Relaxer<'b> {
         Relaxer {
@@ -307,7 +329,9 @@ impl Relaxer<'_> {
             attempts.find_map(|plan| plan(self, with_domain))
         });
         match self.or_cut_again(found, with_domain) {
-            Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
+            Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => {
+                self.letting_pass(&found).unwrap_or(found)
+            }
             Some(found) => self.late(with_domain, found),
             None => self.leaving_sets(first),
         }
@@ -546,6 +570,42 @@ impl Relaxer<'_> {
             }
             _ => Some(found),
         }
+    }
+
+    /// [`RelaxationLevel::Rules`], or [`RelaxationLevel::ReducedDomains`]: a plan clear of the hard
+    /// sets that slows down until the ships have passed, where it breaks fewer rules than an answer,
+    /// or where that is not clear of the hard sets.
+    fn letting_pass(&self, answer: &Attempt) -> Option<Attempt> {
+        let trajectory = answer.trajectory()?;
+        if !self.are_rules_asked() {
+            return None;
+        }
+        let broken = |trajectory: &Trajectory| rules::breaks(self.scenario, trajectory);
+        let most = match answer.level {
+            RelaxationLevel::Risk | RelaxationLevel::Inside => usize::MAX,
+            RelaxationLevel::Rules | RelaxationLevel::Domains => broken(trajectory).min(1),
+            _ => broken(trajectory),
+        };
+        if most == 0 || self.time_left().is_zero() {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let (whole, reductions) = self.asked(&self.scales(0.0));
+        let obstacles = level_sets(&whole, risk);
+        let encounters = encountered(self.scenario, self.sets);
+        let problem = Problem {
+            encountered: &encounters,
+            ..self.problem(&obstacles)
+        };
+        let plan = self.scenario.planner.let_pass(&problem, &broken, most)?;
+        let level = match broken(&plan.trajectory) {
+            0 => RelaxationLevel::Rules,
+            _ => RelaxationLevel::ReducedDomains,
+        };
+        let planned = Planned::of(Outcome::Solved(plan));
+        let found = Attempt::of(level, whole, reductions, obstacles, risk, planned);
+        let retained = self.retained_along(found.trajectory()?, risk);
+        Some(self.clear_of(&found, &retained, level))
     }
 
     /// Where a level ran out of its share of the time and no answer is safe, the rest of the time is

@@ -48,6 +48,41 @@ const RISK_DISTANCE_RATIO: f64 = 1.5;
 /// trajectory. Such a ship has the role that its geometry gives without a limit of the distance.
 /// `None` where no ship gets a role by this, and where the rules are not asked for.
 pub(super) fn with_risk_of_sets(scenario: &Scenario, sets: &[TargetSets]) -> Option<Scenario> {
+    with_risk(scenario, sets, |index, desired| {
+        let legs = desired.legs().iter().map(|leg| {
+            let pose = Pose::new(leg.start, heading_of(leg.direction));
+            let (begins, ends) = (leg.start_time, leg.end_time().min(scenario.horizon));
+            Segment::straight(pose, begins, (ends - begins).max(0.0), leg.speed)
+        });
+        let set = sets[index].with_domain.at_risk(scenario.max_risk);
+        set.is_entered(&legs.collect::<Vec<_>>(), tolerance::TOUCH_M)
+    })
+}
+
+/// The scenario with a risk of collision with every ship that has no role on the desired trajectory,
+/// but toward which a plan breaks rules: a plan that keeps clear of one ship may come near another.
+/// `None` as in [`with_risk_of_sets`].
+pub(super) fn with_risk_of_plan(
+    scenario: &Scenario,
+    sets: &[TargetSets],
+    plan: &Trajectory,
+) -> Option<Scenario> {
+    if scenario.compliance != Compliance::Rules {
+        return None;
+    }
+    let reports = compliance(scenario, Some(plan), &scenario.limits);
+    with_risk(scenario, sets, |index, _| {
+        reports[index].as_ref().is_some_and(|r| !r.complies())
+    })
+}
+
+/// The scenario with a risk of collision with every ship that has no role, has not passed, and of
+/// which `is_met` is true.
+fn with_risk(
+    scenario: &Scenario,
+    sets: &[TargetSets],
+    is_met: impl Fn(usize, &DesiredTrajectory) -> bool + Sync,
+) -> Option<Scenario> {
     if scenario.compliance != Compliance::Rules {
         return None;
     }
@@ -60,13 +95,7 @@ pub(super) fn with_risk_of_sets(scenario: &Scenario, sets: &[TargetSets]) -> Opt
             return None;
         }
         let desired = judged_path(scenario, known);
-        let legs = desired.legs().iter().map(|leg| {
-            let pose = Pose::new(leg.start, heading_of(leg.direction));
-            let (begins, ends) = (leg.start_time, leg.end_time().min(scenario.horizon));
-            Segment::straight(pose, begins, (ends - begins).max(0.0), leg.speed)
-        });
-        let set = sets.with_domain.at_risk(scenario.max_risk);
-        if !set.is_entered(&legs.collect::<Vec<_>>(), tolerance::TOUCH_M) {
+        if !is_met(index, &desired) {
             return None;
         }
         let (own, limits) = (&scenario.own_ship, &scenario.limits);

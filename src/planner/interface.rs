@@ -45,6 +45,17 @@ pub trait Planner: Sync {
         Vec::new()
     }
 
+    /// A plan that slows down until the encountered ships have passed. It is the one that breaks the
+    /// fewest rules by `broken`, fewer than `most`.
+    fn let_pass(
+        &self,
+        _problem: &Problem,
+        _broken: &dyn Fn(&Trajectory) -> usize,
+        _most: usize,
+    ) -> Option<Plan> {
+        None
+    }
+
     /// The motion with the least harm, which may enter sets. `nominal` belongs to the obstacles.
     fn leaving_sets(&self, _problem: &Problem, _nominal: &[NominalTarget]) -> Option<Planned> {
         None

@@ -11,7 +11,7 @@ use mistakes::mistakes;
 use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
 use crate::frame::{Pose, Side, heading_of, relative_bearing};
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::{TargetSets, sets};
+use crate::pipeline::{TargetSets, planned_sets};
 use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
@@ -34,7 +34,7 @@ pub fn lint(
     declared: &Declared,
     notes: Vec<String>,
 ) -> LintScenarioDocument {
-    let targets = targets(scenario, &sets(scenario));
+    let targets = targets(scenario, &planned_sets(scenario));
     LintScenarioDocument {
         file,
         scenario: Some(scenario.title.clone()),
@@ -47,7 +47,11 @@ pub fn lint(
 
 /// The findings of [`lint`] alone: who is concerned, what was found, and what it probably means.
 pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
-    all(scenario, declared, &targets(scenario, &sets(scenario)))
+    all(
+        scenario,
+        declared,
+        &targets(scenario, &planned_sets(scenario)),
+    )
 }
 
 fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> {

@@ -65,6 +65,16 @@ fn a_ship_that_own_ship_alters_for_has_a_role() {
     }
 }
 
+/// The ship `behind it` passes 764 m off on the desired trajectory, beyond the limit, but is met on the
+/// manoeuvre for the ship `near`. Without a role own ship turned to port for it (Rule 17(c)).
+#[test]
+fn a_ship_that_is_met_on_the_plan_alone_has_a_role() {
+    let run = pipeline::run(parsed(&fault("rules-role-on-the-plan.toml")));
+    assert_eq!(run.targets[1].sets.encounter.role, Role::StandOn);
+    assert!(run.relaxations.is_empty(), "{:?}", run.relaxations);
+    assert_eq!(broken(&run), Vec::<&str>::new());
+}
+
 /// A ship that comes head-on or from starboard and would pass at one to three times the limit, which
 /// is twice the longer ship's length.
 fn grazing(head_on: bool, rng: &mut ChaCha8Rng) -> Scenario {

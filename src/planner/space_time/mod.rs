@@ -114,6 +114,15 @@ impl Planner for SpaceTimePlanner {
         off_station(problem, arrival, until)
     }
 
+    fn let_pass(
+        &self,
+        problem: &Problem,
+        broken: &dyn Fn(&Trajectory) -> usize,
+        most: usize,
+    ) -> Option<Plan> {
+        fallback::let_pass::let_pass(problem, broken, most)
+    }
+
     fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
         fallback::escape::escape(problem, nominal)
     }

@@ -188,6 +188,8 @@ fn the_block_of_a_target_says_why_it_has_a_role_or_none() {
         .and(contains(note))
         .and(contains("starboard"));
     searoom(&["plan", &file]).success().stdout(far);
+    let lint = ["suite", "--lint", &file];
+    searoom(&lint).success().stdout(contains("give-way"));
     let file = folder.write("near.toml", scene("planner = { cpa_limit_m = 400.0 }"));
     let near = contains(role).and(contains(note).not());
     searoom(&["plan", &file]).success().stdout(near);

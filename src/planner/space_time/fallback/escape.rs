@@ -173,7 +173,7 @@ impl LastResort<'_> {
         let on = beginnings.iter().flat_map(continued).flatten();
         self.improve(&mut best, on, !is_outside);
         if is_outside {
-            let aside = beside(self.problem).filter_map(|desired| {
+            let aside = beside(self.problem, clock).filter_map(|desired| {
                 let along = Problem {
                     desired: &desired,
                     ..alone.clone()

@@ -6,6 +6,7 @@ pub(crate) mod cost_to_go;
 pub(crate) mod escape;
 pub(crate) mod harm;
 pub(crate) mod hybrid_a_star;
+pub(crate) mod let_pass;
 pub(crate) mod off_station;
 pub(crate) mod sequential;
 pub(crate) mod waiting;

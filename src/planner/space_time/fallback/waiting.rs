@@ -11,6 +11,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use crate::frame::{Side, Vector, to_port};
+use crate::numerics::bisected;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
 use crate::planner::space_time::piece::pieces;
@@ -36,6 +37,9 @@ const CHANGE_PRICE: f64 = 0.01;
 /// channel own ship keeps to that side (Rule 9(a)).
 const OFFSETS_BEAMS: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0];
 
+/// Bisection steps for the room beside the desired path: to about a quarter of a metre.
+const ROOM_HALVINGS: usize = 8;
+
 /// Length in turning radii over which a route beside the desired path returns to its end.
 const RETURN_RADII: f64 = 4.0;
 
@@ -56,7 +60,7 @@ pub(crate) fn waiting(problem: &Problem, clock: Clock) -> Planned {
         moves.find_map(|moves| way.waiting(&proxies, *moves, 0.0, clock))
     };
     let found = on(&problem.desired.straightened(), &MOVES)
-        .or_else(|| beside(problem).find_map(|desired| on(&desired, &MOVES[..1])));
+        .or_else(|| beside(problem, clock).find_map(|desired| on(&desired, &MOVES[..1])));
     let plan = found.and_then(|motion| unfinished(problem, motion, PlanMethod::Waiting));
     Planned::of(match plan {
         Some(plan) => Outcome::Solved(plan),
@@ -84,13 +88,42 @@ pub(crate) fn unfinished(
     })
 }
 
-/// The desired trajectory moved aside, nearest first, and back at its end.
-pub(crate) fn beside<'a>(problem: &'a Problem) -> impl Iterator<Item = DesiredTrajectory> + 'a {
+/// The desired trajectory moved aside, nearest first, and back at its end. The last ones use all the
+/// room that land leaves on a side.
+pub(crate) fn beside<'a>(
+    problem: &'a Problem,
+    clock: Clock,
+) -> impl Iterator<Item = DesiredTrajectory> + 'a {
     let beam = problem.own.hull.beam.max(tolerance::START_M);
-    let offsets = OFFSETS_BEAMS.into_iter().flat_map(move |beams| {
-        [Side::Starboard, Side::Port].map(|side| side.turn_sign() * beams * beam)
+    let sides = [Side::Starboard, Side::Port].map(Side::turn_sign);
+    let offsets = OFFSETS_BEAMS.map(|beams| beams * beam);
+    let farthest = offsets.into_iter().fold(0.0, f64::max);
+    let near = offsets.into_iter();
+    let near = near.flat_map(move |offset| sides.map(|side| side * offset));
+    let rooms = sides.into_iter().filter_map(move |side| {
+        let room = room(problem, side, farthest, clock)?;
+        Some(side * room)
     });
+    let offsets = near.chain(rooms);
     offsets.filter_map(move |offset| moved_aside(problem, offset))
+}
+
+/// Largest distance in metres by which the route may be moved to a side clear of land; `None` where
+/// land leaves no room, or as much as the `farthest` offset. After the deadline it is not sought.
+fn room(problem: &Problem, side: f64, farthest: f64, clock: Clock) -> Option<f64> {
+    if problem.land_obstacle.is_empty() {
+        return None;
+    }
+    let is_clear = |offset: f64| {
+        let desired = moved_aside(problem, side * offset);
+        let way = desired.and_then(|desired| Way::of(problem, &desired, clock));
+        !clock.is_up() && way.is_some_and(|way| way.clear_to.is_infinite())
+    };
+    if is_clear(farthest) {
+        return None;
+    }
+    let [room, _] = bisected([0.0, farthest], ROOM_HALVINGS, is_clear);
+    (room > 0.0).then_some(room)
 }
 
 /// The desired trajectory on a parallel path `offset` metres to port.
@@ -311,12 +344,18 @@ impl<'a> Way<'a> {
         });
         let all = std::iter::once((own.max_speed(), 0.0)).chain(places);
         all.filter_map(move |(speed, distance)| {
-            let mut motion = Vec::new();
-            let time = distance / speed;
-            let at = self.advance([0.0, 0.0], time, speed, &mut motion);
-            self.advance([at, time], horizon, slowest, &mut motion);
+            let motion = self.slowed_after(distance, [speed, slowest]);
             (!land::meets(self.problem.land_obstacle, &motion)).then_some(motion)
         })
+    }
+
+    /// Motion at the first speed for a distance in metres, then at the second until the horizon.
+    pub(crate) fn slowed_after(&self, distance: f64, [speed, then]: [f64; 2]) -> Vec<Segment> {
+        let mut motion = Vec::new();
+        let time = distance / speed;
+        let at = self.advance([0.0, 0.0], time, speed, &mut motion);
+        self.advance([at, time], self.problem.horizon, then, &mut motion);
+        motion
     }
 }
 
