@@ -135,6 +135,7 @@ pub fn attempt(
                 Err(fault) => return Err(unfit(&scenario, &previous.file, vec![fault])),
             }
         }
+        scenario.set_aside_out_of_reach();
         Ok((pipeline::run(scenario), notes))
     })
 }

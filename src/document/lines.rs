@@ -291,7 +291,7 @@ pub(crate) fn escape_words(escape: &EscapeDocument) -> String {
 /// A block per target: own ship's role, the closest approach, the manoeuvre, and what the judges
 /// say of the plan. Targets without a role follow in one line each, the nearest first.
 fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
-    if plan.encounters.is_empty() {
+    if plan.encounters.is_empty() && plan.out_of_reach.is_none() {
         add("target", "none".to_owned());
     }
     let altered = altered_for(plan);
@@ -334,6 +334,15 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
         add(
             "",
             format!("and {more} more without a role, none of them nearer"),
+        );
+    }
+    if let Some(listed) = &plan.out_of_reach {
+        let targets = counted(listed.rows.len(), "target");
+        let (apart, until) = (significant(listed.apart_m), times.at(listed.until_s, 0));
+        let reason = format!("at any speed none comes within {apart} m of own hull until {until}");
+        add(
+            "target",
+            format!("{targets} out of reach, not planned for: {reason}; no role, no risk"),
         );
     }
 }

@@ -11,6 +11,7 @@ mod encounter;
 mod lines;
 mod lint;
 mod memory;
+mod out_of_reach;
 mod parts;
 mod plan;
 mod simulation;
@@ -37,6 +38,7 @@ pub(crate) use lines::{
 };
 pub use lint::*;
 pub use memory::*;
+pub use out_of_reach::*;
 pub use parts::*;
 pub use plan::control::*;
 pub use plan::departure::{Departure, SailedManoeuvreDocument};

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::encounter::{EncounterDocument, encounters};
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
+use super::out_of_reach::OutOfReachDocument;
 use super::parts::{
     CostDocument, EscapeDocument, ImprovementDocument, LowerBoundDocument, MissionDocument,
     NodeDocument, ObstacleDocument, OwnShipDocument, PlanMethod, PositionDocument,
@@ -115,6 +116,8 @@ pub struct PlanDocument {
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub out_of_reach: Option<OutOfReachDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
@@ -124,6 +127,12 @@ impl PlanDocument {
     /// True where the document says that no hard set, hull or land is entered.
     pub fn is_safe(&self) -> bool {
         self.safe == Some(true)
+    }
+
+    /// Number of the scenario's targets, with those out of reach.
+    pub fn all_targets(&self) -> usize {
+        let listed = self.out_of_reach.as_ref();
+        self.targets.len() + listed.map_or(0, |listed| listed.rows.len())
     }
 
     /// The document of a run before its verification: nothing is verified, and `violations` is empty.
@@ -179,6 +188,7 @@ impl PlanDocument {
                 })
                 .collect(),
             encounters: encounters(run),
+            out_of_reach: OutOfReachDocument::of(scenario),
             path_time: (run.planned.path_time.as_deref())
                 .map(|diagram| path_time_document(run, diagram)),
             optimal_control: control(run),

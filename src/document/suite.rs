@@ -152,7 +152,7 @@ impl SuiteRunDocument {
             cost: plan.cost.clone(),
             departure: plan.departure_of_motion(),
             encounters: plan.encounters.clone(),
-            targets: Some(plan.targets.len()),
+            targets: Some(plan.all_targets()),
             method: plan.method,
             search_stats: Some(plan.search_stats),
             timing: Some(plan.timing.clone()),

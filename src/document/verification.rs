@@ -29,8 +29,15 @@ pub struct VerifiedPlanDocument {
     pub safe: bool,
     pub violations: Vec<ViolationDocument>,
     pub targets: Vec<MarginDocument>,
+    /// Number of targets that the plan does not consider.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub out_of_reach: usize,
     pub min_land_distance_m: Option<f64>,
     pub min_land_distance_t_s: Option<f64>,
+}
+
+fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Margins to one target.

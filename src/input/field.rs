@@ -3,9 +3,11 @@
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use chrono::{DateTime, Utc};
 
+use super::table::Key;
 use super::value::{Node, Value};
 use super::{Fault, Faults, InputError, Table, meant};
 use crate::frame::{Vector, mps_from_knots};
@@ -108,19 +110,32 @@ impl Display for Range {
     }
 }
 
-/// A value, its place, and the faults found so far.
+/// A value, its place, and the faults found so far. The place is written out only for a fault: a
+/// scenario may have ten thousand targets.
 #[derive(Debug, Clone)]
 pub(crate) struct Field<'a> {
     faults: &'a Faults,
-    path: String,
+    /// Place of the table or list that holds the value.
+    base: Rc<str>,
+    last: Last<'a>,
     node: &'a Node,
+}
+
+/// Last part of a place.
+#[derive(Debug, Clone, Copy)]
+enum Last<'a> {
+    /// The value is that at the base itself.
+    None,
+    Key(&'a str),
+    Index(usize),
 }
 
 impl<'a> Field<'a> {
     pub(crate) fn root(node: &'a Node, faults: &'a Faults) -> Self {
         Self {
             faults,
-            path: String::new(),
+            base: Rc::from(""),
+            last: Last::None,
             node,
         }
     }
@@ -134,21 +149,37 @@ impl<'a> Field<'a> {
     }
 
     /// Where the value is, as in `targets[0].speed_mps`.
-    pub(crate) fn path(&self) -> &str {
-        &self.path
+    pub(crate) fn path(&self) -> String {
+        match self.last {
+            Last::None => self.base.to_string(),
+            Last::Key(key) => path_of(&self.base, key),
+            Last::Index(index) => format!("{}[{index}]", self.base),
+        }
     }
 
-    fn path_of(&self, key: &str) -> String {
-        let key = printable(key);
-        if self.path.is_empty() {
-            key
-        } else {
-            format!("{}.{key}", self.path)
+    /// The key in its table.
+    pub(super) fn key(&self) -> Option<&'a str> {
+        match self.last {
+            Last::Key(key) => Some(key),
+            Last::None | Last::Index(_) => None,
+        }
+    }
+
+    /// This value as the base of others.
+    pub(super) fn as_base(&self) -> Self {
+        let base = match self.last {
+            Last::None => Rc::clone(&self.base),
+            Last::Key(_) | Last::Index(_) => Rc::from(self.path()),
+        };
+        Self {
+            base,
+            last: Last::None,
+            ..self.clone()
         }
     }
 
     pub(crate) fn fault(&self, found: impl Display, allowed: impl Display) {
-        let fault = Fault::new(self.path.as_str(), found, allowed);
+        let fault = Fault::new(self.path(), found, allowed);
         self.faults.note(fault.at_line(self.node.line));
     }
 
@@ -159,7 +190,7 @@ impl<'a> Field<'a> {
 
     fn fault_of(&self, key: &str, found: impl Display, allowed: impl Display) -> Fault {
         let node = self.node.get(key).unwrap_or(self.node);
-        Fault::new(self.path_of(key), found, allowed).at_line(node.line)
+        Fault::new(path_of(&self.path(), key), found, allowed).at_line(node.line)
     }
 
     /// Notes a key of this table that is not among the `known` ones, and which of them was meant.
@@ -178,8 +209,8 @@ impl<'a> Field<'a> {
     }
 
     /// Notes the keys that this table may have.
-    pub(super) fn finish(&self, known: Vec<String>) {
-        self.faults.add_table(&self.path, known);
+    pub(super) fn finish(&self, known: Vec<Key>) {
+        self.faults.add_table(&self.as_base().base, known);
     }
 
     /// Notes a fault here, without which there would be a value.
@@ -198,12 +229,23 @@ impl<'a> Field<'a> {
         if !self.is_table() {
             return self.refuse("an object");
         }
-        let node = self.node.get(key)?;
-        Some(Self {
+        let (key, node) = self.node.entry(key)?;
+        Some(self.inside(key, node))
+    }
+
+    /// The value at the first key of a table that is wanted, if this is one.
+    pub(super) fn find(&self, wanted: impl Fn(&str) -> bool) -> Option<Self> {
+        let (key, node) = self.node.entry_where(wanted)?;
+        Some(self.inside(key, node))
+    }
+
+    fn inside(&self, key: &'a str, node: &'a Node) -> Self {
+        Self {
             faults: self.faults,
-            path: self.path_of(key),
+            base: self.as_base().base,
+            last: Last::Key(key),
             node,
-        })
+        }
     }
 
     /// The value at a key that must be there.
@@ -360,9 +402,11 @@ impl<'a> Field<'a> {
         let (least, most) = (counts.start(), counts.end());
         match &self.node.value {
             Value::List(items) if counts.contains(&items.len()) => {
+                let base = self.as_base().base;
                 let field = |(index, node)| Self {
                     faults: self.faults,
-                    path: format!("{}[{index}]", self.path),
+                    base: Rc::clone(&base),
+                    last: Last::Index(index),
                     node,
                 };
                 Some(items.iter().enumerate().map(field).collect())
@@ -372,7 +416,7 @@ impl<'a> Field<'a> {
                 self.reject(found, format_args!("at most {most}"))
             }
             Value::Table(_) if what == "tables" => {
-                let path = &self.path;
+                let path = self.path();
                 self.refuse(format_args!(
                     "[[{path}]], with two brackets, before each of them"
                 ))
@@ -401,7 +445,7 @@ impl<'a> Field<'a> {
     /// The table here, whose unknown keys are faults.
     pub(crate) fn table(&self, shape: &str) -> Option<Table<'a>> {
         if self.is_table() {
-            Some(Table::new(self.clone()))
+            Some(Table::new(self.as_base()))
         } else {
             self.refuse(shape)
         }
@@ -410,6 +454,15 @@ impl<'a> Field<'a> {
     /// True if the value has keys of its own.
     pub(crate) fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
+    }
+}
+
+/// The place of a key in a table at a place.
+fn path_of(table: &str, key: &str) -> String {
+    let key = printable(key);
+    match table.is_empty() {
+        true => key,
+        false => format!("{table}.{key}"),
     }
 }
 

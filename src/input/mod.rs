@@ -9,6 +9,7 @@ mod value;
 
 pub use field::abbreviated;
 pub(crate) use field::{DATE_TIME, Field, Range, date_time, every};
+use table::Key;
 pub(crate) use table::Table;
 pub(crate) use value::{Node, from_json, from_toml};
 
@@ -18,6 +19,7 @@ use std::fmt::{self, Display};
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use crate::text::{LINE_CHARS, counted, printable};
 
@@ -161,7 +163,7 @@ fn listed(faults: &[Fault]) -> String {
 pub(crate) struct Faults {
     noted: RefCell<Vec<Fault>>,
     /// The tables that were read: where each is, and its known keys.
-    tables: RefCell<Vec<(String, Vec<String>)>>,
+    tables: RefCell<Vec<(Rc<str>, Vec<Key>)>>,
     /// Faults of unknown keys that are like no known one, and the keys.
     unknown: RefCell<Vec<(Fault, String)>>,
 }
@@ -181,8 +183,13 @@ impl Faults {
         }
     }
 
-    fn add_table(&self, path: &str, known: Vec<String>) {
-        self.tables.borrow_mut().push((path.to_owned(), known));
+    /// Adds a table, unless one of the last ones was like it: targets are many, and alike.
+    fn add_table(&self, path: &Rc<str>, known: Vec<Key>) {
+        let mut tables = self.tables.borrow_mut();
+        let mut last = tables.iter().rev().take(LAST_TABLES);
+        if !last.any(|(other, keys)| *keys == known && is_alike(other, path)) {
+            tables.push((Rc::clone(path), known));
+        }
     }
 
     /// True where there are more faults than a message counts.
@@ -199,7 +206,8 @@ impl Faults {
         let mut faults = self.noted.take();
         let tables = self.tables.take();
         faults.extend(self.unknown.take().into_iter().map(|(mut fault, key)| {
-            let owners = tables.iter().filter(|(_, known)| known.contains(&key));
+            let knows = |known: &[Key]| known.iter().any(|known| known.is(&key));
+            let owners = tables.iter().filter(|(_, known)| knows(known));
             let owners: BTreeSet<String> = owners.map(|(path, _)| without_index(path)).collect();
             // where several tables have the key, nobody knows which is meant
             if let (Some(path), 1) = (owners.first(), owners.len()) {
@@ -213,6 +221,15 @@ impl Faults {
         faults.sort_by_key(|fault| fault.line);
         faults
     }
+}
+
+/// Number of tables with which another one is compared.
+const LAST_TABLES: usize = 8;
+
+/// True for paths that differ in the places in lists alone.
+fn is_alike(a: &str, b: &str) -> bool {
+    let is_word = |byte: &u8| !byte.is_ascii_digit();
+    a.bytes().filter(is_word).eq(b.bytes().filter(is_word))
 }
 
 /// The path of a table without the places in lists: `targets` for `targets[0]`.

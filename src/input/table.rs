@@ -42,11 +42,52 @@ pub(super) fn units_like(unit: &str) -> &'static [Unit] {
     like.unwrap_or_default()
 }
 
+/// A key that a table may have: a stem, and a unit behind it where there is one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Key {
+    stem: &'static str,
+    unit: &'static str,
+}
+
+impl Key {
+    pub(super) fn is(self, name: &str) -> bool {
+        let Self { stem, unit } = self;
+        // lengths first: most keys are others
+        if unit.is_empty() {
+            return name == stem;
+        }
+        name.len() == stem.len() + 1 + unit.len()
+            && name.starts_with(stem)
+            && name.ends_with(unit)
+            && name.as_bytes()[stem.len()] == b'_'
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        // keys of one place in the program are at one place in memory
+        let is_same = |a: &'static str, b: &'static str| std::ptr::eq(a, b) || a == b;
+        is_same(self.stem, other.stem) && is_same(self.unit, other.unit)
+    }
+}
+
+impl Display for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.unit {
+            "" => f.write_str(self.stem),
+            unit => write!(f, "{}_{unit}", self.stem),
+        }
+    }
+}
+
 /// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
 #[derive(Debug)]
 pub(crate) struct Table<'a> {
     field: Field<'a>,
-    known: Vec<String>,
+    /// With repetitions.
+    known: Vec<Key>,
+    /// The keys of the file among them.
+    taken: Vec<&'a str>,
     missing: Vec<(Vec<String>, String)>,
 }
 
@@ -55,23 +96,40 @@ impl<'a> Table<'a> {
         Self {
             field,
             known: Vec::new(),
+            taken: Vec::new(),
             missing: Vec::new(),
         }
     }
 
     /// True if the key is there. The key counts as known.
-    pub(crate) fn has(&mut self, key: &str) -> bool {
+    pub(crate) fn has(&mut self, key: &'static str) -> bool {
         self.take(key).is_some()
     }
 
-    pub(crate) fn take(&mut self, key: &str) -> Option<Field<'a>> {
-        if !self.known.iter().any(|known| known == key) {
-            self.known.push(key.to_owned());
-        }
-        self.field.get(key)
+    pub(crate) fn take(&mut self, key: &'static str) -> Option<Field<'a>> {
+        self.known.push(Key {
+            stem: key,
+            unit: "",
+        });
+        let found = self.field.get(key);
+        self.taken.extend(found.as_ref().and_then(Field::key));
+        found
     }
 
-    pub(crate) fn require(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
+    /// [`Self::take`] of a quantity in a unit.
+    fn take_in(&mut self, stem: &'static str, unit: &'static str) -> Option<Field<'a>> {
+        let key = Key { stem, unit };
+        self.known.push(key);
+        let found = self.field.find(|name| key.is(name));
+        self.taken.extend(found.as_ref().and_then(Field::key));
+        found
+    }
+
+    pub(crate) fn require(
+        &mut self,
+        key: &'static str,
+        allowed: impl Display,
+    ) -> Option<Field<'a>> {
         let field = self.take(key);
         if field.is_none() {
             self.missing
@@ -81,27 +139,31 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key without which the others cannot be read: it is a fault at once.
-    pub(crate) fn require_first(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
+    pub(crate) fn require_first(
+        &mut self,
+        key: &'static str,
+        allowed: impl Display,
+    ) -> Option<Field<'a>> {
         self.has(key);
         self.field.require(key, allowed)
     }
 
-    pub(crate) fn required_table(&mut self, key: &str) -> Option<Table<'a>> {
+    pub(crate) fn required_table(&mut self, key: &'static str) -> Option<Table<'a>> {
         self.require(key, "a table")?.table("a table")
     }
 
-    pub(crate) fn number(&mut self, key: &str, range: Range) -> Option<f64> {
+    pub(crate) fn number(&mut self, key: &'static str, range: Range) -> Option<f64> {
         self.take(key)?.number(range)
     }
 
-    pub(crate) fn required_number(&mut self, key: &str, range: Range) -> Option<f64> {
+    pub(crate) fn required_number(&mut self, key: &'static str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }
 
     /// The value of a key, or `default` where the key is absent or its value is a fault.
     pub(crate) fn read_or<T>(
         &mut self,
-        key: &str,
+        key: &'static str,
         default: T,
         read: impl FnOnce(&Field<'a>) -> Option<T>,
     ) -> T {
@@ -110,22 +172,22 @@ impl<'a> Table<'a> {
     }
 
     /// A number, or `default` where the key is absent or its value is a fault.
-    pub(crate) fn number_or(&mut self, key: &str, range: Range, default: f64) -> f64 {
+    pub(crate) fn number_or(&mut self, key: &'static str, range: Range, default: f64) -> f64 {
         self.read_or(key, default, |field| field.number(range))
     }
 
     /// The meaning of one of these words; the key may be absent.
-    pub(crate) fn choice<T: Copy>(&mut self, key: &str, words: &[(&str, T)]) -> Option<T> {
+    pub(crate) fn choice<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Option<T> {
         self.take(key)?.choice(words)
     }
 
     /// The field of a quantity in one of its units, and the size of that unit; two at once are a
     /// fault.
-    fn field_in(&mut self, stem: &str, units: &[Unit]) -> Option<(Field<'a>, f64)> {
-        let mut found: Option<(String, Field<'a>, f64)> = None;
-        for (suffix, size) in units {
-            let key = format!("{stem}_{suffix}");
-            match (&found, self.take(&key)) {
+    fn field_in(&mut self, stem: &'static str, units: &[Unit]) -> Option<(Field<'a>, f64)> {
+        let mut found: Option<(Key, Field<'a>, f64)> = None;
+        for (unit, size) in units {
+            let key = Key { stem, unit };
+            match (&found, self.take_in(stem, unit)) {
                 (Some((first, ..)), Some(field)) => {
                     let beside = format_args!("{key} beside {first}");
                     field.fault(beside, "one of the two, not both");
@@ -139,7 +201,7 @@ impl<'a> Table<'a> {
     }
 
     /// A distance in metres from `<stem>_m`, `<stem>_nmi` or `<stem>_cbl`; the range is in metres.
-    pub(crate) fn distance(&mut self, stem: &str, range: Range) -> Option<f64> {
+    pub(crate) fn distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         let (field, unit) = self.field_in(stem, &DISTANCE_UNITS)?;
         let distance = field.number(range.in_units_of(unit))?;
         // 2.1 cables are 388.92 m: the unit has a decimal, and no more digits than these
@@ -150,20 +212,21 @@ impl<'a> Table<'a> {
     }
 
     /// A distance that must be there in one of the units.
-    pub(crate) fn required_distance(&mut self, stem: &str, range: Range) -> Option<f64> {
+    pub(crate) fn required_distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         self.require_in(stem, &DISTANCE_UNITS, range);
         self.distance(stem, range)
     }
 
     /// True if the quantity is given in one of the units.
-    fn has_in(&mut self, stem: &str, units: &[Unit]) -> bool {
-        let keys = units.iter().map(|(suffix, _)| format!("{stem}_{suffix}"));
+    fn has_in(&mut self, stem: &'static str, units: &[Unit]) -> bool {
+        let units = units.iter().map(|(unit, _)| unit);
         // every key counts as known
-        keys.filter(|key| self.has(key)).count() > 0
+        let given = units.filter(|unit| self.take_in(stem, unit).is_some());
+        given.count() > 0
     }
 
     /// Notes the quantity as missing if it is given in none of the units.
-    fn require_in(&mut self, stem: &str, units: &[Unit], allowed: impl Display) {
+    fn require_in(&mut self, stem: &'static str, units: &[Unit], allowed: impl Display) {
         if !self.has_in(stem, units) {
             let keys = units.iter().map(|(suffix, _)| format!("{stem}_{suffix}"));
             self.missing.push((keys.collect(), allowed.to_string()));
@@ -171,31 +234,31 @@ impl<'a> Table<'a> {
     }
 
     /// True if the speed is given in either unit.
-    pub(crate) fn has_speed(&mut self, stem: &str) -> bool {
+    pub(crate) fn has_speed(&mut self, stem: &'static str) -> bool {
         self.has_in(stem, &SPEED_UNITS)
     }
 
     /// A speed in m/s from `<stem>_mps` or `<stem>_kn`; the range is in m/s.
-    pub(crate) fn speed(&mut self, stem: &str, range: Range) -> Option<f64> {
+    pub(crate) fn speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         let (field, unit) = self.field_in(stem, &SPEED_UNITS)?;
         Some(field.number(range.in_units_of(unit))? * unit)
     }
 
     /// A speed that must be there in one of the units.
-    pub(crate) fn required_speed(&mut self, stem: &str, range: Range) -> Option<f64> {
+    pub(crate) fn required_speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         self.require_speed(stem, range);
         self.speed(stem, range)
     }
 
     /// Notes the speed as missing if it is given in neither unit.
-    pub(crate) fn require_speed(&mut self, stem: &str, allowed: impl Display) {
+    pub(crate) fn require_speed(&mut self, stem: &'static str, allowed: impl Display) {
         self.require_in(stem, &SPEED_UNITS, allowed);
     }
 
     /// Speeds in m/s from the list `<stem>_mps` or `<stem>_kn`, and the field of the list.
     pub(crate) fn speeds(
         &mut self,
-        stem: &str,
+        stem: &'static str,
         range: Range,
     ) -> Option<(Field<'a>, Option<Vec<f64>>)> {
         let (field, unit) = self.field_in(stem, &SPEED_UNITS)?;
@@ -206,7 +269,7 @@ impl<'a> Table<'a> {
     }
 
     /// Refuses a key that another one rules out.
-    pub(crate) fn forbid(&mut self, key: &str, because: &str) {
+    pub(crate) fn forbid(&mut self, key: &'static str, because: &str) {
         if let Some(field) = self.take(key) {
             field.refuse::<()>(because);
         }
@@ -215,13 +278,19 @@ impl<'a> Table<'a> {
     /// Notes every unknown key and every missing one. A required key that is misspelt is one fault.
     pub(crate) fn finish(mut self) {
         let mut missing = std::mem::take(&mut self.missing);
+        let mut listed: Vec<String> = Vec::new();
         for name in self.field.keys() {
-            if self.known.iter().any(|known| known == name) {
+            let is_taken = self.taken.iter().any(|taken| std::ptr::eq(*taken, name));
+            // a known key may have the value null
+            if is_taken || self.known.iter().any(|known| known.is(name)) {
                 continue;
             }
-            let meant = nearest(name, &self.known);
+            if listed.is_empty() {
+                listed = once_each(&self.known);
+            }
+            let meant = nearest(name, &listed);
             missing.retain(|(keys, _)| !keys.iter().any(|key| Some(key) == meant));
-            self.field.unknown(name, meant, &self.known);
+            self.field.unknown(name, meant, &listed);
         }
         for (keys, allowed) in missing {
             let or = match &keys[1..] {
@@ -233,6 +302,17 @@ impl<'a> Table<'a> {
         }
         self.field.finish(self.known);
     }
+}
+
+/// The keys as texts in the order in which they were first taken.
+fn once_each(keys: &[Key]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for key in keys.iter().map(Key::to_string) {
+        if !all.contains(&key) {
+            all.push(key);
+        }
+    }
+    all
 }
 
 fn nearest<'k>(name: &str, known: &'k [String]) -> Option<&'k String> {

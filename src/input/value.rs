@@ -24,18 +24,40 @@ pub(super) enum Value {
     Text(String),
     Date(String),
     List(Vec<Node>),
-    Table(BTreeMap<String, Node>),
+    /// In the order of the keys.
+    Table(Vec<(String, Node)>),
 }
+
+/// Number of keys up to which a comparison of lengths with each is faster than a binary search.
+const FEW_KEYS: usize = 16;
 
 impl Node {
     /// The value at a key of a table, if it is there and not null.
     pub(crate) fn get(&self, key: &str) -> Option<&Self> {
+        self.entry(key).map(|(_, node)| node)
+    }
+
+    /// [`Self::get`] with the key in the table.
+    pub(super) fn entry(&self, key: &str) -> Option<(&str, &Self)> {
         let Value::Table(table) = &self.value else {
             return None;
         };
-        table
-            .get(key)
-            .filter(|node| !matches!(node.value, Value::Null))
+        let found = match table.len() <= FEW_KEYS {
+            true => table.iter().position(|(other, _)| other == key),
+            false => (table.binary_search_by(|(other, _)| other.as_str().cmp(key))).ok(),
+        };
+        let (key, node) = &table[found?];
+        (!matches!(node.value, Value::Null)).then_some((key.as_str(), node))
+    }
+
+    /// The first key of a table that is wanted and whose value is not null.
+    pub(super) fn entry_where(&self, wanted: impl Fn(&str) -> bool) -> Option<(&str, &Self)> {
+        let Value::Table(table) = &self.value else {
+            return None;
+        };
+        let mut entries = table.iter();
+        let (key, node) = entries.find(|(key, _)| wanted(key))?;
+        (!matches!(node.value, Value::Null)).then_some((key.as_str(), node))
     }
 
     pub(crate) fn as_text(&self) -> Option<&str> {
@@ -150,11 +172,13 @@ fn has_decimal_comma(line: &str) -> bool {
     })
 }
 
-fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> BTreeMap<String, Node> {
+fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> Vec<(String, Node)> {
     let entries = table.iter();
+    let entries = entries.map(|(key, value)| (key.get_ref().to_string(), node_of(value, line)));
+    let mut entries: Vec<_> = entries.collect();
+    // sorted already, unless the reader keeps the order of the file
+    entries.sort_by(|a, b| a.0.cmp(&b.0));
     entries
-        .map(|(key, value)| (key.get_ref().to_string(), node_of(value, line)))
-        .collect()
 }
 
 fn node_of(value: &Spanned<DeValue>, line: &impl Fn(usize) -> usize) -> Node {
@@ -253,6 +277,6 @@ impl<'de> Visitor<'de> for JsonNode {
             }
             table.insert(key, value);
         }
-        bare(Value::Table(table))
+        bare(Value::Table(table.into_iter().collect()))
     }
 }

@@ -72,8 +72,12 @@ fn verdict_line(checked: &Verification) -> String {
 /// How much was checked; `None` without a plan.
 fn extent(checked: &Verification) -> Option<String> {
     let evaluation = checked.evaluation.as_ref()?;
+    let out_of_reach = match checked.out_of_reach {
+        0 => String::new(),
+        count => format!("; {} out of reach", counted(count, "target")),
+    };
     Some(format!(
-        "{} plan, {} until {} s; {}, {} of land",
+        "{} plan, {} until {} s; {}, {} of land{out_of_reach}",
         checked.planner,
         counted(checked.pieces, "piece"),
         tenths(evaluation.duration),

@@ -199,6 +199,7 @@ pub(super) fn bare(
         stay: None,
         alternatives: Vec::new(),
         targets: Vec::new(),
+        out_of_reach: Arc::default(),
         planner: kind,
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
         settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),

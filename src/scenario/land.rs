@@ -208,6 +208,6 @@ fn positions<'a>(field: Field<'a>) -> Vec<Field<'a>> {
 }
 
 /// A table that was read before, to find the place of a value again.
-fn table<'a>(root: &mut Table<'a>, key: &str) -> Option<Table<'a>> {
+fn table<'a>(root: &mut Table<'a>, key: &'static str) -> Option<Table<'a>> {
     root.take(key)?.table("a table")
 }

@@ -8,6 +8,7 @@ mod land;
 mod limits;
 mod memory;
 mod open_water;
+mod out_of_reach;
 mod plane;
 mod planner;
 mod route;
@@ -21,6 +22,7 @@ pub use land::Land;
 pub use limits::FILE_MEBIBYTES;
 pub use memory::Memory;
 pub(crate) use open_water::{open_water, simulation_of, true_motion};
+pub use out_of_reach::{DistantTarget, MOST_WITHOUT_SELECTION, OutOfReach};
 pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
@@ -81,6 +83,8 @@ pub struct Scenario {
     pub alternatives: Vec<Vec<Vector>>,
     /// The targets.
     pub targets: Vec<Target>,
+    /// Targets that no plan considers; none before [`Self::set_aside_out_of_reach`].
+    pub out_of_reach: Arc<OutOfReach>,
     /// The planner.
     pub planner: &'static dyn Planner,
     /// The planner's objective.

@@ -102,7 +102,7 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     let met = met_at_rest(scenario);
     let is_met = !met.is_empty();
     findings.extend(met);
-    if targets.is_empty() {
+    if targets.is_empty() && scenario.out_of_reach.targets.is_empty() {
         findings.push("no targets".to_owned());
     } else if !is_met && scenario.stay.is_none() && targets.iter().all(|t| t.matters != MEETS) {
         findings.push("no target in the way: own ship may hold its course".to_owned());
@@ -148,7 +148,8 @@ fn top_speed(target: &Target) -> f64 {
 
 fn against_declared(scenario: &Scenario, declared: &Declared) -> Vec<String> {
     let mut findings = Vec::new();
-    let found = scenario.targets.len();
+    let distant = &scenario.out_of_reach.targets;
+    let found = scenario.targets.len() + distant.len();
     if let Some(ships) = declared.ships
         && ships != found
     {
@@ -159,7 +160,10 @@ fn against_declared(scenario: &Scenario, declared: &Declared) -> Vec<String> {
         };
         findings.push(format!("{what}: {ships} declared, {found} found"));
     }
-    for (target, stated) in scenario.targets.iter().zip(&declared.sides) {
+    let planned_for = |index: &usize| !distant.iter().any(|target| target.index == *index);
+    let sides = declared.sides.iter().enumerate();
+    let sides = sides.filter(|(index, _)| planned_for(index));
+    for (target, (_, stated)) in scenario.targets.iter().zip(sides) {
         let bearing = relative_bearing(&scenario.own_ship.pose, target.position_at(0.0));
         let off = bearing.abs().min(std::f64::consts::PI - bearing.abs());
         let side = if bearing > 0.0 {

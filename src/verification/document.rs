@@ -29,6 +29,7 @@ impl VerifiedPlanDocument {
                     tcpa_s: finite(passage.tcpa),
                 })
                 .collect(),
+            out_of_reach: checked.out_of_reach,
             min_land_distance_m: land.map(|e| e.min_land_distance),
             min_land_distance_t_s: land.map(|e| e.min_land_distance_time),
             ..Self::default()

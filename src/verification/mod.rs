@@ -10,6 +10,7 @@
 //!   continuous time, with certified distances ([`crate::evaluation`]);
 //! - that the sets are large enough: each contains the target's hull, the margin and the
 //!   uncertainty, and every velocity that the target may take;
+//! - that the targets which the plan does not consider stay out of its reach until the horizon;
 //! - that the reported properties are those of the motion: safety, costs, risks, samples and least
 //!   distances.
 //!
@@ -21,6 +22,7 @@ mod coverage;
 mod document;
 mod figures;
 mod motion;
+mod out_of_reach;
 mod outcome;
 mod reached;
 mod risk;
@@ -68,6 +70,8 @@ pub struct Verification {
     pub sets: usize,
     /// Number of land polygons.
     pub land: usize,
+    /// Number of targets that the plan does not consider.
+    pub out_of_reach: usize,
     /// All violations, in order of time.
     pub violations: Vec<Violation>,
 }
@@ -162,6 +166,7 @@ fn verified(claim: &Claim, evaluation: Option<Evaluation>) -> Verification {
     let mut violations = claim.faults.clone();
     let request = request(claim);
     violations.extend(coverage::check(claim));
+    violations.extend(out_of_reach::check(claim));
     violations.extend(outcome::releases(claim));
     violations.extend(outcome::check(claim));
     violations.extend(outcome::method(claim));
@@ -199,6 +204,7 @@ fn verified(claim: &Claim, evaluation: Option<Evaluation>) -> Verification {
         pieces: claim.motion.as_ref().map_or(0, ClaimedMotion::pieces),
         sets: claim.sets.len(),
         land: claim.land.len(),
+        out_of_reach: (claim.file.out_of_reach.as_ref()).map_or(0, |listed| listed.rows.len()),
         evaluation,
         violations,
     }

@@ -8,19 +8,20 @@ use serde_json::Value;
 
 use super::program::{Folder, HEAD_ON, document, run, stdout};
 
-struct Schema {
+/// Schema of a document, as the program prints it.
+pub struct Schema {
     kind: &'static str,
     validator: Validator,
 }
 
 impl Schema {
-    fn of(kind: &'static str) -> Self {
+    pub fn of(kind: &'static str) -> Self {
         let schema: Value = document(&run(&format!("schema {kind}")).success());
         let validator = jsonschema::validator_for(&schema).expect("a schema");
         Self { kind, validator }
     }
 
-    fn assert_holds(&self, document: &Value, name: &str) {
+    pub fn assert_holds(&self, document: &Value, name: &str) {
         let faults = self.validator.iter_errors(document);
         let faults: Vec<String> = faults
             .map(|fault| format!("{}: {fault:.200}", fault.instance_path()))

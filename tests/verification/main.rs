@@ -8,5 +8,6 @@ mod documents;
 mod extremes;
 mod input;
 mod motion;
+mod out_of_reach;
 mod risk;
 mod unsound;

@@ -48,8 +48,10 @@ impl Contents {
         match text.chars().next() {
             Some('{') => in_json(text, assumed),
             Some('<') => in_xml(text, assumed),
+            // the reader of scenarios says the rest, and parses a large file alone
+            _ if !text.contains(STRATA) && rows(text).is_none() => Ok(Self::Scenario),
             _ => match from_toml(text, &Faults::default()) {
-                Some(root) if root.get("strata").is_some() => Ok(Self::Other(
+                Some(root) if root.get(STRATA).is_some() => Ok(Self::Other(
                     "the specification of a campaign, which `searoom campaign run` reads",
                 )),
                 Some(_) => Ok(Self::Scenario),
@@ -60,6 +62,9 @@ impl Contents {
         }
     }
 }
+
+/// The key by which the specification of a campaign is known.
+const STRATA: &str = "strata";
 
 /// The formats that are read.
 const READ: &str = "a scenario file (TOML), DNV's traffic situations or Imazu's cases (JSON), or \

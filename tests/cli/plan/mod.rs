@@ -1,5 +1,6 @@
 //! `searoom plan` as a user runs it.
 
+mod out_of_reach;
 mod outcomes;
 mod previous;
 mod routes;

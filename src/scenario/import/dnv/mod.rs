@@ -283,11 +283,8 @@ fn other(
     } else {
         track
     };
-    nav_status(
-        field,
-        fixed.name.as_deref().unwrap_or(field.path()),
-        remarks,
-    );
+    let place = field.path();
+    nav_status(field, fixed.name.as_deref().unwrap_or(&place), remarks);
     Some((fixed.name, fixed.hull, track))
 }
 

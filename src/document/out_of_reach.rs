@@ -1,0 +1,42 @@
+//! Part of the plan document on targets out of reach, see docs/documents.md.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::{DistantTarget, Scenario};
+
+/// Targets that the plan does not consider: none of them comes near own ship.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OutOfReachDocument {
+    /// Number of the scenario's targets: these and those in `targets` of the plan.
+    pub of_targets: usize,
+    pub until_s: f64,
+    pub apart_m: f64,
+    pub rows: Vec<DistantRow>,
+}
+
+/// A target in one line: its name; east and north at t = 0, metres; its greatest speed, m/s; the
+/// radius about that place which holds its hull at t = 0, metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DistantRow(pub String, pub f64, pub f64, pub f64, pub f64);
+
+impl OutOfReachDocument {
+    /// `None` where every target is planned for.
+    pub(super) fn of(scenario: &Scenario) -> Option<Self> {
+        let found = &scenario.out_of_reach;
+        if found.targets.is_empty() {
+            return None;
+        }
+        let row = |target: &DistantTarget| {
+            let place = target.position;
+            let (speed, radius) = (target.greatest_speed, target.radius);
+            DistantRow(target.name.clone(), place.x, place.y, speed, radius)
+        };
+        Some(Self {
+            of_targets: scenario.targets.len() + found.targets.len(),
+            until_s: found.until,
+            apart_m: found.apart,
+            rows: found.targets.iter().map(row).collect(),
+        })
+    }
+}
