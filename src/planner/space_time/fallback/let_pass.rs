@@ -5,8 +5,8 @@
 //! ```
 //!
 //! In narrow water one manoeuvre may not comply with the rules toward a ship and pass the next one
-//! as well. Own ship then lets the first one pass (Rule 8(e)), where Rule 14 or 15 asks for a turn
-//! after a sidestep to that side.
+//! as well. Own ship then lets the first one pass (Rule 8(e)). Where the rules ask for a turn to a
+//! side, it also tries a sidestep to that side before it slows down.
 
 use crate::colregs::Encountered;
 use crate::frame::Side;
@@ -21,7 +21,7 @@ use crate::planner::{Plan, PlanMethod, Problem};
 use crate::trajectory::{Segment, Trajectory};
 
 /// Places at which own ship slows down, as fractions of the distance to the first set on the route.
-/// The last place costs the least time.
+/// The farthest place comes first, because it costs the least time.
 const PLACES: [f64; 5] = [0.9, 0.75, 0.5, 0.25, 0.0];
 
 /// Largest number of speeds, own ship's greatest included.
