@@ -199,6 +199,7 @@ fn scene(
             time_weight: TIME_WEIGHT,
             arrival_hold: 60.0,
             stay: None,
+            out_of_reach: Default::default(),
             max_risk: 0.0,
             deadline: DEADLINE,
             limits: std::sync::Arc::new(Thresholds::STANDARD),
