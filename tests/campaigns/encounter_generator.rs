@@ -191,6 +191,7 @@ fn scene(
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED]).ok()?,
             alternatives: Vec::new(),
             targets: targets.collect(),
+            out_of_reach: std::sync::Arc::default(),
             planner: DEFAULT_PLANNER,
             objective: Objective::SpaceTimeError,
             settings: PlannerSettings::at_length(OWN_HULL.length),
