@@ -17,7 +17,7 @@ pub const MOST_WITHOUT_SELECTION: usize = 256;
 /// reaches as far.
 const ROOM_LENGTHS: f64 = 50.0;
 
-/// Decimals to which speeds (m/s) and radii (m) are rounded up.
+/// Steps per m/s and per metre to which speeds and radii are rounded up, so that rows are short.
 const SPEED_STEPS: f64 = 1e3;
 const RADIUS_STEPS: f64 = 10.0;
 
