@@ -46,9 +46,9 @@ pub fn lint(
     }
 }
 
-/// The findings of [`lint`] alone: who is concerned, what was found, and what it probably means. Many
-/// targets out of reach are one finding, without an examination of each. Those that the scenario
-/// lists as such already are none.
+/// The findings of [`lint`] alone: who is concerned, what was found, and what it probably means.
+/// Many targets out of reach are one finding, without an examination of each. Those that the
+/// scenario lists as such already are none.
 pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
     let mut near = scenario.clone();
     near.set_aside_out_of_reach();
