@@ -30,13 +30,13 @@ pub struct VerifiedPlanDocument {
     pub violations: Vec<ViolationDocument>,
     pub targets: Vec<MarginDocument>,
     /// Number of targets that the plan does not consider.
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default, skip_serializing_if = "is_zero_count")]
     pub out_of_reach: usize,
     pub min_land_distance_m: Option<f64>,
     pub min_land_distance_t_s: Option<f64>,
 }
 
-fn is_none(count: &usize) -> bool {
+fn is_zero_count(count: &usize) -> bool {
     *count == 0
 }
 

@@ -12,12 +12,12 @@ use crate::tolerance::SIGMAS;
 /// its document has all encounters.
 pub const MOST_WITHOUT_SELECTION: usize = 256;
 
-/// Room between the hulls in lengths of the longer ship, besides the distance at which there is risk
-/// of collision. No default ship domain, no threshold of the rules and no clearance of a planner
-/// reaches as far.
+/// Room between the hulls in lengths of the longer ship, besides the distance at which there is
+/// risk of collision. No default ship domain, no threshold of the rules and no clearance of a
+/// planner reaches as far.
 const ROOM_LENGTHS: f64 = 50.0;
 
-/// Decimals to which speeds (m/s) and radii (m) are rounded up.
+/// Steps per m/s and per metre to which speeds and radii are rounded up, so that rows are short.
 const SPEED_STEPS: f64 = 1e3;
 const RADIUS_STEPS: f64 = 10.0;
 
@@ -111,14 +111,14 @@ impl OwnReach {
 }
 
 impl Scenario {
-    /// Moves the targets that cannot come near own ship before the horizon from [`Self::targets`] to
-    /// [`Self::out_of_reach`], where there are more than [`MOST_WITHOUT_SELECTION`] targets.
+    /// Moves the targets that cannot come near own ship before the horizon from [`Self::targets`]
+    /// to [`Self::out_of_reach`], where there are more than [`MOST_WITHOUT_SELECTION`] targets.
     ///
-    /// A target is out of reach if a disc around it that grows with its greatest speed stays clear of
-    /// the disc that own ship can reach at its own greatest speed. The room between the two exceeds
-    /// the risk distance, ship domains and clearances. Such a target has no role and no risk, so a
-    /// plan is the same without it. A target with a role from before stays. Motions under forces have
-    /// no greatest speed, so there every target stays. O(targets).
+    /// A target is out of reach if a disc around it that grows with its greatest speed stays clear
+    /// of the disc that own ship can reach at its own greatest speed. The room between the two
+    /// exceeds the risk distance, ship domains and clearances. Such a target has no role and no
+    /// risk, so a plan is the same without it. A target with a role from before stays. Motions
+    /// under forces have no greatest speed, so there every target stays. O(targets).
     pub fn set_aside_out_of_reach(&mut self) {
         let under_forces = matches!(self.planner.facts().minimises, Minimises::Own(_))
             && !self.planner.facts().follows_paths;

@@ -15,6 +15,7 @@ use crate::pipeline::{TargetSets, planned_sets};
 use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
+use crate::text::counted;
 
 const INSTANTS: usize = 400;
 
@@ -46,12 +47,29 @@ pub fn lint(
 }
 
 /// The findings of [`lint`] alone: who is concerned, what was found, and what it probably means.
+/// Many targets out of reach are one finding, without an examination of each. Those that the
+/// scenario lists as such already are none.
 pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
+<<<<<<< HEAD
     all(
         scenario,
         declared,
         &targets(scenario, &planned_sets(scenario)),
     )
+=======
+    let mut near = scenario.clone();
+    near.set_aside_out_of_reach();
+    let mut findings = all(scenario, declared, &targets(&near, &sets(&near)));
+    let distant = &near.out_of_reach.targets;
+    if let (Some(first), true) = (distant.first(), scenario.out_of_reach.targets.is_empty()) {
+        findings.push(format!(
+            "{}, the first of them '{}': never matter, out of reach within the horizon",
+            counted(distant.len(), "target"),
+            first.name
+        ));
+    }
+    findings
+>>>>>>> b0cef250a266908bd6ee85ac696a610947663b1f
 }
 
 fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> {
@@ -102,7 +120,7 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     let met = met_at_rest(scenario);
     let is_met = !met.is_empty();
     findings.extend(met);
-    if targets.is_empty() && scenario.out_of_reach.targets.is_empty() {
+    if scenario.targets.is_empty() && scenario.out_of_reach.targets.is_empty() {
         findings.push("no targets".to_owned());
     } else if !is_met && scenario.stay.is_none() && targets.iter().all(|t| t.matters != MEETS) {
         findings.push("no target in the way: own ship may hold its course".to_owned());

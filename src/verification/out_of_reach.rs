@@ -1,8 +1,8 @@
 //! Checks that the targets which a plan does not consider are out of its reach.
 //!
 //! A disc around each such target holds its hull and grows with its greatest speed. A disc around
-//! own ship's start holds the whole motion, because no point of it is farther away than the way to it
-//! is long. Two discs that stay apart until the horizon prove that the hulls do.
+//! own ship's start holds the whole motion, because no point of it is farther away than the way to
+//! it is long. Two discs that stay apart until the horizon prove that the hulls do.
 
 use std::collections::HashSet;
 
@@ -90,8 +90,8 @@ fn reaches(
     ))
 }
 
-/// Upper bound of the distance of own ship's centre from its start, metres. Without a motion, the way
-/// at its greatest speed.
+/// Upper bound of the distance of own ship's centre from its start, metres. Without a motion, the
+/// way at its greatest speed.
 fn farthest(claim: &Claim, until: f64) -> f64 {
     let start = claim.own.pose.position;
     match &claim.motion {

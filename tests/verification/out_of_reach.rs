@@ -219,8 +219,8 @@ fn every_alteration_of_the_rows_is_rejected() {
         assert!(!found.verified(), "number {index}");
     }
     let mut gone = sound.clone();
-    let trajectory = gone.as_object_mut().expect("a document");
-    trajectory.remove("out_of_reach");
+    let keys = gone.as_object_mut().expect("a document");
+    keys.remove("out_of_reach");
     // a list that is left out altogether cannot be missed: the input is taken as given
     assert!(verify(&gone.to_string()).expect("a plan").verified());
 }

@@ -1,7 +1,7 @@
 //! Scenarios with so many targets that those out of reach are listed only.
 
 use crate::docs::documents::{PAGE, keys_of, named};
-use crate::program::{Folder, document, run, says, stdout};
+use crate::program::{Folder, document, run, says, stderr, stdout};
 use crate::schemas::Schema;
 
 /// Head-on with one ship, and 400 others 50 km away.
@@ -37,4 +37,14 @@ fn targets_out_of_reach_are_named_in_every_output() {
     assert_eq!(verified["plans"][0]["out_of_reach"], 400);
     let suite = document(&run(&format!("suite {file} --json")).success());
     assert_eq!(suite["runs"][0]["targets"], 401);
+}
+
+#[test]
+fn check_counts_targets_out_of_reach() {
+    let folder = Folder::new();
+    let file = folder.write("many.toml", scene());
+    let checked = run(&format!("check {file}")).success();
+    let note = "400 targets, the first of them 'far 0': never matter";
+    says(&stderr(&checked), note);
+    assert_eq!(stdout(&checked), format!("{file}: ok\n"));
 }
