@@ -474,9 +474,13 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
     };
     let horizon = reading.horizon;
     let stays = table.take("stay_until_s").map(|field| {
-        let now = time?;
-        let allowed = Range::between(now, now + horizon?).in_unit("s (the end of 'horizon_s')");
-        Some(field.number(allowed)? - now)
+        let (until, now) = (field.number(limits::STAY)?, time?);
+        let last = now + horizon?;
+        if !(until >= now && until <= last) {
+            let allowed = format_args!("{now} s, the present, to {last} s, the end of horizon_s");
+            return field.reject(until, allowed);
+        }
+        Some(until - now)
     });
     table.finish();
     let stay = match stays {

@@ -55,6 +55,8 @@ pub(super) const CLOCK: Range = Range::between(0.0, 1e10);
 pub(super) fn until(now: f64) -> Range {
     Range::between(CLOCK.low, now).in_unit("(the present, 'time_s')")
 }
+/// Seconds on that clock, up to the end of the longest horizon.
+pub(super) const STAY: Range = Range::between(0.0, 1.0001e10);
 /// Seconds after arrival.
 pub(super) const HOLD: Range = Range::between(0.0, 1e6);
 /// m/s on a leg.
