@@ -33,7 +33,7 @@ macro_rules! example {
 ///
 /// Exit status; the highest of a run wins:
 ///   0    every scenario has a plan that is verified and safe
-///   1    a scenario has no safe plan, or `verify` rejects a plan
+///   1    a scenario has no safe plan that arrives, or `verify` rejects a plan
 ///   2    bad input or usage, or a result that cannot be written
 ///   3    a fault of the program
 ///   130  a simulation or a campaign was ended by Ctrl-C

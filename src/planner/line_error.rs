@@ -183,7 +183,9 @@ pub(crate) fn integral(
         (time, nearest) = (next.0, index);
         changes = changes.checked_sub(1)?;
     }
-    Some(sum)
+    // on the desired trajectory rounding may leave less than nothing, and a search has no edge of a
+    // negative cost; a NaN stays one
+    Some(if sum < 0.0 { 0.0 } else { sum })
 }
 
 /// Legs that may be nearest at some time of a line. A space-time distance changes by at most the

@@ -234,6 +234,11 @@ pub fn bound_line(plan: &PlanDocument) -> Option<String> {
         ),
         false => String::new(),
     };
+    // rounded down, because no motion is below what is said; tenths below a thousand
+    let least = match least < 1e3 {
+        true => (10.0 * least).floor() / 10.0,
+        false => least.floor(),
+    };
     let least = square_metres(least);
     Some(format!(
         "  {:<13}no motion around these sets has a J below {least} m²{above}",

@@ -50,16 +50,9 @@ pub fn lint(
 /// Many targets out of reach are one finding, without an examination of each. Those that the
 /// scenario lists as such already are none.
 pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
-<<<<<<< HEAD
-    all(
-        scenario,
-        declared,
-        &targets(scenario, &planned_sets(scenario)),
-    )
-=======
     let mut near = scenario.clone();
     near.set_aside_out_of_reach();
-    let mut findings = all(scenario, declared, &targets(&near, &sets(&near)));
+    let mut findings = all(scenario, declared, &targets(&near, &planned_sets(&near)));
     let distant = &near.out_of_reach.targets;
     if let (Some(first), true) = (distant.first(), scenario.out_of_reach.targets.is_empty()) {
         findings.push(format!(
@@ -69,7 +62,6 @@ pub fn findings(scenario: &Scenario, declared: &Declared) -> Vec<String> {
         ));
     }
     findings
->>>>>>> b0cef250a266908bd6ee85ac696a610947663b1f
 }
 
 fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> {

@@ -1,5 +1,7 @@
 //! Tests of distant conflicts along a route of many legs.
 
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::{Compliance, Scenario};
@@ -41,6 +43,44 @@ fn scenario(legs: usize) -> Scenario {
         );
     }
     parsed(&text)
+}
+
+/// In an empty sea the desired trajectory itself is the plan, also where each leg has another of own
+/// ship's speeds: its cost is nothing but rounding, which must not be taken for a fault.
+#[test]
+fn a_schedule_at_own_speeds_is_sailed_as_it_is() {
+    let mut rng = ChaCha8Rng::seed_from_u64(20);
+    for case in 0..120 {
+        let legs = rng.random_range(2..=4);
+        let (mut north, mut points, mut speeds) = (0.0, vec![0.0], Vec::new());
+        for _ in 0..legs {
+            north += rng.random_range(500.0..3_000.0);
+            points.push(north);
+            speeds.push(rng.random_range(3.0..6.0));
+        }
+        let points = points
+            .iter()
+            .map(|n| format!("{{ east_m = 0.0, north_m = {n} }}"));
+        let points: Vec<String> = points.collect();
+        let text = format!(
+            "title = \"schedule\"\nhorizon_s = 6000.0\n\
+             mission = {{ waypoints = [{}], leg_speeds_mps = {speeds:?} }}\n[own_ship]\n\
+             position = {{ east_m = 0.0, north_m = 0.0 }}\ncourse_deg = 0.0\nspeed_mps = 5.0\n\
+             length_m = 80.0\nbeam_m = 14.0\nturning_radius_m = 240.0\n",
+            points.join(", ")
+        );
+        let run = pipeline::run(parsed(&text));
+        let outcome = &run.planned.outcome;
+        assert!(
+            matches!(outcome, Outcome::Solved(_)),
+            "{case}: {outcome:?}\n{text}"
+        );
+        let error = run.evaluation.map(|evaluation| evaluation.space_time_error);
+        assert!(
+            error.is_some_and(|error| error.abs() < 1e-3),
+            "{case}: {error:?}"
+        );
+    }
 }
 
 /// Tests conflicts far apart. One manoeuvre around all of them would cost hundreds of times as
