@@ -302,7 +302,13 @@ fn speeds_by_time(legs: &mut [RouteLeg], calls: &[Call], remarks: &mut Remarks) 
         };
         let (leaves, between) = (calls[from].leaves(), &mut legs[from..to]);
         from = to;
-        let Some(leaves) = leaves else { continue };
+        let Some(leaves) = leaves else {
+            remarks.note(
+                format_args!("times of waypoint {}", to + 1),
+                "not used: no waypoint before it has a time",
+            );
+            continue;
+        };
         let mut left = seconds(comes - leaves);
         let mut length = 0.0;
         for (index, leg) in between.iter().enumerate() {
