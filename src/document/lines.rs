@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::parts::{ImprovementDocument, PlanMethod, SearchStatsDocument, TimingDocument};
+use super::plan::stay::Stay;
 use super::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument, MONITORS,
     ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
@@ -125,7 +126,8 @@ pub(crate) fn plan_lines(plan: &PlanDocument, times: Times) -> Vec<(&'static str
         let time = times.at(violation.t_s.unwrap_or(f64::NAN), 1);
         add("violation", format!("{} (at {time})", violation.what));
     }
-    if plan.trajectory.is_some() && !plan.obstacles.is_empty() {
+    let assumes = !plan.obstacles.is_empty() || plan.out_of_reach.is_some();
+    if plan.trajectory.is_some() && assumes {
         add("assumes", ASSUMED.to_owned());
     }
     if let Some(control) = &plan.optimal_control {
@@ -338,8 +340,13 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
     }
     if let Some(listed) = &plan.out_of_reach {
         let targets = counted(listed.rows.len(), "target");
-        let (apart, until) = (significant(listed.apart_m), times.at(listed.until_s, 0));
-        let reason = format!("at any speed none comes within {apart} m of own hull until {until}");
+        let until = times.at(listed.until_s.floor(), 0);
+        // rounded down, because none comes nearer
+        let apart = listed.apart_m.floor();
+        let reason = format!(
+            "up to its assumed greatest speed none comes within {apart:.0} m of own hull and its \
+             margin until {until}"
+        );
         add(
             "target",
             format!("{targets} out of reach, not planned for: {reason}; no role, no risk"),
@@ -584,16 +591,19 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
         .map(|departure| departure.words(times));
     add("manoeuvre", departure.unwrap_or_else(none));
     let error = square_metres(cost.space_time_error_m2);
-    let by_length = cost.space_time_error_arc_length_m2;
-    let by_length = square_metres(by_length.unwrap_or(f64::NAN));
-    match (plan.stay(), cost.space_time_error_arc_length_m2) {
-        (Some(stay), _) => {
-            add("J", format!("{error} m² until the stay begins"));
-            add("stay", stay.words(times));
-        }
+    let stay = plan.stay();
+    let begins = stay.as_ref().is_some_and(Stay::begins);
+    match cost.space_time_error_arc_length_m2 {
+        _ if begins => add("J", format!("{error} m² until the stay begins")),
         // a motion of no length has none
-        (None, None) => add("J", format!("{error} m²")),
-        (None, Some(_)) => add("J", format!("{error} m² ({by_length} m² by arc length)")),
+        None => add("J", format!("{error} m²")),
+        Some(by_length) => {
+            let by_length = square_metres(by_length);
+            add("J", format!("{error} m² ({by_length} m² by arc length)"));
+        }
+    }
+    if let Some(stay) = stay {
+        add("stay", stay.words(times));
     }
     let (lasts, length) = (times.at(cost.duration_s, 1), significant(cost.length_m));
     let way = format!("{lasts} and {length} m");

@@ -10,8 +10,11 @@ use crate::scenario::{DistantTarget, Scenario};
 pub struct OutOfReachDocument {
     /// Number of the scenario's targets: these and those in `targets` of the plan.
     pub of_targets: usize,
+    /// Seconds from t = 0, not before the horizon.
     pub until_s: f64,
+    /// Lower bound until then of the distance between the hulls, less own safety margin, metres.
     pub apart_m: f64,
+    /// In the order of the scenario.
     pub rows: Vec<DistantRow>,
 }
 

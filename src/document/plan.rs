@@ -6,7 +6,7 @@ pub(super) mod legs;
 pub(super) mod path_time;
 pub(super) mod phases;
 mod reasons;
-mod stay;
+pub(super) mod stay;
 
 use control::{ControlDocument, control};
 use path_time::{PathTimeDocument, path_time_document};

@@ -45,7 +45,7 @@ use crate::frame::Side;
 use crate::geometry::Polygon;
 use crate::parallel;
 use crate::tolerance;
-use crate::trajectory::{Segment, before_rest_at};
+use crate::trajectory::{Segment, before_stay};
 use crate::vessel::Hull;
 
 /// One violated requirement.
@@ -187,8 +187,8 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let lies = segments.first().map(|first| first.between(0.0, 0.0));
     let before = match request.stay {
         None => segments,
-        Some(_) => match before_rest_at(request.desired.end(), segments) {
-            // she lies there from the start
+        Some(_) => match before_stay(request.desired, segments) {
+            // it lies there from the start
             [] => lies.as_slice(),
             before => before,
         },
@@ -202,7 +202,7 @@ pub fn evaluate(request: &Request) -> Evaluation {
         counted,
         space_time_error: or_nan(space_time_error),
         arc_length_error: or_nan(cost::arc_length_error(
-            segments,
+            before,
             request.desired,
             request.time_weight,
         )),

@@ -50,7 +50,8 @@ pub struct Request<'a> {
     /// do not affect the verdict.
     pub arrival_hold: f64,
     /// Time until which own ship lies at the last waypoint after arrival, seconds; `None` where the
-    /// motion ends there. Costs and delay are those before her first rest there.
+    /// motion ends there. Costs and delay are those before its first rest there; sets, hulls
+    /// and land are judged until the stay ends.
     pub stay: Option<f64>,
     /// `q` of paper eq. (30), m²/s².
     pub time_weight: f64,

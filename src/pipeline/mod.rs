@@ -170,8 +170,8 @@ pub fn planned_sets(scenario: &Scenario) -> Vec<TargetSets> {
 /// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
 ///
 /// Under the rules the run's scenario has a risk of collision with every ship whose set own ship
-/// alters for, and with those toward which the first plan would break rules
-/// ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
+/// alters for, and with those toward which the first plan would break rules, where a plan with these
+/// roles relaxes no more and breaks fewer ([`ShipTrack::risk_distance`](crate::target::ShipTrack::risk_distance)).
 pub fn run(mut scenario: Scenario) -> Run {
     let mut sets = sets(&scenario);
     let mut without = None;

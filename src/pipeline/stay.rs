@@ -1,21 +1,23 @@
-//! Own ship stays at the last waypoint after her arrival.
+//! Own ship stays at the last waypoint after its arrival.
 //!
 //! ```text
 //! answer ─► rest until the stay ends ─► clear? ─► done
-//!                                         └─► arrive later, or clear the place and return ─► else inside
+//!                                         └─► arrive later, or clear the place and return,
+//!                                             else smaller domains, else inside
 //! ```
 
 use super::entered;
-use super::relaxation::{Attempt, RelaxationLevel, Relaxer};
+use super::relaxation::{Attempt, RelaxationLevel, Relaxer, out_of_time};
 use super::rules;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{NoPlan, Outcome, Plan, PlanMethod, Planned, whole_space_time_error};
+use crate::scenario::Compliance;
 use crate::tolerance::TOUCH_M;
-use crate::trajectory::{Segment, Trajectory, before_rest_at};
+use crate::trajectory::{Segment, Trajectory, before_stay, rested};
 
 impl Relaxer<'_> {
     /// The answer with the rest at the last waypoint until the stay ends. Where sets pass over the
-    /// place, own ship arrives later, or clears it and returns; where no such motion is clear, she
+    /// place, own ship arrives later, or clears it and returns; where no such motion is clear, it
     /// stays inside the sets, which the level says. An answer that does not arrive is left as it is.
     pub(super) fn with_stay(&self, answer: Attempt) -> Attempt {
         let Some(until) = self.scenario.stay else {
@@ -25,97 +27,130 @@ impl Relaxer<'_> {
             return answer;
         };
         let arrival = plan.trajectory.segments().to_vec();
-        let Some(whole) = self.rested(plan, &arrival, until) else {
+        let Some(whole) = self.with_rest(plan, until) else {
             return answer;
         };
         let motion = whole.trajectory.segments();
-        let rest = &motion[before_rest_at(self.scenario.desired.end(), motion).len()..];
-        let Some((target, from)) = first_contact(&answer.obstacles, rest) else {
+        let rest = motion[before_stay(&self.scenario.desired, motion).len()..].to_vec();
+        let Some((target, from)) = first_contact(&answer.obstacles, &rest) else {
             return with_plan(answer, whole);
         };
-        let why = NoPlan::StayCovered {
-            target,
-            from,
-            until,
-        };
-        // a motion that enters sets anyway is not made longer by a search
+        let is_late = matches!(answer.planned.outcome, Outcome::Deadline(_));
         let found = match answer.level < RelaxationLevel::Inside {
-            true => self.off_station(&answer, &arrival, until),
+            true => self.clear_stay(&answer, &arrival, &rest, &whole, until),
+            // a motion that enters sets anyway is not made longer by a search
             false => None,
         };
-        let stayed = found.unwrap_or_else(|| self.staying_inside(answer, whole));
-        Attempt {
-            why: stayed.why.clone().or(Some(why)),
-            ..stayed
+        let mut stayed = found.unwrap_or_else(|| self.staying_inside(&answer, whole));
+        let gives_up = stayed.level > answer.level || !has_arrived(&stayed);
+        if gives_up || stayed.why.is_none() {
+            stayed.why = Some(NoPlan::StayCovered {
+                target,
+                from,
+                until,
+            });
+        }
+        match is_late || self.time_left().is_zero() {
+            true => out_of_time(stayed),
+            false => stayed,
         }
     }
 
-    /// The plan of an answer that is off the place while sets pass over it: against its own sets, else
-    /// against the hard ones and as much of the domains as the motion is clear of. Of two, the one
-    /// that breaks fewer rules, then the one that returns, then the first.
-    fn off_station(&self, answer: &Attempt, arrival: &[Segment], until: f64) -> Option<Attempt> {
-        let planner = self.scenario.planner;
-        let best = |obstacles: &[Obstacle]| {
-            let problem = self.problem(obstacles);
-            let plans = planner.off_station(&problem, arrival, until).into_iter();
-            let plans = plans.filter_map(|plan| {
-                let motion = plan.trajectory.segments().to_vec();
-                let broken = rules::breaks(self.scenario, &plan.trajectory);
-                Some((broken, self.rested(&plan, &motion, until)?))
-            });
-            let best = plans.min_by_key(|(broken, plan)| (*broken, !plan.arrives()));
-            best.map(|(_, plan)| plan)
+    /// A clear stay: off the place while the answer's sets pass over it, else at rest in smaller
+    /// domains, else off the place against the hard sets and as much of the domains as is clear.
+    fn clear_stay(
+        &self,
+        answer: &Attempt,
+        arrival: &[Segment],
+        rest: &[Segment],
+        whole: &Plan,
+        until: f64,
+    ) -> Option<Attempt> {
+        if let Some(found) = self.off_station(answer, &answer.obstacles, arrival, until) {
+            return Some(found);
+        }
+        let hard = self.against_hard_sets(answer.risk);
+        let found = match first_contact(&hard, rest) {
+            None => with_plan(answer.clone(), whole.clone()),
+            Some(_) => self.off_station(answer, &hard, arrival, until)?,
         };
-        // the search of the answer did not make this motion
-        let other = |plan| Attempt {
+        let level = RelaxationLevel::ReducedDomains.max(found.level);
+        let retained = self.retained_along(found.trajectory()?, answer.risk);
+        Some(self.clear_of(&found, &retained, level))
+    }
+
+    /// The motion off the place that breaks the fewest rules, of these the one that returns, and of
+    /// these the first. Where it breaks one, the level says that the rules are given up.
+    fn off_station(
+        &self,
+        answer: &Attempt,
+        obstacles: &[Obstacle],
+        arrival: &[Segment],
+        until: f64,
+    ) -> Option<Attempt> {
+        let problem = self.problem(obstacles);
+        let plans = self.scenario.planner.off_station(&problem, arrival, until);
+        let plans = plans.into_iter().filter_map(|plan| {
+            let plan = self.with_rest(&plan, until)?;
+            Some((rules::breaks(self.scenario, &plan.trajectory), plan))
+        });
+        let best = plans.min_by_key(|(broken, plan)| (*broken, !plan.arrives()));
+        let (broken, plan) = best?;
+        let gives_up_rules = broken > 0 && self.scenario.compliance == Compliance::Rules;
+        Some(Attempt {
+            level: match gives_up_rules {
+                true => answer.level.max(RelaxationLevel::Domains),
+                false => answer.level,
+            },
+            // the search of the answer did not make this motion
             planned: Planned::of(Outcome::Solved(plan)),
             ..answer.clone()
-        };
-        if let Some(plan) = best(&answer.obstacles) {
-            return Some(other(plan));
-        }
-        let level = RelaxationLevel::ReducedDomains.max(answer.level);
-        let hard = self.against_hard_sets(answer.risk);
-        let plan = best(&hard)?;
-        let retained = self.retained_along(&plan.trajectory, answer.risk);
-        let found = other(plan);
-        Some(self.clear_of(&found, &retained, level))
+        })
     }
 
     /// The stay inside the sets that pass over the place; nothing is claimed of each before it has
     /// passed.
-    fn staying_inside(&self, answer: Attempt, plan: Plan) -> Attempt {
+    fn staying_inside(&self, answer: &Attempt, plan: Plan) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|sets| sets.hard.clone()).collect();
         let is_up = || self.time_left().is_zero();
         let left = |set| entered::left_for_good(set, &plan.trajectory, is_up);
+        let released = hard.iter().map(left).collect();
+        let plan = Plan {
+            method: match plan.method {
+                // it is the rest that enters the sets
+                PlanMethod::Rules => PlanMethod::LeastHarm,
+                method => method,
+            },
+            ..plan
+        };
+        let planned = Planned {
+            stats: answer.planned.stats,
+            path_time: answer.planned.path_time.clone(),
+            ..Planned::of(Outcome::Solved(plan))
+        };
         Attempt {
             level: RelaxationLevel::Inside,
-            released: hard.iter().map(left).collect(),
+            released,
             reductions: self.given_up(&answer.reductions),
             obstacles: hard.clone(),
             whole: hard,
             risk: 0.0,
-            ..with_plan(answer, plan)
+            planned,
+            why: answer.why.clone(),
         }
     }
 
-    /// A plan with the rest at its end. Its cost is that of the motion before the first rest there,
-    /// because the desired trajectory ends with the arrival.
-    fn rested(&self, plan: &Plan, motion: &[Segment], until: f64) -> Option<Plan> {
-        let mut motion: Vec<Segment> = motion.to_vec();
-        let last = motion.last()?;
-        let (pose, end) = (last.end(), last.end_time());
-        if until > end {
-            motion.push(Segment::straight(pose, end, until - end, 0.0));
-        }
-        let moves = |segment: &Segment| segment.duration > 0.0;
-        if motion.iter().any(moves) {
-            motion.retain(moves);
+    /// A plan with the rest at its end. The cost of a motion off the place is that before its first
+    /// rest there, because the desired trajectory ends with the arrival.
+    fn with_rest(&self, plan: &Plan, until: f64) -> Option<Plan> {
+        let mut motion = rested(plan.trajectory.segments().to_vec(), until);
+        if motion.is_empty() {
+            motion = plan.trajectory.segments().to_vec();
         }
         let cost = match plan.method {
             PlanMethod::OffStation => {
                 let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
-                whole_space_time_error(desired, before_rest_at(desired.end(), &motion), weight)
+                whole_space_time_error(desired, before_stay(desired, &motion), weight)
             }
             _ => plan.cost,
         };
@@ -135,6 +170,10 @@ fn first_contact(obstacles: &[Obstacle], motion: &[Segment]) -> Option<(String, 
     };
     let contacts = obstacles.iter().filter_map(contact);
     contacts.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn has_arrived(attempt: &Attempt) -> bool {
+    attempt.planned.outcome.plan().is_some_and(Plan::arrives)
 }
 
 /// An attempt with another plan; a deadline stays one.

@@ -40,7 +40,7 @@ pub trait Planner: Sync {
     }
 
     /// Clear motions that go on from an `arrival` while sets pass over the last waypoint, or arrive
-    /// later, until a stay ends at `until`, seconds. None is known to a planner by default.
+    /// later, until a stay ends at `until`, seconds. By default a planner offers none.
     fn off_station(&self, _problem: &Problem, _arrival: &[Segment], _until: f64) -> Vec<Plan> {
         Vec::new()
     }

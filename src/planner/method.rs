@@ -29,8 +29,8 @@ pub enum PlanMethod {
     Remainder,
     /// Escape with the least harm from sets that own ship is in.
     LeastHarm,
-    /// Own ship slows or waits on its route, short of the sets: dynamic programming over its length
-    /// and time, without a graph.
+    /// Own ship slows or waits on its way, short of the sets or until ships have passed: dynamic
+    /// programming over length and time, or lower speeds in turn, without a graph.
     Waiting,
     /// Own ship lies at the last waypoint, leaves it while sets pass over it, and returns: a grid of
     /// departures, without a graph.

@@ -79,7 +79,7 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     faults
 }
 
-/// A ship that lies at her place needs a planner and a speed for that.
+/// A ship that lies at its place needs a planner and a speed for that.
 fn stay(scenario: &Scenario) -> Option<Fault> {
     let stay = scenario.stay?;
     let planner = scenario.planner.facts();

@@ -736,7 +736,7 @@ fn nearest(legs: &[RouteLeg], own: Vector, earth: &Georeference) -> Option<(usiz
     })
 }
 
-/// The path to a single waypoint: from own ship, or a millimetre where she is there.
+/// The path to a single waypoint: from own ship, or a millimetre where it is there.
 fn to_place(field: &Field, plane: &Plane, own: Option<Pose>) -> Option<Vec<Vector>> {
     let (place, own) = (plane.position(field)?, own?);
     let length = (place - own.position).norm();

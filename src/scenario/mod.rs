@@ -76,7 +76,7 @@ pub struct Scenario {
     pub acceleration: Option<f64>,
     /// The desired trajectory from the present on.
     pub desired: DesiredTrajectory,
-    /// Time until which own ship lies at the last waypoint after her arrival, seconds, at most the
+    /// Time until which own ship lies at the last waypoint after its arrival, seconds, at most the
     /// horizon; `None` where the mission ends with the arrival.
     pub stay: Option<f64>,
     /// Other allowed paths, metres; for the path-time planner.

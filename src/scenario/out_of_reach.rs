@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Scenario;
+use crate::colregs::Thresholds;
 use crate::frame::Vector;
 use crate::planner::Minimises;
 use crate::target::{DomainKind, Motion, Target};
@@ -13,8 +14,8 @@ use crate::tolerance::SIGMAS;
 pub const MOST_WITHOUT_SELECTION: usize = 256;
 
 /// Room between the hulls in lengths of the longer ship, besides the distance at which there is
-/// risk of collision. No default ship domain, no threshold of the rules and no clearance of a
-/// planner reaches as far.
+/// risk of collision. No default ship domain, no default threshold of the rules and no clearance of a
+/// planner reaches as far; larger thresholds of a file take its place.
 const ROOM_LENGTHS: f64 = 50.0;
 
 /// Steps per m/s and per metre to which speeds and radii are rounded up, so that rows are short.
@@ -122,7 +123,8 @@ impl Scenario {
     pub fn set_aside_out_of_reach(&mut self) {
         let under_forces = matches!(self.planner.facts().minimises, Minimises::Own(_))
             && !self.planner.facts().follows_paths;
-        if self.targets.len() <= MOST_WITHOUT_SELECTION || under_forces {
+        let is_done = !self.out_of_reach.targets.is_empty();
+        if self.targets.len() <= MOST_WITHOUT_SELECTION || under_forces || is_done {
             return;
         }
         let reach = OwnReach::of(self);
@@ -177,8 +179,29 @@ impl Scenario {
             } => fore.max(aft) + port.max(starboard),
             DomainKind::Colregs | DomainKind::Paper | DomainKind::Hull => 0.0,
         };
-        risk + domain + ROOM_LENGTHS * own.hull.length.max(ship.hull.length)
+        let lengths = thresholds.map(|limits| farthest_lengths(limits));
+        let lengths = lengths.into_iter().fold(ROOM_LENGTHS, f64::max);
+        let ahead = thresholds.map(|limits| limits.score.ahead_time * ship.greatest_speed());
+        let ahead = ahead.into_iter().fold(0.0, f64::max);
+        risk + domain + ahead + lengths * own.hull.length.max(ship.hull.length)
     }
+}
+
+/// The largest threshold in ship lengths.
+fn farthest_lengths(limits: &Thresholds) -> f64 {
+    let (risk, score) = (&limits.risk, &limits.score);
+    [
+        risk.lengths,
+        risk.release_lengths,
+        score.near_miss_lengths,
+        score.preferred_lengths,
+        score.ahead_lengths,
+        score.stage_3_lengths,
+        score.stage_4_lengths,
+        score.overtaken_lengths,
+    ]
+    .into_iter()
+    .fold(0.0, f64::max)
 }
 
 /// Keeps the marked entries of a list with one entry for each target, or none at all.

@@ -13,7 +13,7 @@ pub use ground::GroundSegment;
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub(crate) use segment::Mover;
 pub use segment::Segment;
-pub(crate) use segment::before_rest_at;
+pub(crate) use segment::{before_stay, rested};
 pub(crate) use steered::{Bounds, hermite};
 pub use steered::{Cubic, ForceNode, Steered};
 

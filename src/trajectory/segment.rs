@@ -1,5 +1,6 @@
 //! A line or an arc at constant speed.
 
+use super::DesiredTrajectory;
 use crate::frame::{Pose, Vector, direction, wrap};
 use crate::tolerance;
 
@@ -211,14 +212,35 @@ impl Mover {
     }
 }
 
-/// The part of a motion before its first rest at a place, and all of a motion without one.
-pub(crate) fn before_rest_at(place: Vector, motion: &[Segment]) -> &[Segment] {
+/// The part of a motion before its first rest at the end of the desired trajectory, and all of a
+/// motion without one. On a round trip the rest before own ship sets out is none.
+pub(crate) fn before_stay<'a>(desired: &DesiredTrajectory, motion: &'a [Segment]) -> &'a [Segment] {
+    let place = desired.end();
+    let sets_out = match motion.first() {
+        Some(first) if desired.comes_by(first.start.position) => {
+            let moving = motion.iter().position(|segment| segment.speed > 0.0);
+            moving.unwrap_or(motion.len())
+        }
+        _ => 0,
+    };
     let rests = |segment: &Segment| {
         let off = (segment.start.position - place).norm();
         segment.speed == 0.0 && segment.duration > 0.0 && off <= tolerance::ARRIVAL_M
     };
-    let first = motion.iter().position(rests);
-    &motion[..first.unwrap_or(motion.len())]
+    let first = motion[sets_out..].iter().position(rests);
+    &motion[..first.map_or(motion.len(), |first| sets_out + first)]
+}
+
+/// A motion without pieces of no time, and the rest after it until a time, seconds.
+pub(crate) fn rested(mut motion: Vec<Segment>, until: f64) -> Vec<Segment> {
+    if let Some(last) = motion.last() {
+        let (pose, end) = (last.end(), last.end_time());
+        motion.retain(|segment| segment.duration > 0.0);
+        if until - end > tolerance::TIME_S {
+            motion.push(Segment::straight(pose, end, until - end, 0.0));
+        }
+    }
+    motion
 }
 
 #[cfg(test)]

@@ -212,7 +212,12 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
         let so = format!("{so} m{}", if exactly { "" } else { " at least" });
         return Some(mismatch("relaxation of arrival, amount", said, so));
     }
-    let horizon = claim.file.horizon_s;
+    // a motion off the place ends with the stay
+    let horizon = claim
+        .file
+        .mission
+        .stay_until_s
+        .unwrap_or(claim.file.horizon_s);
     let there = [Segment::straight(Pose::new(last, 0.0), horizon, 0.0, 0.0)];
     let mut sets = claim.sets.iter().filter(|s| s.name == given_up.target);
     let covers = |set: &SpaceTimeSet| set.least_distance(&there).value <= tolerance::LENGTH_M;

@@ -30,7 +30,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         ));
     }
     if claim.file.planner == OPTIMAL_CONTROL {
-        let so = "nothing: a motion under forces has no greatest speed";
+        let so = "nothing, because a motion under forces has no greatest speed";
         found.push(mismatch("out_of_reach", "there is some", so));
     }
     let claimed_until = claim.file.horizon_s + claim.arrival_hold();
@@ -43,7 +43,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         found.push(mismatch(
             "out_of_reach.apart_m",
             listed.apart_m,
-            "not positive",
+            "a positive number",
         ));
     }
     let mut names: HashSet<&str> = claim.targets.iter().map(|t| t.name.as_str()).collect();
@@ -73,10 +73,12 @@ fn reaches(
     own_radius: f64,
 ) -> Option<String> {
     if !(*speed >= 0.0 && speed.is_finite()) {
-        return Some(format!("its greatest speed is {speed} m/s"));
+        return Some(format!(
+            "its greatest speed is {speed} m/s; allowed: 0 or more"
+        ));
     }
     if !(*radius > 0.0 && radius.is_finite()) {
-        return Some(format!("its radius is {radius} m"));
+        return Some(format!("its radius is {radius} m; allowed: above 0"));
     }
     let distance = (Vector::new(*east, *north) - claim.own.pose.position).norm();
     let apart = distance - own_radius - radius - speed * listed.until_s;

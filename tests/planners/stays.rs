@@ -5,6 +5,7 @@ use searoom::pipeline::{self, RelaxationLevel, Run};
 use searoom::planner::{PlanMethod, planner_words};
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
+use searoom::target::Motion;
 use searoom::verification::verify;
 
 use crate::campaigns::documents::unhurried;
@@ -143,4 +144,42 @@ fn the_loop_keeps_a_stay() {
         sailed.duration_s
     );
     assert!(sailed.to_go_m < 1e-3, "{} m", sailed.to_go_m);
+}
+
+/// Only the ship domain of a ship that passes abeam reaches the place, and there is no room to leave:
+/// own ship lies still, clear of the hard set, and gives a part of the domain up.
+#[test]
+fn a_domain_over_the_place_is_reduced_before_a_set_is_entered() {
+    let mut scenario = with_mission(
+        "waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 0.0, north_m = 10.0 }]\n\
+         speed_kn = 6.0\nstay_until_s = 1800.0",
+    );
+    for target in &mut scenario.targets {
+        let Motion::Ship(ship) = &mut target.motion else {
+            panic!("a ship");
+        };
+        ship.pose.position.x = 700.0;
+        ship.course_spread = 0.01;
+    }
+    let path_time = planner_words()
+        .into_iter()
+        .find(|(name, _)| *name == "path-time");
+    scenario.set_planner(path_time.expect("a planner").1);
+    let run = planned(scenario);
+    assert!(run.safe() && run.arrives(), "{}", run.word());
+    assert!(run.level <= RelaxationLevel::ReducedDomains);
+}
+
+/// A round trip begins at its end: the wait before own ship sets out is no stay.
+#[test]
+fn the_stay_of_a_round_trip_begins_after_the_trip() {
+    let run = planned(with_mission(
+        "waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }, \
+         { east_m = 0.0, north_m = 0.0 }]\nspeed_kn = 6.0\nstay_until_s = 1800.0",
+    ));
+    let evaluation = run.evaluation.as_ref().expect("an evaluation");
+    assert!(
+        evaluation.length > 2_000.0 && evaluation.delay > -100.0,
+        "{evaluation:?}"
+    );
 }

@@ -3,51 +3,88 @@
 use super::PlanDocument;
 use crate::document::SampleDocument;
 use crate::frame::Vector;
-use crate::text::{Times, tenths};
+use crate::text::{Times, significant};
 use crate::tolerance;
+use crate::trajectory::DesiredTrajectory;
 
-/// How own ship lies at the last waypoint after her arrival.
+/// How own ship keeps a stay at the last waypoint.
 pub(crate) struct Stay {
     /// Seconds.
     until: f64,
-    /// Seconds at which she clears her place and is back, and metres to the farthest sample; the
-    /// second is the end of a motion that does not return.
-    away: Option<[f64; 3]>,
+    kept: Kept,
+}
+
+enum Kept {
+    /// The motion does not come to the place.
+    Never,
+    /// It lies there from its arrival on.
+    Always,
+    /// It clears the place at a time, seconds, is up to about some metres away, and is back at
+    /// another time, or not at all.
+    Interrupted(f64, f64, Option<f64>),
 }
 
 impl PlanDocument {
     /// The stay of the mission and what the motion makes of it; `None` where none is asked for.
     pub(crate) fn stay(&self) -> Option<Stay> {
         let until = self.mission.stay_until_s?;
-        let place = self.mission.waypoints.last()?.point();
+        let points: Vec<Vector> = (self.mission.waypoints.iter())
+            .map(|point| point.point())
+            .collect();
+        let place = *points.last()?;
         let samples = &self.trajectory.as_ref()?.samples;
-        let off =
-            |sample: &SampleDocument| (Vector::new(sample.east_m, sample.north_m) - place).norm();
-        let off: Vec<f64> = samples.iter().map(off).collect();
+        let at = |sample: &SampleDocument| Vector::new(sample.east_m, sample.north_m);
+        let off = samples.iter().map(|sample| (at(sample) - place).norm());
+        let off: Vec<f64> = off.collect();
         let is_off = |off: &f64| *off > tolerance::ARRIVAL_M;
-        let arrived = off.iter().position(|off| !is_off(off));
-        let away = arrived.and_then(|arrived| {
-            let leaves = arrived + off[arrived..].iter().position(is_off)?;
-            let last = off.iter().rposition(is_off)?;
-            let back = samples.get(last + 1).unwrap_or(&samples[last]);
-            let farthest = off[leaves..].iter().copied().fold(0.0, f64::max);
-            Some([samples[leaves - 1].t_s, back.t_s, farthest])
-        });
-        Some(Stay { until, away })
+        let desired = DesiredTrajectory::new(&points, &self.mission.leg_speeds_mps).ok()?;
+        // a round trip begins at its end
+        let begins = match desired.comes_by(at(samples.first()?)) {
+            true => off.iter().position(is_off).unwrap_or(off.len()),
+            false => 0,
+        };
+        let arrived = off[begins..].iter().position(|off| !is_off(off));
+        let kept = match arrived.map(|arrived| begins + arrived) {
+            None => Kept::Never,
+            Some(arrived) => match off[arrived..].iter().position(is_off) {
+                None => Kept::Always,
+                Some(leaves) => {
+                    let leaves = arrived + leaves;
+                    let last = off.iter().rposition(is_off)?;
+                    let farthest = off[leaves..].iter().copied().fold(0.0, f64::max);
+                    let back = samples.get(last + 1).map(|sample| sample.t_s);
+                    Kept::Interrupted(samples[leaves - 1].t_s, farthest, back)
+                }
+            },
+        };
+        Some(Stay { until, kept })
     }
 }
 
 impl Stay {
+    /// True where the motion comes to the place.
+    pub(crate) fn begins(&self) -> bool {
+        !matches!(self.kept, Kept::Never)
+    }
+
     pub(crate) fn words(&self, times: Times) -> String {
         let until = times.at(self.until, 0);
-        match self.away {
-            None => format!("at the last waypoint until {until}"),
-            Some([leaves, back, farthest]) => format!(
-                "at the last waypoint until {until}, but off it from {} to {}, at most {} m",
-                times.at(leaves, 0),
-                times.at(back, 0),
-                tenths(farthest)
-            ),
+        match self.kept {
+            Kept::Never => {
+                format!("own ship does not come to the last waypoint, to stay until {until}")
+            }
+            Kept::Always => format!("at the last waypoint until {until}"),
+            Kept::Interrupted(leaves, farthest, back) => {
+                let (leaves, farthest) = (times.at(leaves, 0), significant(farthest));
+                let back = match back {
+                    Some(back) => format!("to {}", times.at(back, 0)),
+                    None => "on, without a return".to_owned(),
+                };
+                format!(
+                    "at the last waypoint until {until}, but off it from {leaves} {back}, about \
+                     {farthest} m at most"
+                )
+            }
         }
     }
 }

@@ -195,7 +195,7 @@ impl Simulation {
             };
             let mut scenario = scenario.clone();
             (scenario.desired, scenario.deadline) = (desired, deadline);
-            // she stays at the last waypoint alone
+            // own ship stays at the last waypoint alone
             scenario.stay = scenario.stay.filter(|_| cut == 0.0);
             Some(pipeline::run(scenario))
         };

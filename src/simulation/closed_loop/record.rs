@@ -13,7 +13,7 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
 use crate::scenario::VesselModel;
-use crate::trajectory::{Segment, before_rest_at};
+use crate::trajectory::{Segment, before_stay};
 
 impl Simulation {
     /// The result so far.
@@ -63,7 +63,7 @@ impl Simulation {
             && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let before_stay = match self.scenario.stay {
-            Some(_) => before_rest_at(desired.end(), &track),
+            Some(_) => before_stay(desired, &track),
             None => &track,
         };
         let mut cost_m2 = match arrived {

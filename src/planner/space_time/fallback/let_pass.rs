@@ -1,4 +1,4 @@
-//! Motion that slows down on its route until other ships have passed, then goes on.
+//! Motion that slows down on its route until other ships have passed, then continues.
 //!
 //! ```text
 //! places x lower speeds x sidestep ─► have all passed? ─► clear until then? ─► plan from there
@@ -37,7 +37,7 @@ const STEP_S: f64 = 5.0;
 
 /// The plan that breaks the fewest rules by `broken`, fewer than `most`; the first among equal ones.
 ///
-/// Own ship goes on at a lower speed until all encountered ships are past and clear. A plan without
+/// Own ship continues at a lower speed until all encountered ships are past and clear. A plan without
 /// duties follows. Every part is clear of the sets and of land. Cost: up to twenty plans.
 pub(crate) fn let_pass(
     problem: &Problem,
@@ -81,7 +81,11 @@ pub(crate) fn let_pass(
         if first_met(&proxies, &held).is_some() || land::meets(problem.land_obstacle, &held) {
             continue;
         }
-        let Some(plan) = after_holding(&afterwards, &held, time) else {
+        let left = Problem {
+            deadline: clock.left(),
+            ..afterwards.clone()
+        };
+        let Some(plan) = after_holding(&left, &held, time) else {
             continue;
         };
         let breaks = broken(&plan.trajectory);
@@ -97,7 +101,7 @@ pub(crate) fn let_pass(
 }
 
 /// The motion with a turn and back to the side that the rules ask for, where there is time for both
-/// before it `slows`. It goes on straight from there, at a lower speed once it has slowed.
+/// before it `slows`. It continues straight from there, at a lower speed once it has slowed.
 fn sidestepped(
     problem: &Problem,
     motion: &[Segment],

@@ -1,12 +1,13 @@
-//! A stay that sets interrupt: own ship clears her place in time, lies aside, and returns.
+//! A stay that sets interrupt: own ship clears its place in time, lies aside, and returns.
 //!
 //! ```text
 //! way ─► rest ─► turn and line aside ─► rest ─► turn and line back ─► rest until the stay ends
 //!     or     a later arrival along the route, after the sets have passed
 //! ```
 //!
-//! Departures from the way or the place, courses, distances and speeds are tried from a grid, each by the exact contact test.
-//! The motion nearest to the desired places is then moved nearer by bisection.
+//! Excursions from the way or the place, by their time, course, distance and speed, are tried from a
+//! grid, each by the exact contact test. The motion nearest to the desired places is then moved
+//! nearer by bisection.
 
 use crate::frame::{Pose, Side, Vector};
 use crate::numerics::bisected;
@@ -20,9 +21,9 @@ use crate::planner::space_time::piece::pieces;
 use crate::planner::space_time::proxy::{Proxy, first_met, within_reach};
 use crate::planner::{Plan, PlanMethod, Problem};
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, rested};
 
-/// Departures between the start and the time at which sets reach the place.
+/// Excursions between the start and the time at which sets reach the place.
 const DEPARTURES: u32 = 8;
 
 /// Courses away from the place, over a half circle to each side.
@@ -44,8 +45,8 @@ const INTERVALS: u32 = 8;
 /// one that leaves with a turn to each side. Each is clear of every set and of land until the stay
 /// ends at `until`, seconds.
 ///
-/// `arrival` is a clear motion to the last waypoint. Of two motions the one that ends there is
-/// better, then the one with the least integral of the squared distance from the desired place. Cost:
+/// `arrival` is a clear motion to the last waypoint. A motion that ends there is better than one that
+/// does not, and then the one with the least integral of the squared distance from the desired place. Cost:
 /// some ten thousand contact tests, up to a tenth of a second.
 pub(crate) fn off_station(problem: &Problem, arrival: &[Segment], until: f64) -> Vec<Plan> {
     let clock = Clock::new(problem.deadline);
@@ -75,19 +76,7 @@ fn later(problem: &Problem, proxies: &[Proxy], until: f64, clock: Clock) -> Opti
     (away.norm() <= tolerance::ARRIVAL_M).then_some(motion)
 }
 
-/// A motion and the rest after it until a time.
-pub(crate) fn rested(mut motion: Vec<Segment>, until: f64) -> Vec<Segment> {
-    if let Some(last) = motion.last() {
-        let (pose, end) = (last.end(), last.end_time());
-        motion.retain(|segment| segment.duration > 0.0);
-        if until - end > tolerance::TIME_S {
-            motion.push(Segment::straight(pose, end, until - end, 0.0));
-        }
-    }
-    motion
-}
-
-/// The end of the path, where own ship lies from her arrival until the stay ends.
+/// The end of the path, where own ship lies from its arrival until the stay ends.
 struct Station<'a> {
     problem: &'a Problem<'a>,
     proxies: &'a [Proxy<'a>],
@@ -102,7 +91,7 @@ struct Station<'a> {
 
 /// A way to clear the place.
 #[derive(Clone, Copy)]
-struct Departure {
+struct Excursion {
     time: f64,
     side: Side,
     turn: f64,
@@ -154,7 +143,7 @@ impl<'a> Station<'a> {
     /// The best motion that first turns to a side.
     fn aside(&self, side: Side, clock: Clock) -> Option<Aside> {
         let own = self.problem.own;
-        let mut best: Option<(Departure, Aside)> = None;
+        let mut best: Option<(Excursion, Aside)> = None;
         let moving: Vec<f64> = own.moving_speeds().collect();
         let (first, last) = (moving.first()?, moving.last()?);
         let speeds = if first < last {
@@ -172,7 +161,7 @@ impl<'a> Station<'a> {
                             return best.map(|(_, aside)| aside);
                         }
                         let distance = 0.5 * own.hull.length * 2.0_f64.powi(doubled);
-                        let departure = Departure {
+                        let departure = Excursion {
                             time,
                             side,
                             turn,
@@ -193,12 +182,12 @@ impl<'a> Station<'a> {
         let (mut departure, mut aside) = best?;
         let is_back = aside.is_back;
         let is_as_good = |departure| self.by(departure).is_some_and(|a| a.is_back >= is_back);
-        let with_time = |time| Departure { time, ..departure };
+        let with_time = |time| Excursion { time, ..departure };
         let [time, _] = bisected([departure.time, self.covered], HALVINGS, |time| {
             is_as_good(with_time(time))
         });
         departure = with_time(time);
-        let with_distance = |distance| Departure {
+        let with_distance = |distance| Excursion {
             distance,
             ..departure
         };
@@ -214,9 +203,9 @@ impl<'a> Station<'a> {
     }
 
     /// The motion of a departure, with the soonest clear return; `None` where it meets something.
-    fn by(&self, departure: Departure) -> Option<Aside> {
+    fn by(&self, departure: Excursion) -> Option<Aside> {
         let (own, until) = (self.problem.own, self.until);
-        let Departure { time, speed, .. } = departure;
+        let Excursion { time, speed, .. } = departure;
         let from = pose_at(&self.arrival, time)?;
         let mut chain = Chain::new(from, time, speed, own.turning_radius);
         chain.arc(departure.turn * own.turning_radius * departure.side.turn_sign());
