@@ -10,7 +10,7 @@ use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
 use crate::text::rounded;
 use crate::tolerance::{self, SIGMAS};
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, before_stay};
 use crate::vessel::OwnShip;
 
 /// Own ship may be this far from where the previous plan has it: own lengths, and degrees. Farther
@@ -63,6 +63,11 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         }
     }
     let mut memory = memory_after(previous, scenario, plan)?;
+    if scenario.stay.is_some() {
+        // a stay is planned anew, because more is known of who comes
+        let to_stay = before_stay(&scenario.desired, &memory.remainder).len();
+        memory.remainder.truncate(to_stay);
+    }
     if !is_on {
         memory.off_plan = off;
     }

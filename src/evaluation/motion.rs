@@ -92,6 +92,9 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     if let Some(stay) = request.stay {
         let allowed = tolerance::TIME_S * (1.0 + stay);
         found.limit("end", "s before that of the stay", stay - end, allowed);
+        if last.speed == 0.0 {
+            found.limit("end", "s after that of the stay", end - stay, allowed);
+        }
     }
     let sailed: f64 = segments.iter().map(Segment::length).sum();
     // Negated on purpose: a NaN length is no motion.

@@ -7,6 +7,7 @@
 //! ```
 
 use super::entered;
+use super::judge::judge;
 use super::relaxation::{Attempt, RelaxationLevel, Relaxer, out_of_time};
 use super::rules;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -18,31 +19,30 @@ use crate::trajectory::{Segment, Trajectory, before_stay, rested};
 impl Relaxer<'_> {
     /// The answer with the rest at the last waypoint until the stay ends. Where sets pass over the
     /// place, own ship arrives later, or clears it and returns; where no such motion is clear, it
-    /// stays inside the sets, which the level says. An answer that does not arrive is left as it is.
+    /// stays inside the sets, which the level says. A motion that ends before the place rests where it
+    /// ends.
     pub(super) fn with_stay(&self, answer: Attempt) -> Attempt {
         let Some(until) = self.scenario.stay else {
             return answer;
         };
-        let Some(plan) = answer.planned.outcome.plan().filter(|plan| plan.arrives()) else {
+        let Some(plan) = answer.planned.outcome.plan() else {
             return answer;
         };
         let arrival = plan.trajectory.segments().to_vec();
         let Some(whole) = self.with_rest(plan, until) else {
             return answer;
         };
-        let motion = whole.trajectory.segments();
-        let rest = motion[before_stay(&self.scenario.desired, motion).len()..].to_vec();
+        let rest = rest_after(&arrival, &whole);
         let Some((target, from)) = first_contact(&answer.obstacles, &rest) else {
             return with_plan(answer, whole);
         };
         let is_late = matches!(answer.planned.outcome, Outcome::Deadline(_));
         let found = match answer.level < RelaxationLevel::Inside {
             true => self.clear_stay(&answer, &arrival, &rest, &whole, until),
-            // a motion that enters sets anyway is not made longer by a search
-            false => None,
+            false => self.stay_beside_entered(&answer, &arrival, &rest, &whole, until),
         };
         let mut stayed = found.unwrap_or_else(|| self.staying_inside(&answer, whole));
-        let gives_up = stayed.level > answer.level || !has_arrived(&stayed);
+        let gives_up = stayed.level > answer.level || has_arrived(&answer) && !has_arrived(&stayed);
         if gives_up || stayed.why.is_none() {
             stayed.why = Some(NoPlan::StayCovered {
                 target,
@@ -77,6 +77,33 @@ impl Relaxer<'_> {
         let level = RelaxationLevel::ReducedDomains.max(found.level);
         let retained = self.retained_along(found.trajectory()?, answer.risk);
         Some(self.clear_of(&found, &retained, level))
+    }
+
+    /// The stay of own ship that is in some sets from the start, off the place while the others pass
+    /// over it. It is taken where the least clearance to any hull that a target may have is larger
+    /// than at rest.
+    fn stay_beside_entered(
+        &self,
+        answer: &Attempt,
+        arrival: &[Segment],
+        rest: &[Segment],
+        whole: &Plan,
+        until: f64,
+    ) -> Option<Attempt> {
+        let start = self.scenario.own_ship.pose.position;
+        // negated on purpose: a NaN is inside
+        let is_outside = |set: &&Obstacle| !(set.signed_distance(start, 0.0).distance <= 0.0);
+        let hard = self.sets.iter().map(|sets| &sets.hard);
+        let others: Vec<Obstacle> = hard.filter(is_outside).cloned().collect();
+        first_contact(&others, rest)?;
+        let found = self.off_station(answer, &others, arrival, until)?;
+        let plan = found.planned.outcome.plan()?.clone();
+        let clearance = |plan: &Plan| {
+            let evaluation = judge(self.scenario, &[], &plan.trajectory);
+            let land = evaluation.min_land_distance;
+            evaluation.min_clearance.min(land)
+        };
+        (clearance(&plan) > clearance(whole)).then(|| self.staying_inside(answer, plan))
     }
 
     /// The motion off the place that breaks the fewest rules, of these the one that returns, and of
@@ -154,12 +181,24 @@ impl Relaxer<'_> {
             }
             _ => plan.cost,
         };
+        let trajectory = match self.scenario.planner.facts().follows_paths {
+            true => Trajectory::with_corners(motion),
+            false => Trajectory::new(motion),
+        };
         Some(Plan {
-            trajectory: Trajectory::new(motion).ok()?,
+            trajectory: trajectory.ok()?,
             cost,
             ..plan.clone()
         })
     }
+}
+
+/// The part of a plan after the motion that it rests from.
+fn rest_after(motion: &[Segment], whole: &Plan) -> Vec<Segment> {
+    let end = motion.last().map_or(0.0, Segment::end_time);
+    let segments = whole.trajectory.segments().iter();
+    let rest = segments.filter(|segment| segment.start_time >= end && segment.duration > 0.0);
+    rest.copied().collect()
 }
 
 /// The first set that a motion enters, with the time.

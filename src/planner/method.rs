@@ -82,7 +82,7 @@ impl PlanMethod {
             Self::Remainder => "remainder of the last plan",
             Self::LeastHarm => "least harm",
             Self::Waiting => "waits on its route",
-            Self::OffStation => "clears its place and returns",
+            Self::OffStation => "clears its place",
             Self::Stay => "stays in place",
             Self::Other => "another planner",
         }

@@ -130,7 +130,7 @@ fn for_paths(scenario: &Scenario) -> Vec<Fault> {
     let mut faults = Vec::new();
     let first = scenario.desired.legs()[0].start;
     if scenario.stay.is_some() && scenario.desired.length() < 2.0 * limits::LENGTH.low {
-        let found = "one, where own ship is, for the path-time planner";
+        let found = "a place and no path, for the path-time planner";
         let allowed = "a path of at least two waypoints, or the space-time planner";
         return vec![Fault::new("mission.waypoints", found, allowed)];
     }

@@ -18,7 +18,7 @@ use crate::frame::{
 use crate::input::{Fault, Faults, Field, Node, Range, Remarks, Table, every, from_toml};
 use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::target::Target;
-use crate::text::{LINE, counted, knots};
+use crate::text::{LINE, counted, knots, significant};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
@@ -104,6 +104,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         own_speed: speed,
         own_pose: own_ship.as_ref().map(|own| own.pose),
         own_fastest: own_ship.as_ref().map(OwnShip::max_speed),
+        own_length: own_ship.as_ref().map_or(0.0, |own| own.hull.length),
         turning_radius: own_ship.as_ref().map_or(0.0, |own| own.turning_radius),
         time,
         horizon,
@@ -382,6 +383,9 @@ fn cautions(root: &mut Table, remarks: &mut Remarks) {
     remarks.cautions.extend(texts.unwrap_or_default());
 }
 
+/// Own lengths within which own ship is at its place.
+const ON_THE_SPOT_LENGTHS: f64 = 0.5;
+
 struct Mission {
     desired: DesiredTrajectory,
     /// The date and time at 0 s on the clock of the file, by the schedule of the route.
@@ -404,6 +408,8 @@ struct Reading<'a> {
     own_pose: Option<Pose>,
     /// m/s.
     own_fastest: Option<f64>,
+    /// Metres.
+    own_length: f64,
     /// Metres.
     turning_radius: f64,
     time: Option<f64>,
@@ -459,7 +465,7 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
             .as_ref()
             .map(|fields| vec![LegSpeeds::default(); (fields.len() - 1).max(1)]);
         let waypoints = fields.and_then(|fields| match &fields[..] {
-            [place] => to_place(place, plane, reading.own_pose),
+            [place] => to_place(place, reading, remarks),
             fields => waypoints(fields, plane),
         });
         let makes_way = |speed: &f64| limits::WAY.contains(*speed);
@@ -736,19 +742,29 @@ fn nearest(legs: &[RouteLeg], own: Vector, earth: &Georeference) -> Option<(usiz
     })
 }
 
-/// The path to a single waypoint: from own ship, or a millimetre where it is there.
-fn to_place(field: &Field, plane: &Plane, own: Option<Pose>) -> Option<Vec<Vector>> {
-    let (place, own) = (plane.position(field)?, own?);
+/// The path to a single waypoint: from own ship, or a millimetre where it is there, to half of its
+/// length. No ship at anchor is at the last digit of its place.
+fn to_place(field: &Field, reading: &Reading, remarks: &mut Remarks) -> Option<Vec<Vector>> {
+    let (place, own) = (reading.plane.position(field)?, reading.own_pose?);
     let length = (place - own.position).norm();
     if length > limits::LEG_M {
         let found = format_args!("{:.1} km from own ship", length / 1e3);
         return field.reject(found, format_args!("at most {} km", limits::LEG_M / 1e3));
     }
-    let start = match length < limits::LENGTH.low {
-        true => place - own.ahead() * limits::LENGTH.low,
-        false => own.position,
-    };
-    Some(vec![start, place])
+    if length > ON_THE_SPOT_LENGTHS * reading.own_length {
+        return Some(vec![own.position, place]);
+    }
+    if length > 0.0 {
+        let statement = format_args!(
+            "{} m from own ship, which stays where it is: that is within half of its length",
+            significant(length)
+        );
+        remarks.note("waypoint of the stay", statement);
+    }
+    Some(vec![
+        own.position - own.ahead() * limits::LENGTH.low,
+        own.position,
+    ])
 }
 
 fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {

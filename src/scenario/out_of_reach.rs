@@ -179,7 +179,7 @@ impl Scenario {
             } => fore.max(aft) + port.max(starboard),
             DomainKind::Colregs | DomainKind::Paper | DomainKind::Hull => 0.0,
         };
-        let lengths = thresholds.map(|limits| farthest_lengths(limits));
+        let lengths = thresholds.map(farthest_lengths);
         let lengths = lengths.into_iter().fold(ROOM_LENGTHS, f64::max);
         let ahead = thresholds.map(|limits| limits.score.ahead_time * ship.greatest_speed());
         let ahead = ahead.into_iter().fold(0.0, f64::max);

@@ -231,11 +231,14 @@ pub(crate) fn before_stay<'a>(desired: &DesiredTrajectory, motion: &'a [Segment]
     &motion[..first.map_or(motion.len(), |first| sets_out + first)]
 }
 
-/// A motion without pieces of no time, and the rest after it until a time, seconds.
+/// A motion and the rest after it until a time, seconds, which takes the place of a motion of no
+/// time.
 pub(crate) fn rested(mut motion: Vec<Segment>, until: f64) -> Vec<Segment> {
     if let Some(last) = motion.last() {
         let (pose, end) = (last.end(), last.end_time());
-        motion.retain(|segment| segment.duration > 0.0);
+        if motion.iter().all(|segment| segment.duration <= 0.0) {
+            motion.clear();
+        }
         if until - end > tolerance::TIME_S {
             motion.push(Segment::straight(pose, end, until - end, 0.0));
         }

@@ -212,12 +212,7 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
         let so = format!("{so} m{}", if exactly { "" } else { " at least" });
         return Some(mismatch("relaxation of arrival, amount", said, so));
     }
-    // a motion off the place ends with the stay
-    let horizon = claim
-        .file
-        .mission
-        .stay_until_s
-        .unwrap_or(claim.file.horizon_s);
+    let horizon = claim.file.horizon_s;
     let there = [Segment::straight(Pose::new(last, 0.0), horizon, 0.0, 0.0)];
     let mut sets = claim.sets.iter().filter(|s| s.name == given_up.target);
     let covers = |set: &SpaceTimeSet| set.least_distance(&there).value <= tolerance::LENGTH_M;
@@ -228,7 +223,10 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
         .as_ref()
         .is_some_and(|memory| memory.keeps_plan);
     let stops = segments.last()?.end_time();
-    let lasts = (horizon - stops).abs() <= tolerance::TIME_S * (1.0 + horizon);
+    // or until the stay ends, where one is asked for
+    let until = claim.file.mission.stay_until_s.unwrap_or(horizon);
+    let lasts =
+        (until - stops).abs().min((horizon - stops).abs()) <= tolerance::TIME_S * (1.0 + horizon);
     // the sets of a risk are smaller than those that are over it
     let is_judged = claim.paths.is_none() && claim.file.max_risk == 0.0 && !is_kept && !lasts;
     if is_judged && !sets.any(covers) {

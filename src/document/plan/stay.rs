@@ -17,6 +17,8 @@ pub(crate) struct Stay {
 enum Kept {
     /// The motion does not come to the place.
     Never,
+    /// It comes there at a time, seconds, when the stay is over.
+    TooLate(f64),
     /// It lies there from its arrival on.
     Always,
     /// It clears the place at a time, seconds, is up to about some metres away, and is back at
@@ -46,6 +48,7 @@ impl PlanDocument {
         let arrived = off[begins..].iter().position(|off| !is_off(off));
         let kept = match arrived.map(|arrived| begins + arrived) {
             None => Kept::Never,
+            Some(arrived) if samples[arrived].t_s > until => Kept::TooLate(samples[arrived].t_s),
             Some(arrived) => match off[arrived..].iter().position(is_off) {
                 None => Kept::Always,
                 Some(leaves) => {
@@ -72,6 +75,10 @@ impl Stay {
         match self.kept {
             Kept::Never => {
                 format!("own ship does not come to the last waypoint, to stay until {until}")
+            }
+            Kept::TooLate(arrives) => {
+                let arrives = times.at(arrives, 0);
+                format!("over at {until}, before own ship arrives at {arrives}")
             }
             Kept::Always => format!("at the last waypoint until {until}"),
             Kept::Interrupted(leaves, farthest, back) => {
