@@ -183,3 +183,57 @@ fn the_stay_of_a_round_trip_begins_after_the_trip() {
         "{evaluation:?}"
     );
 }
+
+/// Each is accepted by `verify`, lasts as long as its stay, and is as safe as it can be.
+#[test]
+fn stays_in_the_way_of_others_end_as_they_ought_to() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults");
+    for (name, safe, arrives) in [
+        // a corner, at which own ship turns on the spot
+        ("stay-along-a-bend", true, true),
+        ("stay-across-own-course", true, true),
+        // the stay ends before the ship has passed
+        ("stay-without-return", true, false),
+        // the place is covered, and another ship passes where own ship stops
+        ("stay-before-a-moored-ship", true, false),
+        // own ship is in the set of a ship at rest, which is no reason to be run down by another
+        ("stay-beside-a-neighbour", false, true),
+    ] {
+        let scenario = Scenario::read(&folder.join(format!("{name}.toml")));
+        let run = planned(unhurried(scenario.expect("a scenario")));
+        assert_eq!(
+            (run.safe(), run.arrives()),
+            (safe, arrives),
+            "{name}: {}",
+            run.word()
+        );
+        let plan = run.planned.outcome.plan().expect("a plan");
+        let until = run.scenario.stay.expect("a stay");
+        assert!((plan.trajectory.end_time() - until).abs() < 1e-6, "{name}");
+        let evaluation = run.evaluation.as_ref().expect("an evaluation");
+        assert!(
+            evaluation.min_clearance > 0.0,
+            "{name}: {}",
+            evaluation.min_clearance
+        );
+    }
+}
+
+/// The loop keeps the remainder of a plan whose stay is to come.
+#[test]
+fn the_loop_keeps_the_way_to_a_stay() {
+    let scenario = with_mission(
+        "waypoints = [{ east_m = 600.0, north_m = 0.0 }]\nspeed_kn = 6.0\nstay_until_s = 800.0",
+    );
+    let mut simulation = Simulation::new(scenario, false).expect("a scenario for the closed loop");
+    while !simulation.finished() {
+        simulation.step();
+    }
+    let sailed = simulation.record();
+    let first = sailed.conduct.first_plan_cost_m2.expect("a plan");
+    assert!(
+        sailed.conduct.cost_m2 <= 1.01 * first,
+        "{} {first}",
+        sailed.conduct.cost_m2
+    );
+}
