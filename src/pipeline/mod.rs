@@ -156,7 +156,7 @@ fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
 }
 
-/// [`sets`] as [`run`] plans against them at first: with the risks of collision that sets alone give.
+/// [`sets()`] as [`run`] plans against them at first: with the risks of collision that sets alone give.
 pub fn planned_sets(scenario: &Scenario) -> Vec<TargetSets> {
     let found = sets(scenario);
     let with_risk = rules::with_risk_of_sets(scenario, &found);
