@@ -107,10 +107,10 @@ impl PlanMethod {
             | Self::Waiting
             | Self::OffStation
             | Self::Stay => Some(false),
-            Self::LeastHarm | Self::Other => None,
+            // the best of many plans may be one by the rules, of a stricter request
+            Self::LeastHarm | Self::Thorough | Self::Other => None,
             Self::AStar
             | Self::Dijkstra
-            | Self::Thorough
             | Self::WarmStart
             | Self::HybridAStar
             | Self::PathTimeGraph => Some(true),
