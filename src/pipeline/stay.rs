@@ -91,7 +91,7 @@ impl Relaxer<'_> {
         until: f64,
     ) -> Option<Attempt> {
         let start = self.scenario.own_ship.pose.position;
-        // negated on purpose: a NaN is inside
+        // negated on purpose: a set at an unknown distance is avoided, too
         let is_outside = |set: &&Obstacle| !(set.signed_distance(start, 0.0).distance <= 0.0);
         let hard = self.sets.iter().map(|sets| &sets.hard);
         let others: Vec<Obstacle> = hard.filter(is_outside).cloned().collect();
@@ -100,8 +100,12 @@ impl Relaxer<'_> {
         let plan = found.planned.outcome.plan()?.clone();
         let clearance = |plan: &Plan| {
             let evaluation = judge(self.scenario, &[], &plan.trajectory);
-            let land = evaluation.min_land_distance;
-            evaluation.min_clearance.min(land)
+            let [hulls, land] = [evaluation.min_clearance, evaluation.min_land_distance];
+            // the minimum would pass over a NaN, which is a collision
+            match hulls.is_nan() || land.is_nan() {
+                true => f64::NEG_INFINITY,
+                false => hulls.min(land),
+            }
         };
         (clearance(&plan) > clearance(whole)).then(|| self.staying_inside(answer, plan))
     }
@@ -151,7 +155,8 @@ impl Relaxer<'_> {
             ..plan
         };
         let planned = Planned {
-            stats: answer.planned.stats,
+            // no search made a motion off the place
+            stats: (answer.planned.stats).filter(|_| plan.method != PlanMethod::OffStation),
             path_time: answer.planned.path_time.clone(),
             ..Planned::of(Outcome::Solved(plan))
         };
