@@ -110,22 +110,24 @@ fn along_a_path_a_stay_in_a_set_is_not_safe() {
     assert_eq!(run.level, RelaxationLevel::Inside);
 }
 
-/// A document whose motion leaves its place before the stay ends is rejected.
+/// A document whose motion ends before its stay, or rests on after it, is rejected.
 #[test]
-fn a_motion_that_ends_before_its_stay_is_rejected() {
+fn a_motion_that_does_not_end_with_its_stay_is_rejected() {
     let run = planned(with_mission(
         "waypoints = [{ east_m = 0.0, north_m = 0.0 }]\nspeed_kn = 6.0\nstay_until_s = 300.0",
     ));
     let mut document = PlanDocument::of(&run);
     assert_eq!(document.mission.stay_until_s, Some(300.0));
-    document.mission.stay_until_s = Some(400.0);
-    let text = serde_json::to_string(&document).expect("JSON");
-    let found = verify(&text).expect("a document");
-    let what: Vec<&str> = found.violations.iter().map(|v| v.what.as_str()).collect();
-    assert!(
-        what.iter().any(|what| what.contains("that of the stay")),
-        "{what:?}"
-    );
+    for (until, expected) in [
+        (400.0, "before that of the stay"),
+        (200.0, "after that of the stay"),
+    ] {
+        document.mission.stay_until_s = Some(until);
+        let text = serde_json::to_string(&document).expect("JSON");
+        let found = verify(&text).expect("a document");
+        let what: Vec<&str> = found.violations.iter().map(|v| v.what.as_str()).collect();
+        assert!(what.iter().any(|what| what.contains(expected)), "{what:?}");
+    }
 }
 
 /// In the closed loop, planned again every 30 s, she is never hit and lies at her place at the end.
