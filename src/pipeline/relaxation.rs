@@ -17,7 +17,7 @@ use crate::parallel;
 use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Planner, Problem, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
-use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 
 /// Domain scale factor between the hard set, 0, and the full ship domain, 1.
 const HALF: f64 = 0.5;
@@ -385,7 +385,7 @@ impl Relaxer<'_> {
             return None;
         }
         let end = last.end().position;
-        let left = path.left_from(end);
+        let left = path.left_from(end, sailed(&self.scenario.memory.remainder));
         // the schedule may be past that end
         let to_end = || DesiredTrajectory::new(&[own.pose.position, end], &[path.legs()[0].speed]);
         let short = Scenario {
@@ -646,8 +646,9 @@ impl Relaxer<'_> {
         let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
         let away = |short: &DesiredTrajectory| (short.end() - own.pose.position).norm();
         let is_near = desired.as_ref().map_or(0.0, away) <= own.turning_radius;
-        let last = self.scenario.memory.remainder.last();
-        let left = last.map(|last| path.left_from(last.end().position));
+        let kept = &self.scenario.memory.remainder;
+        let left = |last: &Segment| path.left_from(last.end().position, sailed(kept));
+        let left = kept.last().map(left);
         let left = left.filter(|left| *left > tolerance::ARRIVAL_M);
         let before = left.and_then(|left| path.shortened(left));
         let mut late = false;
@@ -684,7 +685,8 @@ impl Relaxer<'_> {
             None => return None,
         };
         if let Outcome::Solved(plan) | Outcome::Deadline(Some(plan)) = &mut found.planned.outcome {
-            plan.to_go = path.left_from(plan.trajectory.end().position);
+            let motion = &plan.trajectory;
+            plan.to_go = path.left_from(motion.end().position, motion.length());
         }
         found.why = Some(why);
         Some(found)
@@ -1041,6 +1043,11 @@ pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
         other => other,
     };
     attempt
+}
+
+/// Length of a motion, metres.
+fn sailed(motion: &[Segment]) -> f64 {
+    motion.iter().map(Segment::length).sum()
 }
 
 /// A plan refined against other sets, by a planner that can.

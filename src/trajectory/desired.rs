@@ -183,10 +183,19 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
-    /// Metres from a place to the nearest point of the path, and from there along it to its end.
-    pub(crate) fn left_from(&self, place: Vector) -> f64 {
-        let nearest = self.nearest(place, 0.0, 0.0);
-        self.length() - nearest.distance + nearest.error.sqrt()
+    /// Metres from a place to the nearest point of the path, and from there along it to its end. Where
+    /// the path comes by the place more than once, as a round trip does at its start, the metres
+    /// `sailed` tell how far own ship is on it.
+    pub(crate) fn left_from(&self, place: Vector, sailed: f64) -> f64 {
+        let nearest = self.nearest(place, 0.0, 0.0).error.sqrt();
+        let passes = self.legs.iter().filter_map(|leg| {
+            let (error, along) = leg.nearest(place, 0.0, 0.0);
+            let is_near = error.sqrt() <= nearest + tolerance::LENGTH_M;
+            is_near.then_some(leg.start_distance + along)
+        });
+        let off = |along: &f64| (along - sailed).abs();
+        let on = passes.min_by(|a, b| off(a).total_cmp(&off(b)));
+        self.length() - on.unwrap_or(0.0) + nearest
     }
 
     /// This motion without its last `length` metres; `None` where nothing is left.
@@ -359,6 +368,17 @@ mod tests {
             }
             assert_eq!(found, all, "{x:?} {t} {q}");
         }
+    }
+
+    #[test]
+    fn what_is_left_of_a_round_trip_depends_on_what_was_sailed() {
+        let trip = desired(&[(0.0, 0.0), (300.0, 0.0), (0.0, 0.0)], &[5.0; 2]);
+        let left = |x: f64, y: f64, sailed: f64| trip.left_from(Vector::new(x, y), sailed);
+        assert_eq!(left(0.0, 0.0, 0.0), 600.0);
+        assert_eq!(left(0.0, 0.0, 590.0), 0.0);
+        assert_eq!(left(100.0, 7.0, 110.0), 507.0);
+        assert_eq!(left(100.0, 7.0, 520.0), 107.0);
+        assert_eq!(left(300.0, 0.0, 0.0), 300.0);
     }
 
     #[test]

@@ -205,7 +205,7 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let (so, exactly) = match &claim.paths {
         Some(_) if alone => (claim.desired.length() - evaluation.length, true),
         Some(_) => ((last - end).norm(), false),
-        None => (claim.desired.left_from(end), true),
+        None => (claim.desired.left_from(end, evaluation.length), true),
     };
     // Negated on purpose: a NaN is a mismatch.
     if !(said > 0.0 && (near(said, so) || !exactly && said >= so)) {

@@ -239,3 +239,18 @@ fn the_loop_keeps_the_way_to_a_stay() {
         sailed.conduct.cost_m2
     );
 }
+
+/// A moored ship overlaps own ship's berth, where a round trip starts and ends. A motion that lies
+/// there has not come round: all of the trip is left.
+#[test]
+fn a_ship_that_lies_where_her_round_trip_ends_has_not_arrived() {
+    let text = include_str!("../faults/stay-round-trip-from-a-quay.toml");
+    for text in [text.to_owned(), text.replace("stay_until_s = 600.0\n", "")] {
+        let run = planned(unhurried(Scenario::parse(&text).expect("a scenario")));
+        let plan = run.planned.outcome.plan().expect("a motion");
+        let sailed = plan.trajectory.length();
+        let trip = run.scenario.desired.length();
+        assert!(!run.safe());
+        assert_eq!(run.arrives(), sailed > 0.9 * trip, "sailed {sailed} m");
+    }
+}

@@ -77,13 +77,10 @@ pub(crate) fn unfinished(
 ) -> Option<Plan> {
     let plan = Plan::measured(problem, motion, method)?;
     let end = plan.trajectory.end().position;
-    let arrives = (problem.desired.end() - end).norm() <= tolerance::ARRIVAL_M;
+    let left = problem.desired.left_from(end, plan.trajectory.length());
+    let arrives = left <= 2.0 * tolerance::ARRIVAL_M;
     Some(Plan {
-        to_go: if arrives {
-            0.0
-        } else {
-            problem.desired.left_from(end)
-        },
+        to_go: if arrives { 0.0 } else { left },
         ..plan
     })
 }
