@@ -183,19 +183,24 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
-    /// Metres from a place to the nearest point of the path, and from there along it to its end. Where
-    /// the path comes by the place more than once, as a round trip does at its start, the metres
-    /// `sailed` tell how far own ship is on it.
+    /// Metres from a place to the nearest point of the path, and from there along it to its end; none
+    /// within [`tolerance::ARRIVAL_M`] of the end. Own ship that has not `sailed` is at the first of
+    /// the points that are as near: on a round trip at its start.
     pub(crate) fn left_from(&self, place: Vector, sailed: f64) -> f64 {
-        let nearest = self.nearest(place, 0.0, 0.0).error.sqrt();
-        let passes = self.legs.iter().filter_map(|leg| {
+        let at_end = (self.end() - place).norm() <= tolerance::ARRIVAL_M;
+        let has_sailed = sailed > tolerance::ARRIVAL_M;
+        if at_end && (has_sailed || !self.comes_by(place)) {
+            return 0.0;
+        }
+        let nearest = self.nearest(place, 0.0, 0.0);
+        let off = nearest.error.sqrt();
+        let first = self.legs.iter().find_map(|leg| {
             let (error, along) = leg.nearest(place, 0.0, 0.0);
-            let is_near = error.sqrt() <= nearest + tolerance::LENGTH_M;
+            let is_near = error.sqrt() <= off + tolerance::ARRIVAL_M;
             is_near.then_some(leg.start_distance + along)
         });
-        let off = |along: &f64| (along - sailed).abs();
-        let on = passes.min_by(|a, b| off(a).total_cmp(&off(b)));
-        self.length() - on.unwrap_or(0.0) + nearest
+        let on = first.filter(|_| !has_sailed).unwrap_or(nearest.distance);
+        self.length() - on + off
     }
 
     /// This motion without its last `length` metres; `None` where nothing is left.
@@ -375,10 +380,16 @@ mod tests {
         let trip = desired(&[(0.0, 0.0), (300.0, 0.0), (0.0, 0.0)], &[5.0; 2]);
         let left = |x: f64, y: f64, sailed: f64| trip.left_from(Vector::new(x, y), sailed);
         assert_eq!(left(0.0, 0.0, 0.0), 600.0);
-        assert_eq!(left(0.0, 0.0, 590.0), 0.0);
-        assert_eq!(left(100.0, 7.0, 110.0), 507.0);
-        assert_eq!(left(100.0, 7.0, 520.0), 107.0);
+        assert_eq!(left(100.0, 7.0, 0.0), 507.0);
         assert_eq!(left(300.0, 0.0, 0.0), 300.0);
+        // a triangle ends where it starts, by rounding a little nearer to the one or the other
+        let corners = [(0.0, 0.0), (500.0, 500.0), (400.0, 0.0), (1e-8, 1e-8)];
+        let triangle = desired(&corners, &[5.0; 3]);
+        for shift in [0.0, 1e-8] {
+            let place = Vector::new(shift, shift);
+            assert!((triangle.left_from(place, 0.0) - triangle.length()).abs() < 1e-6);
+        }
+        assert!(triangle.left_from(Vector::new(1e-8, 1e-8), 1500.0) < 1e-6);
     }
 
     #[test]

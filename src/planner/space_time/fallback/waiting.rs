@@ -77,12 +77,8 @@ pub(crate) fn unfinished(
 ) -> Option<Plan> {
     let plan = Plan::measured(problem, motion, method)?;
     let end = plan.trajectory.end().position;
-    let left = problem.desired.left_from(end, plan.trajectory.length());
-    let arrives = left <= 2.0 * tolerance::ARRIVAL_M;
-    Some(Plan {
-        to_go: if arrives { 0.0 } else { left },
-        ..plan
-    })
+    let to_go = problem.desired.left_from(end, plan.trajectory.length());
+    Some(Plan { to_go, ..plan })
 }
 
 /// The desired trajectory moved aside, nearest first, and back at its end. The last ones use all the
