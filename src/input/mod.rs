@@ -122,10 +122,19 @@ impl InputError {
     }
 }
 
-/// The entry of a file's folder whose name is most like it. Among equals the first by name.
+/// The path with each missing entry replaced by the one whose name is most like it in its folder.
+/// Among equals the first by name.
 fn near(file: &Path) -> Option<PathBuf> {
     let name = file.file_name()?.to_str()?.to_lowercase();
-    let folder = file.parent().unwrap_or(Path::new(""));
+    let mut folder = file.parent().unwrap_or(Path::new("")).to_owned();
+    if folder != Path::new("") && !folder.is_dir() {
+        folder = near(&folder)?;
+        let there = folder.join(file.file_name()?);
+        if there.exists() {
+            return Some(there);
+        }
+    }
+    let folder = folder.as_path();
     let listed = match folder == Path::new("") {
         true => Path::new("."),
         false => folder,

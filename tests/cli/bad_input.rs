@@ -283,6 +283,21 @@ fn a_missing_file_is_perhaps_another() {
     }
     let said = stderr(&run("suite scenario").code(2));
     assert!(said.contains("; perhaps scenarios?"), "{said}");
+    // of a folder too, on the way to a file
+    for (wrong, right) in [
+        ("scenarios/colreg", "scenarios/colregs"),
+        (
+            "scenarios/colreg/give-way.toml",
+            "scenarios/colregs/give-way.toml",
+        ),
+        (
+            "scenario/colreg/give-wey.toml",
+            "scenarios/colregs/give-way.toml",
+        ),
+    ] {
+        let said = stderr(&run(&format!("suite {wrong}")).code(2));
+        assert!(said.contains(&format!("; perhaps {right}?")), "{said}");
+    }
     let text =
         format!("origin = {{ lat_deg = 63.0, lon_deg = 10.0 }}\nmap = \"isl.geojson\"\n{HEAD_ON}");
     folder.write("isle.geojson", "");
@@ -322,6 +337,41 @@ fn rows_and_sentences_are_known() {
             "east_m,north_m,t_s\n1,2,3\n".to_owned(),
             "rows of values (CSV)",
         ),
+        (
+            "h.csv",
+            "MMSI;BaseDateTime;LAT;LON\n1;2,5;3,5;4\n".to_owned(),
+            "rows of AIS reports (CSV with semicolons)",
+        ),
+        (
+            "i.tsv",
+            "MMSI\tLAT\tLON\n1\t2\t3\n".to_owned(),
+            "rows of AIS reports (TSV)",
+        ),
+        (
+            "j.json",
+            "{\"class\": \"VERSION\"}\n{\"class\": \"AIS\", \"mmsi\": 1}\n".to_owned(),
+            "reports of gpsd (JSON)",
+        ),
+        (
+            "k.json",
+            "{\"mmsi\": 1}\n{\"mmsi\": 2}\n".to_owned(),
+            "rows of AIS reports (JSON)",
+        ),
+        (
+            "l.json",
+            "[\n{\"mmsi\": 1},\n{\"mmsi\": 2}]\n".to_owned(),
+            "rows of AIS reports (JSON)",
+        ),
+        (
+            "m.gpx",
+            "<gpx version=\"1.1\"></gpx>".to_owned(),
+            "XML that begins with gpx",
+        ),
+        (
+            "n.kml",
+            "<kml></kml>".to_owned(),
+            "XML that begins with kml",
+        ),
     ] {
         let file = folder.write(name, text);
         let out = format!("import --out {folder}/out");
@@ -329,7 +379,7 @@ fn rows_and_sentences_are_known() {
             let said = stderr(&run(&format!("{command} {file}")).code(2));
             let whole = format!("found {kind}");
             assert!(
-                said.contains(&whole) && said.contains("CommonOcean"),
+                said.contains(&whole) && said.contains("a scenario file (TOML)"),
                 "{said}"
             );
         }
@@ -338,4 +388,10 @@ fn rows_and_sentences_are_known() {
     let file = folder.write("g.toml", HEAD_ON.replacen("title", "title, a, b", 1));
     let said = stderr(&run(&format!("check {file}")).code(2));
     assert!(said.contains("line 2: ") && !said.contains("CSV"), "{said}");
+    let file = folder.write("o.json", "{\"own_ship\": {},\n\"cases\": [}\n".to_owned());
+    let said = stderr(&run(&format!("check {file}")).code(2));
+    assert!(
+        said.contains("line 2: ") && !said.contains("rows"),
+        "{said}"
+    );
 }

@@ -70,8 +70,12 @@ const STRATA: &str = "strata";
 const READ: &str = "a scenario file (TOML), DNV's traffic situations or Imazu's cases (JSON), or \
                     CommonOcean's scenarios (XML); what AIS reports of a ship goes into [[targets]]";
 
-/// The kind of a text of rows, which is no TOML: sentences of a receiver, or values between commas.
-fn rows(text: &str) -> Option<&'static str> {
+/// What separates the values of a row, and the name of such rows.
+const SEPARATORS: [(char, &str); 3] = [(';', "CSV with semicolons"), ('\t', "TSV"), (',', "CSV")];
+
+/// The kind of a text of rows, which is no TOML: sentences of a receiver, separated values, or values
+/// of JSON.
+fn rows(text: &str) -> Option<String> {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let [first, second] = [lines.next()?, lines.next().unwrap_or_default()];
     // after a tag block, and a time
@@ -81,19 +85,27 @@ fn rows(text: &str) -> Option<&'static str> {
         begins.is_some_and(|word| word.chars().all(|c| c.is_ascii_uppercase()))
             && line.contains(',')
     };
-    let is_row = |line: &str| line.matches(',').count() >= 2 && !line.contains('=');
     if is_sentence(first) {
-        Some("NMEA sentences, as of an AIS receiver")
-    } else if is_row(first) && (is_row(second) || second.is_empty()) {
-        let is_ais = first.to_lowercase().contains("mmsi");
-        Some(if is_ais {
-            "rows of AIS reports (CSV)"
-        } else {
-            "rows of values (CSV)"
-        })
-    } else {
-        None
+        return Some("NMEA sentences, as of an AIS receiver".to_owned());
     }
+    let head = format!("{first}{second}").to_lowercase();
+    let what = match head.contains("mmsi") {
+        true => "rows of AIS reports",
+        false => "rows of values",
+    };
+    let is_list = || first.starts_with('[') && from_json(text).is_ok();
+    if first.starts_with('{') && head.replace(' ', "").starts_with("{\"class\":") {
+        return Some("reports of gpsd (JSON)".to_owned());
+    }
+    if first.starts_with('{') || is_list() {
+        return Some(format!("{what} (JSON)"));
+    }
+    let is_row = |line: &str, sign: char| line.matches(sign).count() >= 2 && !line.contains('=');
+    let separated = |(sign, _): &&(char, &str)| {
+        is_row(first, *sign) && (is_row(second, *sign) || second.is_empty())
+    };
+    let (_, form) = SEPARATORS.iter().find(separated)?;
+    Some(format!("{what} ({form})"))
 }
 
 /// Keys by which result documents without a format are known.
@@ -116,7 +128,7 @@ fn in_xml(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
         let found = format_args!("XML that begins with {root}");
         let allowed = match root {
             "route" => "a scenario: one whose [mission] has 'route' reads this file",
-            _ => "a CommonOcean scenario (commonOcean)",
+            _ => READ,
         };
         return Err(vec![Fault::new(root, found, allowed)]);
     }
@@ -126,7 +138,15 @@ fn in_xml(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
 }
 
 fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
-    let value = from_json(text).map_err(|fault| vec![fault])?;
+    let is_whole = |line: &str| line.starts_with('{') && from_json(line).is_ok();
+    let value = from_json(text).map_err(|fault| {
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        // each line is a value of its own, as of gpsd
+        match lines.next().is_some_and(is_whole) && lines.next().is_some_and(is_whole) {
+            true => vec![Fault::new("", rows(text).unwrap_or_default(), READ)],
+            false => vec![fault],
+        }
+    })?;
     let faults = Faults::default();
     let root = Field::root(&value, &faults);
     let has = |key: &str| value.get(key).is_some();
