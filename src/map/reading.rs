@@ -67,11 +67,16 @@ impl Map {
             return Err(if none { together(faults) } else { faults });
         }
         if reading.polygons.is_empty() {
-            reading.fault(
-                None,
-                "no polygon",
-                format!("at least one feature that is {POLYGON}"),
-            );
+            let [points, lines, _] = reading.skipped;
+            let (found, more) = match points + lines {
+                0 => ("no polygon", ""),
+                _ => (
+                    "points and lines but no polygon",
+                    ", as map = { file = …, point_radius_m = … } in the scenario",
+                ),
+            };
+            let allowed = format!("at least one feature that is {POLYGON}{more}");
+            reading.fault(None, found, allowed);
             return Err(reading.faults);
         }
         let remarks = reading.remarks();

@@ -138,6 +138,11 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
     write(r#"{"type":"FeatureCollection","features":[]}"#);
     let none = "bad.geojson: no polygon; allowed: at least one feature that is a Polygon";
     assert_one_fault(folder.path(), &text, none);
+    write(r#"{"type":"Point","coordinates":[10.4,63.44]}"#);
+    let points = "bad.geojson: points and lines but no polygon; allowed: at least one feature that \
+                  is a Polygon or a MultiPolygon; points and lines where the map has a \
+                  point_radius_m, as map = { file = …, point_radius_m = … } in the scenario";
+    assert_one_fault(folder.path(), &text, points);
     // the origin in another town: every feature is far
     let oslo = SCENARIO
         .replace("63.44,", "59.91,")
