@@ -381,4 +381,22 @@ fn a_chart_of_a_millimetre_beside_a_target_of_kilometres_is_drawn() {
     let figure = folder.at("a.png");
     run(&format!("plan {file} --figure {figure}")).success();
     assert!(fs::read(figure).expect("a figure").starts_with(b"\x89PNG"));
+    // numbers of the axes without the rounding of the machine, which would run into each other
+    let figure = folder.at("a.svg");
+    run(&format!("plan {file} --figure {figure}")).success();
+    let svg = fs::read_to_string(figure).expect("a figure");
+    let numbers: Vec<&str> = svg
+        .split('<')
+        .filter_map(|tag| tag.split_once('>'))
+        .map(|t| t.1)
+        .collect();
+    let numbers: Vec<&str> = numbers
+        .into_iter()
+        .filter(|text| text.parse::<f64>().is_ok())
+        .collect();
+    assert!(
+        numbers.iter().any(|text| text.contains("e-4")),
+        "{numbers:?}"
+    );
+    assert!(numbers.iter().all(|text| text.len() < 9), "{numbers:?}");
 }

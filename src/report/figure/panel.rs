@@ -1,7 +1,9 @@
 //! Panel: one pair of axes.
 
+use std::sync::Arc;
+
 use kuva::render::annotations::TextAnnotation;
-use kuva::render::layout::Layout;
+use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
 use super::Stroke;
@@ -361,6 +363,7 @@ impl Panel {
             .with_y_axis_max(high.y)
             .with_x_tick_step(steps[0])
             .with_y_tick_step(steps[1])
+            .with_tick_format(TickFormat::Custom(Arc::new(tick_text)))
             .with_box_axes()
             .with_show_grid(false)
             .with_title_size(size + TITLE)
@@ -417,6 +420,16 @@ fn tick_step(low: f64, high: f64, least: f64) -> f64 {
         step = round_step(0.4 * step);
     }
     step
+}
+
+/// The number of a tick. One below a hundredth has an exponent, and is rounded: it is a multiple of
+/// the step up to the rounding of the machine, of which it would show all digits.
+fn tick_text(value: f64) -> String {
+    let rounded = match value.abs() < 0.01 {
+        true => format!("{value:.5e}").parse().unwrap_or(value),
+        false => value,
+    };
+    TickFormat::Auto.format(rounded)
 }
 
 /// A darker shade of a colour `#rrggbb`.
