@@ -33,6 +33,7 @@ impl Situation {
             notes: self.remarks.notes.clone(),
             faults: Vec::new(),
             sizeless: Vec::new(),
+            without_role: Vec::new(),
             taken: None,
         };
         writing.situation(self);
@@ -65,6 +66,8 @@ struct Writing<'a> {
     faults: Vec<Fault>,
     /// Ships with an assumed hull, and this hull.
     sizeless: Vec<String>,
+    /// Ships of which only a set is known, in which no rule sees a ship.
+    without_role: Vec<String>,
     taken: Option<Hull>,
 }
 
@@ -73,15 +76,33 @@ impl Writing<'_> {
         let own = &situation.own;
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
         let name = quoted(&situation.name);
-        self.text += &format!("title = {name}\nhorizon_s = {horizon:?}\n");
-        let cautions = &situation.remarks.cautions;
-        if !cautions.is_empty() {
-            let lines: String = cautions
-                .iter()
-                .map(|c| format!("    {},\n", quoted(c)))
-                .collect();
-            self.text += &format!("cautions = [\n{lines}]\n");
+        let head = format!("title = {name}\nhorizon_s = {horizon:?}\n");
+        self.tables(situation, horizon);
+        let mut remarks = situation.remarks.clone();
+        if let [first, more @ ..] = &self.without_role[..] {
+            let whom = match more {
+                [] => format!("'{first}'"),
+                _ => format!("{} ships", self.without_role.len()),
+            };
+            let statement = format_args!(
+                "not applied: explicit sets, which have no role, hold the turns and speeds of '{}'",
+                self.without_role.join("', '")
+            );
+            remarks.caution(format_args!("rules for {whom}"), statement);
         }
+        let cautions: String = (remarks.cautions.iter())
+            .map(|caution| format!("    {},\n", quoted(caution)))
+            .collect();
+        let cautions = match cautions.is_empty() {
+            true => cautions,
+            false => format!("cautions = [\n{cautions}]\n"),
+        };
+        self.text = head + &cautions + &self.text;
+    }
+
+    /// All that comes after the keys of the scenario itself.
+    fn tables(&mut self, situation: &Situation, horizon: f64) {
+        let own = &situation.own;
         if let Some(earth) = situation.earth {
             let Geographic { lat_deg, lon_deg } = earth.origin();
             self.text += &format!("origin = {{ lat_deg = {lat_deg:?}, lon_deg = {lon_deg:?} }}\n");
@@ -248,9 +269,10 @@ impl Writing<'_> {
                 self.text += &format!("    {{ {until}vertices_mps = {velocities} }},\n");
             }
             self.text += "]\n";
+            self.without_role.push(name.to_owned());
             self.notes.push(format!(
                 "{name}: a track with changes, as velocity sets one after another; \
-                 margin and hulls on any heading are in its set, which has no role: no rule applies to it"
+                 margin and hulls on any heading are in its set"
             ));
         }
         if track.end() < horizon {
