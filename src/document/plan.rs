@@ -169,7 +169,7 @@ impl PlanDocument {
             time_of_no_return_s: None,
             lower_bound: None,
             violations: Vec::new(),
-            cautions: scenario.remarks.cautions.clone(),
+            cautions: scenario.cautions(plan(run).map(|plan| &plan.trajectory)),
             notes: scenario.remarks.notes.clone(),
             cost: cost(run),
             search_stats: SearchStatsDocument::of(run.planned.stats),

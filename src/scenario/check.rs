@@ -9,6 +9,7 @@ use super::plane::{Plane, near};
 use super::planner::{PlannerTable, planner};
 use super::route::{Route, RouteLeg};
 use super::simulation::simulation;
+use super::speed_limits::SpeedLimit;
 use super::targets::targets;
 use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits};
 use crate::colregs::TargetMemory;
@@ -26,7 +27,7 @@ use crate::vessel::{Hull, OwnShip};
 const DEFAULT_SPEEDS: [f64; 2] = [0.5, 1.0];
 
 /// Speeds that differ by this fraction are one.
-const SAME_SPEED: f64 = 1e-9;
+pub(super) const SAME_SPEED: f64 = 1e-9;
 
 /// Cautions of a file.
 const CAUTIONS: usize = 1000;
@@ -154,6 +155,7 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         start,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         stay: mission.stay,
+        speed_limits: mission.speed_limits,
         alternatives: mission.alternatives,
         targets,
         acceleration,
@@ -198,6 +200,7 @@ pub(super) fn bare(
         acceleration: None,
         desired,
         stay: None,
+        speed_limits: Vec::new(),
         alternatives: Vec::new(),
         targets: Vec::new(),
         out_of_reach: Arc::default(),
@@ -355,10 +358,9 @@ fn fast_legs(own: &OwnShip, mission: &Mission, remarks: &mut Remarks) {
             statement,
         );
     }
-    if let Some(least) = mission
-        .most
-        .filter(|most| *most < (1.0 - SAME_SPEED) * largest)
-    {
+    let limits = mission.speed_limits.iter().map(|leg| leg.most);
+    let least = limits.reduce(f64::min);
+    if let Some(least) = least.filter(|most| *most < (1.0 - SAME_SPEED) * largest) {
         let statement = format_args!(
             "limits the mission alone, on a leg to {}; a plan may use own ship's speeds up to {}",
             knots(least),
@@ -395,8 +397,8 @@ struct Mission {
     stay: Option<f64>,
     /// True where the speeds are those of a route file.
     is_route: bool,
-    /// The least of the highest speeds that the legs of a route allow, m/s.
-    most: Option<f64>,
+    /// See [`Scenario::speed_limits`].
+    speed_limits: Vec<SpeedLimit>,
 }
 
 /// Values of the file that the mission needs.
@@ -508,17 +510,13 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
         desired = until(desired, horizon / HORIZON_MISSIONS, room, remarks);
     }
     let departs = part.as_ref().and_then(|part| part.departs);
-    let most = part
-        .iter()
-        .flat_map(|part| &part.legs)
-        .filter_map(|leg| leg.most);
     Some(Mission {
         date: departs.and_then(|departs| after(departs, -start?)),
         desired,
         alternatives,
         stay,
         is_route: part.is_some(),
-        most: most.reduce(f64::min),
+        speed_limits: part.as_ref().map(Part::speed_limits).unwrap_or_default(),
     })
 }
 
@@ -568,8 +566,24 @@ struct Part {
     /// Seconds that own ship waits where each leg ends.
     waits: Vec<f64>,
     departs: Option<DateTime<Utc>>,
-    /// True where something of the route is left out.
+    /// True where the route is not wholly within reach.
     is_cut: bool,
+}
+
+impl Part {
+    /// The legs with the highest speeds that they allow; empty where none has a limit.
+    fn speed_limits(&self) -> Vec<SpeedLimit> {
+        if self.legs.iter().all(|leg| leg.most.is_none()) {
+            return Vec::new();
+        }
+        let legs = self.points.windows(2).zip(&self.legs);
+        let limit = |(ends, leg): (&[Vector], &LegSpeeds)| SpeedLimit {
+            from: ends[0],
+            to: ends[1],
+            most: leg.most.unwrap_or(f64::INFINITY),
+        };
+        legs.map(limit).collect()
+    }
 }
 
 /// Makes a leg before a wait as slow as to end with the wait: a desired trajectory does not wait.
@@ -715,7 +729,7 @@ fn route(
         legs,
         waits,
         departs,
-        is_cut,
+        is_cut: is_cut || !is_whole,
     })
 }
 

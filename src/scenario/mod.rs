@@ -13,6 +13,7 @@ mod plane;
 mod planner;
 mod route;
 mod simulation;
+mod speed_limits;
 mod targets;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ pub use out_of_reach::{DistantTarget, MOST_WITHOUT_SELECTION, OutOfReach};
 pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
+pub use speed_limits::SpeedLimit;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -38,7 +40,7 @@ use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
 use crate::planner::{Objective, Planner, PlannerSettings, SearchKind, Tidiness};
 use crate::target::Target;
-use crate::trajectory::DesiredTrajectory;
+use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::OwnShip;
 
 /// The JSON schema of a scenario file. It says what the reader accepts, key by key; what one key
@@ -79,6 +81,9 @@ pub struct Scenario {
     /// Time until which own ship lies at the last waypoint after its arrival, seconds, at most the
     /// horizon; `None` where the mission ends with the arrival.
     pub stay: Option<f64>,
+    /// The legs of a route with the highest speeds that they allow, without effect on plans; empty
+    /// where it has no such limit.
+    pub speed_limits: Vec<SpeedLimit>,
     /// Other allowed paths, metres; for the path-time planner.
     pub alternatives: Vec<Vec<Vector>>,
     /// The targets.
@@ -133,6 +138,17 @@ impl Scenario {
             targets,
             ..check::bare(title, horizon, own_ship, desired, planner, tracked)
         }
+    }
+
+    /// The cautions of the files, and that a motion exceeds the speed limits of the route.
+    pub(crate) fn cautions(&self, motion: Option<&Trajectory>) -> Vec<String> {
+        let mut remarks = self.remarks.clone();
+        let corner = self.own_ship.turning_radius;
+        let exceeded = motion.and_then(|m| speed_limits::exceeded(&self.speed_limits, m, corner));
+        if let Some((subject, statement)) = exceeded {
+            remarks.caution(subject, statement);
+        }
+        remarks.cautions
     }
 
     /// How tidy plans are; `None` for the least cost alone. Plans are tidy where the file asks for

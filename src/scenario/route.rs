@@ -258,6 +258,22 @@ struct Call {
 }
 
 impl Call {
+    /// The names of what another entry says otherwise.
+    fn otherwise(&self, other: &Self) -> impl Iterator<Item = &'static str> {
+        fn differ<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
+            a.zip(b).is_some_and(|(a, b)| a != b)
+        }
+        let all = [
+            ("speed", differ(self.speed, other.speed)),
+            ("eta", differ(self.arrives, other.arrives)),
+            ("etd", differ(self.departs, other.departs)),
+            ("stay", differ(self.stay, other.stay)),
+        ];
+        all.into_iter()
+            .filter(|(_, differ)| *differ)
+            .map(|(name, _)| name)
+    }
+
     /// The other entry where this one says nothing.
     fn or(self, other: Self) -> Self {
         Self {
@@ -351,9 +367,12 @@ fn schedule<'a>(
     let list = root.take("schedules");
     let all: Vec<Xml> = list.iter().flat_map(|all| all.all("schedule")).collect();
     let mut read = Vec::with_capacity(all.len());
+    let mut unused = Vec::with_capacity(all.len());
     for element in &all {
         refuse_second(element, &SCHEDULES);
-        read.push(schedule_of(element, waypoints, remarks)?);
+        let (calls, otherwise) = schedule_of(element, waypoints, remarks)?;
+        read.push(calls);
+        unused.push(otherwise);
     }
     let named = |element: &Xml| {
         let name = element.attribute("name").or(element.attribute("id"));
@@ -389,19 +408,30 @@ fn schedule<'a>(
         );
         remarks.note(format_args!("schedule {}", named(&all[chosen])), statement);
     }
+    if let [first, more @ ..] = &unused[chosen][..] {
+        let more = match more.len() {
+            0 => String::new(),
+            more => format!(" and {}", counted(more, "more value")),
+        };
+        let statement =
+            format_args!("{first}{more} not used, of which the calculated schedule says otherwise");
+        remarks.note("manual schedule", statement);
+    }
     Some(read.swap_remove(chosen))
 }
 
-/// Reads one schedule. The first waypoint has no leg before it.
+/// Reads one schedule, and what of it is not used because the calculated one says otherwise. The
+/// first waypoint has no leg before it.
 fn schedule_of<'a>(
     element: &Xml<'a>,
     waypoints: &[Xml<'a>],
     remarks: &mut Remarks,
-) -> Option<BTreeMap<&'a str, Call>> {
+) -> Option<(BTreeMap<&'a str, Call>, Vec<String>)> {
     let first = waypoints
         .first()
         .and_then(|waypoint| waypoint.attribute("id"));
     let mut calls: BTreeMap<&str, Call> = BTreeMap::new();
+    let mut unused = Vec::new();
     for kind in SCHEDULES.into_iter().filter_map(|kind| element.take(kind)) {
         refuse_backward(&kind, waypoints);
         let mut known = BTreeSet::new();
@@ -451,11 +481,13 @@ fn schedule_of<'a>(
             };
             if call != Call::default() {
                 let known = calls.remove(at).unwrap_or_default();
+                let names = known.otherwise(&call);
+                unused.extend(names.map(|n| format!("{n} of waypoint {}", abbreviated(at))));
                 calls.insert(at, known.or(call));
             }
         }
     }
-    Some(calls)
+    Some((calls, unused))
 }
 
 /// Refuses times of arrival and departure that run backwards along the route. Those without an
@@ -595,6 +627,8 @@ mod tests {
             route.remarks.notes,
             [
                 "radii of turns: not used, up to 556 m; own ship turns by its turning_radius_m",
+                "manual schedule: speed of waypoint \"4\" not used, of which the calculated schedule \
+                 says otherwise",
                 "stay at the last waypoint: not used, the mission is over",
             ]
         );

@@ -189,6 +189,7 @@ fn scene(
                 ..own_ship
             },
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED]).ok()?,
+            speed_limits: Vec::new(),
             alternatives: Vec::new(),
             targets: targets.collect(),
             out_of_reach: std::sync::Arc::default(),

@@ -14,6 +14,8 @@ corridor.toml | cross-track limits | not kept, of 1 leg; the least are 93 m to p
 isle-point.toml | 1 point of the map | skipped, as if it were water there
 pier-line.toml | 1 line of the map | point_radius_m
 dnv-not-under-command-from-port.json | Rule 18 | not applied to 'nuc', not under command by its navStatus
+speed-limit.toml | speedMax | not kept: the plan makes 11.7 kn where a leg of the route allows 7.0 kn
+dnv-wide-turns.json | rules for 'target_ship_1' | not applied: explicit sets, which have no role
 commonocean-max-lateral-deviation.xml | maxLateralDeviation | allows 50 m to the side
 ";
 
@@ -55,6 +57,50 @@ fn a_caution_remains_with_an_imported_scenario() {
     assert!(json(&format!("plan {usual} --json"))["cautions"].is_null());
 }
 
+/// A plan within the limit says nothing, and a leg without one has none.
+#[test]
+fn a_plan_within_the_speed_limits_of_its_route_is_not_cautioned() {
+    let folder = Folder::new();
+    let text = fs::read_to_string("tests/faults/speed-limit.toml").expect("there");
+    let route = fs::read_to_string("tests/faults/speed-limit.rtz").expect("there");
+    let (alone, _) = text.split_once("[[targets]]").expect("targets");
+    let off = text.replace("lat_deg = 60.035", "lat_deg = 60.045");
+    let off = off.replace(
+        "lon_deg = 10.0 }\ncourse_deg = 180.0",
+        "lon_deg = 10.2 }\ncourse_deg = 180.0",
+    );
+    for (scenario, limit, is_cautioned) in [
+        (alone, "7", false),
+        (&*off, "7", false),
+        (&*text, "7", true),
+        (&*text, "11", true),
+        (&*text, "12", false),
+    ] {
+        let of_leg = format!("speedMax=\"{limit}\"");
+        folder.write("speed-limit.rtz", route.replace("speedMax=\"7\"", &of_leg));
+        let file = folder.write("a.toml", scenario);
+        let plan = json(&format!("plan {file} --json"));
+        assert_eq!(
+            !plan["cautions"].is_null(),
+            is_cautioned,
+            "{limit}: {}",
+            plan["cautions"]
+        );
+    }
+}
+
+/// A part of a route that is within reach is as long as to leave time to give way, wherever the route
+/// leaves the reach.
+#[test]
+fn a_route_that_begins_beyond_reach_is_cut_to_half_of_the_horizon() {
+    let plan = json("plan tests/faults/far-start.toml --json");
+    assert_eq!(plan["outcome"], "solved");
+    let note = "route: the mission is its next 7.5 km, which take no more than half of horizon_s";
+    assert!(notes(&plan).contains(note), "{}", notes(&plan));
+    let ends = number(&plan["cost"]["duration_s"]);
+    assert!((ends - 1500.0).abs() < 0.1, "{ends}");
+}
+
 fn leg_knots(plan: &Value) -> Vec<f64> {
     let legs = list(&plan["mission"]["leg_speeds_mps"]).iter();
     legs.map(|speed| number(speed) / KNOT).collect()
@@ -81,6 +127,7 @@ leg-speed | 9.719 6 | 5 | radii of turns: not used, up to 556 m
 ten-knots | 9.719 | 2 | speedMax: limits the mission alone, on a leg to 10.0 kn
 timetable-only | 6.0167 | 2 |
 no-zone | 6 | 2 | times without a zone: not used, no offset from UTC: etd \"2026-05-01T06:00:00\"
+two-speeds | 7 | 2 | manual schedule: speed of waypoint \"2\" not used, of which the calculated schedule says otherwise
 two-schedules | 12 | 5 | schedule \"fast\": the first of 2 is used; `schedule` in [mission] names another
 ";
 
