@@ -12,7 +12,7 @@ use searoom::report::{
 };
 use searoom::scenario::Scenario;
 use searoom::study::bound::lower_bound;
-use searoom::study::lint::findings;
+use searoom::study::lint::{findings, met_at_rest};
 
 use super::args::PlanArgs;
 use super::input::files::{Found, shown};
@@ -42,6 +42,9 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             // the text has them below the verdict
             let cautions = &run.scenario.remarks.cautions;
             notes.retain(|note| args.shared.written.json || !cautions.contains(note));
+            // the verdict says it for the arrival of the plan
+            let of_mission = met_at_rest(&run.scenario);
+            notes.retain(|note| !of_mission.contains(note));
             output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {

@@ -12,6 +12,7 @@ use searoom::report::{simulation_text, simulations_line, write_atomically};
 use searoom::scenario::import::Imported;
 use searoom::scenario::{Scenario, ScenarioError};
 use searoom::simulation::Simulation;
+use searoom::study::lint::met_at_rest;
 
 use super::args::SimulateArgs;
 use super::input::files::{Refused, shown};
@@ -134,6 +135,7 @@ fn sail(
     let refused = |faults| ScenarioError::faults(file, scene.located(faults));
     args.asked.apply(&mut scenario).map_err(refused)?;
     let notes = made.notes.into_iter().chain(sailed_in_parts(&scenario));
+    let notes = notes.chain(met_at_rest(&scenario));
     output.notes(None, &[(String::new(), notes.collect())]);
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);

@@ -120,12 +120,12 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     findings
 }
 
-/// Targets that meet own ship where it lies, on their nominal motion, after a mission that is shorter
-/// than its hull: it is at anchor or on station. After a longer one the verdict of the plan says so.
-fn met_at_rest(scenario: &Scenario) -> Vec<String> {
+/// Targets that meet own ship where it lies, on their nominal motion, after it has arrived as its
+/// mission says and before the horizon. The verdict of a plan says so for the arrival of the plan.
+pub fn met_at_rest(scenario: &Scenario) -> Vec<String> {
     let desired = &scenario.desired;
     // a plan keeps clear until the stay ends
-    if desired.length() > scenario.own_ship.hull.length || scenario.stay.is_some() {
+    if scenario.stay.is_some() {
         return Vec::new();
     }
     let last = desired
@@ -142,7 +142,11 @@ fn met_at_rest(scenario: &Scenario) -> Vec<String> {
         let met = target.first_meets(&scenario.own_ship.hull, &lies, time)?;
         let name = &target.name;
         (met > time[0]).then(|| {
-            format!("{name}: meets own ship at {met:.0} s where it lies after its mission")
+            let end = time[0];
+            format!(
+                "{name}: meets own ship at {met:.0} s where it lies after its mission, which ends at \
+                 {end:.0} s"
+            )
         })
     });
     met.collect()

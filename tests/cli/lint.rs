@@ -1,6 +1,6 @@
 //! Probable mistakes of a scenario that can be planned: one list for three commands.
 
-use super::program::{Folder, HEAD_ON, document, list, run, stderr};
+use super::program::{Folder, HEAD_ON, document, list, run, stderr, stdout};
 
 /// A name, what is replaced in the head-on scenario, and the finding. `|` separates.
 const MISTAKES: &str = "
@@ -46,10 +46,6 @@ fn probable_mistakes_are_one_list_of_three_commands() {
             "first-waypoint-passed",
             "mission: begins 1500 m astern of own ship, which slows down to keep to its schedule",
         ),
-        (
-            "own-ship-at-anchor",
-            "coaster: meets own ship at 953 s where it lies after its mission",
-        ),
     ] {
         assert_found_once(&format!("tests/faults/{file}.toml"), note);
     }
@@ -66,6 +62,56 @@ fn probable_mistakes_are_one_list_of_three_commands() {
         assert_ne!(text, HEAD_ON);
         let file = folder.write("a.toml", text);
         assert_eq!(stderr(&run(&format!("check {file}")).success()), "");
+    }
+}
+
+/// However long the mission is. `plan` has its own arrival, and says it in its verdict.
+#[test]
+fn a_ship_that_is_met_at_rest_is_found_by_each_command() {
+    let folder = Folder::new();
+    let late = HEAD_ON
+        .replacen("horizon_s = 400.0", "horizon_s = 900.0", 1)
+        .replacen(
+            "1500.0, north_m = 0.0 }\ncourse",
+            "4500.0, north_m = 0.0 }\ncourse",
+            1,
+        );
+    assert!(late.contains("4500.0") && late.contains("900.0"));
+    let late = folder.write("late.toml", late);
+    let anchored = "tests/faults/own-ship-at-anchor.toml".to_owned();
+    for (file, note, verdict) in [
+        (
+            late,
+            "target: meets own ship at 591 s where it lies",
+            "met at rest by 'target' at 591 s",
+        ),
+        (
+            anchored,
+            "coaster: meets own ship at 953 s where it lies",
+            "met at rest by 'coaster'",
+        ),
+    ] {
+        let linted = document(&run(&format!("suite --lint --json {file}")).success());
+        let findings = list(&linted["scenarios"][0]["findings"]);
+        let found = findings.iter().filter_map(|f| f.as_str());
+        assert_eq!(
+            found.filter(|f| f.contains(note)).count(),
+            1,
+            "{findings:?}"
+        );
+        for command in ["check", "simulate"] {
+            let said = stderr(&run(&format!("{command} {file}")));
+            assert_eq!(said.matches(note).count(), 1, "{command}: {said}");
+        }
+        let planned = run(&format!("plan {file}")).success();
+        let [said, notes] = [stdout(&planned), stderr(&planned)];
+        assert!(
+            said.lines()
+                .next()
+                .is_some_and(|line| line.contains(verdict)),
+            "{said}"
+        );
+        assert!(!notes.contains("where it lies"), "{notes}");
     }
 }
 
@@ -101,8 +147,16 @@ fn no_shipped_scenario_has_a_probable_mistake() {
     assert_eq!(found, EXPECTED, "{found:#?}");
 }
 
-/// A fairway whose ship keeps off the route; and a case that its table and others count differently.
-const EXPECTED: [&str; 2] = [
+/// A fairway whose ship keeps off the route, a case that its table and others count differently, and
+/// horizons long after the arrival, at which ships pass over the last waypoint.
+const EXPECTED: [&str; 9] = [
     "ZAM_Sample-2_1_T-1: no target in the way: own ship may hold its course",
+    "OT-GW, OT-GW, OT-SO: target_ship_1: meets own ship at 2100 s where it lies after its mission, which ends at 1800 s",
+    "imazu-03: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
+    "imazu-07: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
     "imazu-12: ships are missing: 3 declared, 2 found",
+    "imazu-15: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
+    "imazu-17: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
+    "imazu-20: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
+    "imazu-22: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
 ];
