@@ -276,11 +276,9 @@ fn a_turn_radius_that_a_known_route_has_takes_no_role_away() {
         let contents = Contents::parse(&document.to_string(), &Assumed::default()).expect("good");
         let found = imported(&situations(contents)[0]);
         let role = searoom::pipeline::sets(&found.scenario)[0].encounter.role;
-        let note = found
-            .notes
-            .iter()
-            .any(|note| note.contains("no rule applies"));
-        (role, note)
+        let cautions = &found.scenario.remarks.cautions;
+        let caution = cautions.iter().any(|text| text.starts_with("rules for '"));
+        (role, caution)
     };
     let corner = with_radius(None);
     assert_eq!(corner, (Role::HeadOn, false));
