@@ -132,35 +132,40 @@
 #[cfg(test)]
 extern crate self as searoom;
 
-// first, because its macro is used in the modules below
-#[macro_use]
-mod text;
+#[cfg(test)]
+#[path = "../crates/geometry/src/geometry_fixtures.rs"]
+mod geometry_fixtures;
+#[cfg(test)]
+#[path = "../crates/model/src/ship_fixtures.rs"]
+mod ship_fixtures;
 
 pub mod campaign;
-pub mod colregs;
 pub mod document;
-pub mod evaluation;
-pub mod frame;
-pub mod geometry;
 pub mod input;
+mod labels;
 pub mod map;
-mod numerics;
-pub mod obstacle;
 mod output;
-mod parallel;
 pub mod pipeline;
-pub mod planner;
 mod publication;
 #[cfg(feature = "recording")]
 pub mod recording;
 pub mod replanning;
 pub mod report;
 pub mod scenario;
-pub mod search;
 pub mod simulation;
 pub mod study;
-pub mod target;
-pub mod tolerance;
-pub mod trajectory;
+mod text;
 pub mod verification;
-pub mod vessel;
+
+// the libraries, by the names of their topics
+pub use searoom_colregs as colregs;
+pub use searoom_evaluation as evaluation;
+pub use searoom_geometry as geometry;
+pub use searoom_geometry::{frame, tolerance};
+pub use searoom_model::{target, trajectory, vessel};
+pub use searoom_planner as planner;
+pub use searoom_planner::search;
+pub use searoom_sets as obstacle;
+
+use searoom_geometry::numerics;
+use searoom_parallel as parallel;

@@ -6,23 +6,6 @@ use textwrap::{WordSeparator, WordSplitter};
 
 use crate::frame::knots_from_mps;
 
-/// Defines the names that the values of an enum have in files and on the command line.
-macro_rules! words {
-    ($kind:ty { $($value:ident => $word:literal),+ $(,)? }) => {
-        impl $kind {
-            /// Each value and its name in files and on the command line.
-            pub const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$value)),+];
-
-            /// Name in files and on the command line.
-            pub fn word(self) -> &'static str {
-                match self {
-                    $(Self::$value => $word),+
-                }
-            }
-        }
-    };
-}
-
 /// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
 /// Characters of such a text.

@@ -4,30 +4,20 @@
 //! Parses the sources as token trees, so comments, strings and formatting do not count. Unit tests
 //! inside a file (`#[cfg(test)] mod …`) may use anything.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Modules of the crate that each top-level module may use; a module may always use itself. Vectors
-/// and their products are in `frame`, which depends on neither ships nor time.
+/// Modules of the program's package, and the libraries by their names there, that each of its
+/// top-level modules may use; a module may always use itself. Between libraries the manifests hold
+/// the borders.
 const MAY_USE: &str = "
-frame:
-tolerance:
-numerics:
-search:
+labels: frame geometry
 output:
-parallel:
 text: frame
 input: frame text
-geometry: tolerance frame numerics
-trajectory: frame tolerance geometry
-vessel: frame tolerance geometry
 map: frame geometry tolerance input text
-target: frame geometry tolerance vessel
-colregs: frame tolerance numerics geometry trajectory target vessel input text
-obstacle: frame geometry tolerance numerics target trajectory
-planner: parallel obstacle trajectory vessel target search geometry frame tolerance numerics colregs
-evaluation: parallel frame tolerance geometry vessel target trajectory
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
@@ -37,9 +27,26 @@ study: parallel document frame text tolerance trajectory vessel target colregs o
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
 publication: document evaluation pipeline verification
 replanning: document frame tolerance trajectory vessel target colregs planner scenario text
-report: frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
-recording: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text
+report: labels frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
+recording: labels frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text
 ";
+
+/// The libraries by their names in the program's package.
+const LIBRARIES: [&str; 13] = [
+    "colregs",
+    "evaluation",
+    "frame",
+    "geometry",
+    "numerics",
+    "obstacle",
+    "parallel",
+    "planner",
+    "search",
+    "target",
+    "tolerance",
+    "trajectory",
+    "vessel",
+];
 
 /// The row of a module in [`MAY_USE`].
 fn may_use(module: &str) -> Option<Vec<&'static str>> {
@@ -57,42 +64,49 @@ const NEVER: &[(&str, &str)] = &[
     ("scenario", "planner::optimal_control"),
 ];
 
-/// Names with the only path prefixes below `src/` where they may occur.
+/// Names with the only path prefixes where they may occur.
 const ONLY_IN: &[(&str, &[&str])] = &[
-    ("rerun", &["recording/", "cli/inspect"]),
-    ("parry2d_f64", &["geometry/parry"]),
-    ("geojson", &["map/", "report/route.rs"]),
-    ("chrono", &["input/", "scenario/", "report/route.rs"]),
-    ("spade", &["geometry/polygon/decomposition.rs"]),
-    ("robust", &["geometry/"]),
-    ("roxmltree", &["scenario/import/"]),
-    ("kurbo", &["report/figure/render.rs"]),
-    ("kuva", &["report/figure/"]),
-    ("png", &["report/figure/render.rs"]),
-    ("parquet", &["campaign/part.rs"]),
-    ("statrs", &["campaign/bounds.rs"]),
-    ("clap", &["cli/", "main.rs"]),
+    ("rerun", &["src/recording/", "src/cli/inspect"]),
+    ("parry2d_f64", &["crates/geometry/src/parry"]),
+    ("geojson", &["src/map/", "src/report/route.rs"]),
+    (
+        "chrono",
+        &["src/input/", "src/scenario/", "src/report/route.rs"],
+    ),
+    ("spade", &["crates/geometry/src/polygon/decomposition.rs"]),
+    ("robust", &["crates/geometry/src/"]),
+    ("roxmltree", &["src/scenario/import/"]),
+    ("kurbo", &["src/report/figure/render.rs"]),
+    ("kuva", &["src/report/figure/"]),
+    ("png", &["src/report/figure/render.rs"]),
+    ("parquet", &["src/campaign/part.rs"]),
+    ("statrs", &["src/campaign/bounds.rs"]),
+    ("clap", &["src/cli/", "src/main.rs"]),
     (
         "textwrap",
-        &["cli/output/mod.rs", "report/table.rs", "text.rs"],
+        &[
+            "src/cli/output/mod.rs",
+            "src/report/table.rs",
+            "src/text.rs",
+        ],
     ),
-    ("to_degrees", &["frame.rs"]),
-    ("to_radians", &["frame.rs"]),
+    ("to_degrees", &["crates/geometry/src/frame.rs"]),
+    ("to_radians", &["crates/geometry/src/frame.rs"]),
     // nothing outside asks which planner it has
-    ("SpaceTimePlanner", &["planner/"]),
-    ("PathTimePlanner", &["planner/"]),
-    ("OptimalControlPlanner", &["planner/"]),
-    ("println", &["cli/output/mod.rs"]),
-    ("print", &["cli/output/mod.rs"]),
-    ("eprintln", &["cli/output/mod.rs"]),
-    ("eprint", &["cli/output/mod.rs"]),
+    ("SpaceTimePlanner", &["crates/planner/src/"]),
+    ("PathTimePlanner", &["crates/planner/src/"]),
+    ("OptimalControlPlanner", &["crates/planner/src/"]),
+    ("println", &["src/cli/output/mod.rs"]),
+    ("print", &["src/cli/output/mod.rs"]),
+    ("eprintln", &["src/cli/output/mod.rs"]),
+    ("eprint", &["src/cli/output/mod.rs"]),
     ("dbg", &[]),
 ];
 
 /// Modules of the binary: they may use everything, and no module may use them.
 const BINARY: &[&str] = &["cli", "main"];
 
-/// Lists all faults of one file; `path` is below `src/`, with forward slashes.
+/// Lists all faults of one file; `path` is below the repository, with forward slashes.
 fn faults(path: &str, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let tokens: TokenStream = match text.parse() {
@@ -115,6 +129,9 @@ fn faults(path: &str, text: &str) -> Vec<String> {
             faults.push(format!("{path}: names {name}, allowed only in {places:?}"));
         }
     }
+    if !path.starts_with("src/") {
+        return faults;
+    }
     // the library's root names every module to declare it
     let Some(room) = module.first().filter(|m| !BINARY.contains(&m.as_str())) else {
         return faults;
@@ -125,7 +142,8 @@ fn faults(path: &str, text: &str) -> Vec<String> {
     };
     for path_used in used {
         let first = path_used.split("::").next().unwrap_or_default();
-        let known = may_use(first).is_some() || BINARY.contains(&first);
+        let known =
+            may_use(first).is_some() || LIBRARIES.contains(&first) || BINARY.contains(&first);
         if known && first != room && !allowed.contains(&first) {
             faults.push(format!("{path}: {room} may not use {path_used}"));
         }
@@ -138,8 +156,10 @@ fn faults(path: &str, text: &str) -> Vec<String> {
     faults
 }
 
+/// The module of a file within its crate.
 fn module_of(path: &str) -> Vec<String> {
-    let stem = path.strip_suffix(".rs").unwrap_or(path);
+    let below = path.split_once("src/").map_or(path, |(_, below)| below);
+    let stem = below.strip_suffix(".rs").unwrap_or(below);
     let mut module: Vec<String> = stem.split('/').map(str::to_owned).collect();
     if module.last().is_some_and(|m| m == "mod" || m == "lib") {
         module.pop();
@@ -259,19 +279,169 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Sources of the program and of the libraries: paths below the repository, and texts.
+fn all_sources() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    sources(&root.join("src"), &mut files);
+    sources(&root.join("crates"), &mut files);
+    // the build script is a program of its own
+    files.retain(|file| *file != root.join("src/build.rs"));
+    assert!(files.len() > 20, "{files:?}");
+    let read = |file: &PathBuf| (below(root, file), text_of(file));
+    files.iter().map(read).collect()
+}
+
 #[test]
 fn the_sources_keep_the_borders() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    sources(&root, &mut files);
-    // the build script is a program of its own
-    files.retain(|file| *file != root.join("build.rs"));
-    assert!(files.len() > 20, "{files:?}");
-    let faults: Vec<String> = files
-        .iter()
-        .flat_map(|file| faults(&below(&root, file), &text_of(file)))
-        .collect();
+    let all = all_sources();
+    let found = all.iter().flat_map(|(path, text)| faults(path, text));
+    let faults: Vec<String> = found.collect();
     assert!(faults.is_empty(), "{faults:#?}");
+}
+
+/// Directories that still import each other in a circle. None may come to them.
+const CIRCLES: &[&str] = &[
+    "crates/evaluation/src/distance",
+    "crates/evaluation/src/sets",
+    "crates/planner/src/space_time/fallback",
+    "crates/planner/src/space_time/graph",
+    "crates/planner/src/space_time/refinement",
+    "crates/planner/src/space_time/selection",
+    "crates/sets/src/contact",
+    "crates/sets/src/polytope",
+    "src/cli/input",
+    "src/cli/output",
+    "src/document/plan",
+    "src/document/targets",
+    "src/recording/canvas",
+    "src/recording/layout",
+    "src/recording/views",
+    "src/recording/write",
+];
+
+/// Directories beside each other, and what names the one in the other: `(folder, from, to)`, with
+/// the folder's path below the repository.
+fn imports(sources: &[(String, String)]) -> BTreeMap<(String, String, String), String> {
+    let folder = |path: &str| -> (String, Vec<String>) {
+        let (root, _) = path.split_once("src/").unwrap_or(("", path));
+        (format!("{root}src"), module_of(path))
+    };
+    let mut directories = BTreeSet::new();
+    for (path, _) in sources {
+        let (root, module) = folder(path);
+        let depth = match path.ends_with("/mod.rs") {
+            true => module.len(),
+            false => module.len().saturating_sub(1),
+        };
+        for n in 1..=depth {
+            directories.insert((root.clone(), module[..n].to_vec()));
+        }
+    }
+    // what a module takes from its children, by the name under which others find it
+    let mut taken: BTreeMap<(String, Vec<String>), Vec<String>> = BTreeMap::new();
+    let mut all_used = Vec::new();
+    for (path, text) in sources {
+        let (root, module) = folder(path);
+        let Ok(tokens) = text.parse::<TokenStream>() else {
+            continue;
+        };
+        if module.iter().any(|m| m == "tests") {
+            continue;
+        }
+        let (mut names, mut used) = (Vec::new(), Vec::new());
+        read(tokens.clone(), &module, &mut names, &mut used);
+        for (name, from) in taken_from_children(tokens) {
+            let mut key = module.clone();
+            key.push(name);
+            let mut place = module.clone();
+            place.extend(from);
+            taken.insert((root.clone(), key), place);
+        }
+        all_used.push((path.clone(), root, module, used));
+    }
+    let mut found = BTreeMap::new();
+    for (path, root, module, used) in all_used {
+        for used in used {
+            let mut to: Vec<String> = used.split("::").map(str::to_owned).collect();
+            while let Some(place) = taken.get(&(root.clone(), to.clone())) {
+                if *place == to {
+                    break;
+                }
+                to = place.clone();
+            }
+            let common = module.iter().zip(&to).take_while(|(a, b)| a == b).count();
+            let (own, other) = (module.get(..=common), to.get(..=common));
+            let (Some(own), Some(other)) = (own, other) else {
+                continue;
+            };
+            let known = |m: &[String]| directories.contains(&(root.clone(), m.to_vec()));
+            if known(own) && known(other) {
+                let parent = [&[root.clone()], &own[..common]].concat().join("/");
+                let key = (parent, own[common].clone(), other[common].clone());
+                found.entry(key).or_insert(format!("{path}: {used}"));
+            }
+        }
+    }
+    found
+}
+
+/// The names that `use child::…` takes into a module, with their paths below it.
+fn taken_from_children(tokens: TokenStream) -> Vec<(String, Vec<String>)> {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut found = Vec::new();
+    for i in 0..tokens.len() {
+        let is_use = matches!(&tokens[i], TokenTree::Ident(word) if word == "use");
+        let first = match tokens.get(i + 1) {
+            Some(TokenTree::Ident(word)) => word.to_string(),
+            _ => continue,
+        };
+        if is_use && !["crate", "super", "self", "std"].contains(&first.as_str()) {
+            let mut paths = Vec::new();
+            let end = (i + 1..tokens.len()).find(|k| is_punct(tokens.get(*k), ';'));
+            expand(&tokens[i + 1..end.unwrap_or(tokens.len())], &[], &mut paths);
+            for path in paths {
+                let path: Vec<String> = path.split("::").map(str::to_owned).collect();
+                found.extend(path.last().cloned().map(|name| (name, path.clone())));
+            }
+        }
+    }
+    found
+}
+
+/// No directory imports from one beside it that imports from it, directly or by others.
+#[test]
+fn no_directories_import_each_other_in_a_circle() {
+    let imports = imports(&all_sources());
+    let mut reached: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
+    for (folder, from, to) in imports.keys() {
+        let key = (folder.clone(), from.clone());
+        reached.entry(key).or_default().insert(to.clone());
+    }
+    loop {
+        let before = reached.clone();
+        for ((folder, _), to) in &mut reached {
+            let of = |to: &String| before.get(&(folder.clone(), to.clone()));
+            let more: Vec<_> = to.iter().filter_map(of).flatten().cloned().collect();
+            to.extend(more);
+        }
+        if before == reached {
+            break;
+        }
+    }
+    let circles: BTreeSet<String> = (reached.iter())
+        .filter(|((_, from), to)| to.contains(from))
+        .map(|((folder, from), _)| format!("{folder}/{from}"))
+        .collect();
+    let left: BTreeSet<String> = CIRCLES.iter().map(|c| (*c).to_owned()).collect();
+    let in_circles = |key: &(String, String, String)| {
+        let (folder, from, to) = key;
+        [from, to]
+            .iter()
+            .all(|m| circles.contains(&format!("{folder}/{m}")))
+    };
+    let why: Vec<_> = imports.iter().filter(|(key, _)| in_circles(key)).collect();
+    assert_eq!(circles, left, "{why:#?}");
 }
 
 /// Path of a file below a folder, with forward slashes.
@@ -288,30 +458,27 @@ fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str
     table.lines().filter_map(|row| row.split_once(" | "))
 }
 
-/// Paths below `src/` with a line that each breaks one border.
+/// Paths with a line that each breaks one border.
 const BROKEN: &str = r#"
-geometry/disc.rs | use crate::vessel::Hull;
-search/mod.rs | fn f() -> crate::frame::Pose { todo!() }
-planner/cost.rs | use crate::{frame::Pose, evaluation::Evaluation};
-planner/space_time/graph/mod.rs | use super::super::super::scenario::Scenario;
-evaluation/mod.rs | use crate::obstacle::contact::first_contact;
-verification/mod.rs | use crate::recording::Recorded;
-verification/coverage.rs | use crate::obstacle::Obstacle;
-verification/motion.rs | use crate::planner::PLANNERS;
-scenario/mod.rs | use crate::planner::{SearchKind, space_time};
-pipeline.rs | use crate::report::table;
-pipeline/mod.rs | use crate::planner::path_time::PathTimePlanner;
-report/table.rs | use crate::recording::Recording;
-colregs/domain.rs | use crate::cli::output;
-target.rs | use rerun::RecordingStream;
-report/table.rs | use kuva::plot::LinePlot;
-trajectory/mod.rs | use parry2d_f64::math::Point;
-report/table.rs | #[derive(clap::ValueEnum)] enum A { B }
-scenario/check.rs | fn f(a: f64) -> f64 { a.to_radians() }
-cli/plan.rs | fn f() { println!("x"); }
-planner/mod.rs | fn f() { dbg!(1); }
-weather/mod.rs | fn f() {}
-frame.rs | fn f( {
+src/verification/mod.rs | use crate::recording::Recorded;
+src/verification/coverage.rs | use crate::obstacle::Obstacle;
+src/verification/motion.rs | use crate::planner::PLANNERS;
+src/scenario/mod.rs | use crate::planner::{SearchKind, space_time};
+src/scenario/thresholds.rs | use super::super::simulation::Simulation;
+src/pipeline.rs | use crate::report::table;
+src/pipeline/mod.rs | use crate::planner::path_time::PathTimePlanner;
+src/report/table.rs | use crate::recording::Recording;
+src/input/table.rs | use crate::{frame::Pose, evaluation::Evaluation};
+src/map/mod.rs | use crate::cli::output;
+crates/model/src/target.rs | use rerun::RecordingStream;
+src/report/table.rs | use kuva::plot::LinePlot;
+crates/model/src/trajectory/mod.rs | use parry2d_f64::math::Point;
+src/report/table.rs | #[derive(clap::ValueEnum)] enum A { B }
+src/scenario/check.rs | fn f(a: f64) -> f64 { a.to_radians() }
+src/cli/plan.rs | fn f() { println!("x"); }
+crates/planner/src/lib.rs | fn f() { dbg!(1); }
+src/weather/mod.rs | fn f() {}
+crates/geometry/src/frame.rs | fn f( {
 "#;
 
 #[test]
@@ -326,19 +493,97 @@ fn every_border_can_be_broken() {
     }
 }
 
-/// Paths below `src/` with a line that breaks no border.
+/// Paths with a line that breaks no border.
 const ALLOWED: &str = r#"
-geometry/disc.rs | use crate::frame::Vector; // crate::vessel, println!, rerun
-geometry/disc.rs | #[cfg(test)] mod tests { use crate::vessel::Hull; }
-geometry/disc.rs | #[cfg(test)] pub(crate) mod tests;
-geometry/disc.rs | const A: &str = "use crate::vessel";
-planner/space_time/graph/mod.rs | use super::super::{Problem, cost}; use super::route;
-scenario/mod.rs | use crate::planner::SearchKind;
-cli/output/mod.rs | fn f() { println!("x"); }
-cli/plan.rs | use searoom::recording::record; use clap::Args;
-recording/file.rs | use rerun::external::re_log;
-lib.rs | pub mod cli; pub use crate::planner::Plan;
+src/input/table.rs | use crate::frame::Vector; // crate::vessel, println!, rerun
+src/input/table.rs | #[cfg(test)] mod tests { use crate::vessel::Hull; }
+src/input/table.rs | #[cfg(test)] pub(crate) mod tests;
+src/input/table.rs | const A: &str = "use crate::vessel";
+crates/planner/src/space_time/graph/mod.rs | use super::super::{Problem, cost}; use super::route;
+crates/geometry/src/parry.rs | use parry2d_f64::math::Point;
+src/scenario/mod.rs | use crate::planner::SearchKind;
+src/cli/output/mod.rs | fn f() { println!("x"); }
+src/cli/plan.rs | use searoom::recording::record; use clap::Args;
+src/recording/file.rs | use rerun::external::re_log;
+src/lib.rs | pub mod cli; pub use crate::planner::Plan;
 "#;
+
+/// A circle is found through a name that a module takes from its child.
+#[test]
+fn circles_are_found() {
+    let sources = [
+        (
+            "src/a/mod.rs",
+            "pub mod b; pub mod c; pub use c::deep::Thing;",
+        ),
+        ("src/a/b/mod.rs", "use super::Thing;"),
+        ("src/a/c/mod.rs", "mod deep;"),
+        ("src/a/c/deep.rs", "use crate::a::b::Other;"),
+    ];
+    let sources = sources.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let found = imports(&sources);
+    let between: Vec<(&str, &str)> = (found.keys())
+        .map(|(_, from, to)| (from.as_str(), to.as_str()))
+        .collect();
+    assert_eq!(between, [("b", "c"), ("c", "b")]);
+}
+
+/// Outside crates of a library as built for users, and the libraries of the project that it links.
+fn linked(package: &str) -> (BTreeSet<String>, BTreeSet<String>) {
+    let output = std::process::Command::new(env!("CARGO"))
+        .args([
+            "tree",
+            "--locked",
+            "--offline",
+            "--edges",
+            "normal",
+            "--prefix",
+            "none",
+        ])
+        .args(["--package", package, "--format", "{p}"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let names = text.lines().filter_map(|line| line.split(' ').next());
+    let names = names.filter(|name| !name.is_empty()).map(str::to_owned);
+    let (own, outside) = names.partition(|name: &String| name.starts_with("searoom"));
+    (outside, own)
+}
+
+/// The evaluation links no planner and none of the planners' sets, and whoever takes one library
+/// takes few others.
+#[test]
+fn a_library_links_what_it_needs() {
+    for (package, most, never) in [
+        ("searoom-parallel", 0, &["searoom-geometry"][..]),
+        ("searoom-geometry", 45, &["searoom-model"]),
+        ("searoom-model", 45, &["searoom-sets", "searoom-colregs"]),
+        ("searoom-sets", 45, &["searoom-colregs", "searoom-planner"]),
+        ("searoom-colregs", 45, &["searoom-sets", "searoom-planner"]),
+        ("searoom-planner", 55, &["searoom-evaluation", "searoom"]),
+        (
+            "searoom-evaluation",
+            45,
+            &[
+                "searoom-planner",
+                "searoom-sets",
+                "searoom-colregs",
+                "searoom",
+            ],
+        ),
+    ] {
+        let (outside, own) = linked(package);
+        assert!(
+            outside.len() <= most,
+            "{package}: {} of {most}: {outside:?}",
+            outside.len()
+        );
+        let linked: Vec<_> = never.iter().filter(|name| own.contains(**name)).collect();
+        assert!(linked.is_empty(), "{package} links {linked:?}");
+    }
+}
 
 #[test]
 fn what_is_allowed_passes() {

@@ -1,11 +1,11 @@
 //! Paths of many legs among many crossing ships, for the bench of the path-time planner and for a
 //! test of its search.
 
-use searoom::frame::{Pose, Vector, direction};
-use searoom::geometry::{ConvexPolygon, outer_disc};
-use searoom::obstacle::{Obstacle, PolytopeObstacle};
-use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip};
+use searoom_geometry::frame::{Pose, Vector, direction};
+use searoom_geometry::{ConvexPolygon, outer_disc};
+use searoom_model::trajectory::DesiredTrajectory;
+use searoom_model::vessel::{Hull, OwnShip};
+use searoom_sets::{Obstacle, PolytopeObstacle};
 
 /// m/s.
 pub const SPEED: f64 = 5.0;

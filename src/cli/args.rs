@@ -14,6 +14,7 @@ use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::figure::{FigureFormat, FigureOptions};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
+use searoom::scenario::read_thresholds;
 use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::campaign::CampaignArgs;
@@ -617,7 +618,7 @@ fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
             names.join(", ")
         ));
     }
-    Thresholds::read(file)
+    read_thresholds(file)
         .map(Arc::new)
         .map_err(|error| printable_lines(&error.to_string()).into_owned())
 }

@@ -2,9 +2,9 @@
 
 use clap::CommandFactory;
 use clap_complete::generate;
-use searoom::colregs::Thresholds;
+
 use searoom::document::SCHEMAS;
-use searoom::scenario;
+use searoom::scenario::{self, thresholds_schema};
 
 use super::args::{Arguments, CompletionsArgs, SchemaArgs};
 use super::output::Output;
@@ -33,7 +33,7 @@ pub fn schema_kinds() -> impl Iterator<Item = &'static str> {
 pub fn schema(args: &SchemaArgs, output: &Output) -> ExitStatus {
     match SCHEMAS.iter().find(|(kind, _)| *kind == args.kind) {
         Some((_, schema)) => output.document(&schema()),
-        None if args.kind == THRESHOLDS => output.document(&Thresholds::schema()),
+        None if args.kind == THRESHOLDS => output.document(&thresholds_schema()),
         None => output.print(scenario::SCHEMA.trim_end()),
     }
 }

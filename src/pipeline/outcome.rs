@@ -103,7 +103,7 @@ impl Verdict {
     }
 }
 
-words!(Verdict {
+searoom_geometry::words!(Verdict {
     Solved => "solved",
     Relaxed => "relaxed",
     Infeasible => "infeasible",

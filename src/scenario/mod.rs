@@ -17,6 +17,7 @@ mod speed_limits;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod thresholds;
 
 pub use crate::input::{Fault, InputError as ScenarioError, Remarks};
 pub use land::Land;
@@ -28,6 +29,7 @@ pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
 pub use speed_limits::SpeedLimit;
+pub use thresholds::{parse_thresholds, read_thresholds, thresholds_schema};
 
 use std::path::Path;
 use std::sync::Arc;
@@ -230,7 +232,7 @@ pub fn after(start: DateTime<Utc>, seconds: f64) -> Option<DateTime<Utc>> {
     start.checked_add_signed(TimeDelta::try_milliseconds(milliseconds)?)
 }
 
-words!(Compliance {
+searoom_geometry::words!(Compliance {
     None => "none",
     Shape => "shape",
     Rules => "rules",

@@ -198,7 +198,7 @@ fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::fixtures::places;
+    use crate::geometry_fixtures::places;
 
     #[test]
     fn a_set_is_what_it_was_before_it_was_left() {

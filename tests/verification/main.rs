@@ -10,4 +10,5 @@ mod input;
 mod motion;
 mod out_of_reach;
 mod risk;
+mod safety;
 mod unsound;

@@ -27,7 +27,7 @@ pub enum Phase {
     Back,
 }
 
-words!(Phase {
+searoom_geometry::words!(Phase {
     Free => "free",
     Hold => "hold",
     Out => "out",

@@ -4,7 +4,8 @@ use rerun::{Color, LineStrips2D};
 
 use super::{Canvas, flat, labelled, style};
 use crate::frame::Vector;
-use crate::geometry::{Drawn, Label, Needed, Window};
+use crate::geometry::Window;
+use crate::labels::{Drawn, Label, Needed};
 use crate::recording::write::Recorder;
 use crate::recording::{Logged, MAP, path};
 

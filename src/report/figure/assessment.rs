@@ -7,7 +7,7 @@ use super::plan::{LAND, land_areas};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
 use crate::frame::Vector;
-use crate::geometry::Needed;
+use crate::labels::Needed;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Land;
 use crate::study::assess::OwnSituation;

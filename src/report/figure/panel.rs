@@ -10,7 +10,8 @@ use super::Stroke;
 use super::outline::{area, bends, curve};
 use super::render::in_lines;
 use crate::frame::{Pose, Vector};
-use crate::geometry::{ConvexPolygon, Drawn, Label, Needed, Window};
+use crate::geometry::{ConvexPolygon, Window};
+use crate::labels::{Drawn, Label, Needed};
 use crate::text::broken;
 use crate::vessel::Hull;
 

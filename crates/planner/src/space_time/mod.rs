@@ -1,0 +1,451 @@
+//! Space-time planner: searches a graph of Dubins segments tangent to the obstacles for the least
+//! space-time error, then refines the result.
+//!
+//! ```text
+//! route ─► nominal motion ─► graph (A*) ─► initial guesses ─► SQP ─► exact test ─► plan
+//! ```
+//!
+//! The graph decides the sides, the order and whether to wait. The refinement optimises the
+//! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
+//! test wins. The graph's own best plan is one of the candidates.
+//!
+//! Where own ship has a duty by the collision regulations, `rules` plans instead of the graph and
+//! the refinement.
+
+mod bound;
+mod chain;
+mod covered_end;
+mod fallback;
+mod graph;
+mod land;
+mod motion;
+pub(super) mod piece;
+mod proxy;
+mod refinement;
+mod route;
+mod rules;
+mod selection;
+mod similarity;
+
+pub use bound::Heuristic;
+pub use fallback::escape::{after_holding, nominal_motion};
+pub(super) use fallback::harm::NominalHulls;
+pub use selection::warm_start::warm_started;
+
+use super::clock::Clock;
+use super::{
+    ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanMethod, PlanRequest,
+    Planned, Planner, PlannerFacts, Problem, SearchKind, SearchStats,
+};
+use crate::search::{Search, Stop};
+use covered_end::end_covered;
+use fallback::off_station::off_station;
+use fallback::waiting::waiting;
+use fallback::{hybrid_a_star, sequential};
+use graph::Graph;
+use graph::node::{self, State};
+use piece::pieces;
+use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
+use refinement::trial::Context;
+use route::Route;
+use rules::groups;
+use searoom_geometry::tolerance;
+use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
+use searoom_parallel as parallel;
+use searoom_sets::{LAND, SpaceTimeObstacle};
+use selection::Selection;
+use selection::budget::SearchBudget;
+use selection::coarse_search::CoarseSearch;
+use selection::conflict_search;
+use selection::initial_guess::Conflict;
+use similarity::Similarity;
+
+/// Searches a graph, and refines the result.
+pub struct SpaceTimePlanner;
+
+impl Planner for SpaceTimePlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "space-time",
+            label: "space-time",
+            minimises: Minimises::SpaceTimeError,
+            follows_paths: false,
+            keeps_off_land: true,
+            keeps_rules: true,
+            uses_ellipses: false,
+            relaxes_domains_only: false,
+            has_no_return: true,
+            searches: &[
+                SearchKind::AStar,
+                SearchKind::Dijkstra,
+                SearchKind::Thorough,
+            ],
+        }
+    }
+
+    fn plan(&self, request: &PlanRequest) -> Planned {
+        let problem = &request.problem;
+        match request.may_wait {
+            true => waiting(problem, Clock::new(problem.deadline)),
+            false => plan(problem),
+        }
+    }
+
+    fn warm_started(&self, problem: &Problem, from: &Trajectory) -> Option<Outcome> {
+        Some(warm_started(problem, from).outcome)
+    }
+
+    fn wide_detour(&self, problem: &Problem) -> Option<Planned> {
+        let clock = Clock::new(problem.deadline);
+        let planned = plan_normalised(problem, clock, |problem, proxies, _| {
+            if let Some(covered) = end_covered(problem, proxies) {
+                return Planned::of(Outcome::Infeasible(covered));
+            }
+            hybrid_a_star::hybrid_a_star(problem, clock)
+                .unwrap_or_else(|| Planned::of(Outcome::Infeasible(NoPlan::NoTrajectory)))
+        });
+        planned.outcome.plan().is_some().then_some(planned)
+    }
+
+    fn short_of_end(&self, problem: &Problem) -> Option<(NoPlan, Option<DesiredTrajectory>)> {
+        covered_end::short_of_end(problem)
+    }
+
+    fn off_station(&self, problem: &Problem, arrival: &[Segment], until: f64) -> Vec<Plan> {
+        off_station(problem, arrival, until)
+    }
+
+    fn let_pass(
+        &self,
+        problem: &Problem,
+        broken: &dyn Fn(&Trajectory) -> usize,
+        most: usize,
+    ) -> Option<Plan> {
+        fallback::let_pass::let_pass(problem, broken, most)
+    }
+
+    fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
+        fallback::escape::escape(problem, nominal)
+    }
+}
+
+/// Plans one problem.
+///
+/// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m). It keeps the turning
+/// radius, uses only the given speeds, and ends at the last waypoint before the horizon. It is the
+/// cheapest of the candidates, not proven to be globally optimal. Equal problems give equal plans
+/// unless the deadline is reached. Waypoints on a straight line change nothing.
+pub fn plan(problem: &Problem) -> Planned {
+    let clock = Clock::new(problem.deadline);
+    plan_normalised(problem, clock, |problem, proxies, _| {
+        plan_clear_of(problem, proxies, clock)
+    })
+}
+
+/// Plans a problem in normalised coordinates. Where the restored plan touches a set, or stays at the
+/// start of a round trip that vanishes at the normalised size, plans it without scaling; where that
+/// does so too, plans the original problem.
+fn plan_normalised(
+    problem: &Problem,
+    clock: Clock,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
+) -> Planned {
+    let desired = problem.desired.straightened();
+    let problem = &Problem {
+        desired: &desired,
+        ..*problem
+    };
+    let pieces = pieces(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let similarity = Similarity::of(problem, &proxies);
+    let found = plan_transformed(problem, &proxies, &similarity, clock, &plan).or_else(|| {
+        let similarity = similarity.without_scaling()?;
+        plan_transformed(problem, &proxies, &similarity, clock, &plan)
+    });
+    found.unwrap_or_else(|| plan(problem, &proxies, None))
+}
+
+fn plan_transformed(
+    problem: &Problem,
+    proxies: &[Proxy],
+    similarity: &Similarity,
+    clock: Clock,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
+) -> Option<Planned> {
+    let normalised = similarity.normalised(problem, clock)?;
+    let normalised = normalised.problem(problem);
+    let pieces = pieces(normalised.obstacles, normalised.horizon);
+    let planned = plan(
+        &normalised,
+        &within_reach(&normalised, &pieces),
+        Some(similarity),
+    );
+    let planned = similarity.restored(planned, problem.horizon);
+    let touches = |plan: &Plan| {
+        let segments = plan.trajectory.segments();
+        first_met(proxies, segments).is_some() || land::meets(problem.land_obstacle, segments)
+    };
+    let stays = |plan: &Plan| {
+        let sailed: f64 = plan.trajectory.segments().iter().map(Segment::length).sum();
+        sailed <= tolerance::ARRIVAL_M && problem.desired.comes_by(problem.own.pose.position)
+    };
+    let is_wrong = |plan: &Plan| touches(plan) || stays(plan);
+    (!planned.outcome.plan().is_some_and(is_wrong)).then_some(planned)
+}
+
+/// True where own ship starts at the last waypoint and the path is not a round trip.
+fn has_arrived(problem: &Problem) -> bool {
+    let here = problem.own.pose.position;
+    let at_end = (problem.desired.end() - here).norm() <= tolerance::LENGTH_M;
+    // a path that passes own ship's position earlier, as a round trip does, remains to be followed
+    at_end && !problem.desired.comes_by(here)
+}
+
+fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
+    plan_with(problem, proxies, clock, None)
+}
+
+/// Clear motions to the last waypoint that leave the route once and pass the sets in different
+/// ways, the plan first.
+fn ways_in_one_manoeuvre(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Vec<Vec<Segment>> {
+    let mut others = Vec::new();
+    let planned = plan_with(problem, proxies, clock, Some(&mut others));
+    let plan = planned.outcome.into_plan();
+    let plan = plan.map(|plan| plan.trajectory.segments().to_vec());
+    plan.into_iter().chain(others).collect()
+}
+
+/// Plans one problem. With `others` it is planned in one manoeuvre alone, and the other ways go
+/// there.
+fn plan_with(
+    problem: &Problem,
+    proxies: &[Proxy],
+    clock: Clock,
+    others: Option<&mut Vec<Vec<Segment>>>,
+) -> Planned {
+    let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
+    let own = problem.own;
+    for proxy in proxies {
+        if let Some(slack) = proxy.slack(own.pose.position, 0.0)
+            // negated on purpose: a NaN is inside
+            && !(slack >= -tolerance::TOUCH_M)
+        {
+            return refuse(NoPlan::StartInside {
+                target: problem.obstacles[proxy.obstacle].name().to_owned(),
+                depth: -slack,
+            });
+        }
+    }
+    if let Some(depth) = problem.land_obstacle.depth(own.pose.position)
+        // negated on purpose: a NaN is on land
+        && !(depth <= tolerance::TOUCH_M)
+    {
+        return refuse(NoPlan::StartOnLand { depth });
+    }
+    if has_arrived(problem) {
+        let plan = Plan::staying(problem);
+        return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
+    }
+    let Some(route) = Route::new(problem, clock) else {
+        return refuse(NoPlan::NoRoute);
+    };
+    let nominal_motion = route.follow(0.0, 0.0);
+    let arrival = nominal_motion.last().map_or(0.0, Segment::end_time);
+    // negated on purpose: a NaN is too late
+    if !(arrival <= problem.horizon) {
+        return refuse(NoPlan::HorizonTooShort {
+            earliest: arrival,
+            horizon: problem.horizon,
+        });
+    }
+    if let Some(covered) = end_covered(problem, proxies) {
+        return refuse(covered);
+    }
+    let blocks = land::proxies(problem);
+    let context = Context::new(problem, &route, proxies, &blocks);
+    let contact = first_contact(proxies, &nominal_motion);
+    let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
+    let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
+    let first_conflict = first_conflict.reduce(f64::min);
+    let has_duty = !problem.duty().is_none() && first_conflict.is_some();
+    if has_duty || problem.under_way.is_some() {
+        if let Some(kept) = groups::by_the_rules(&context, &nominal_motion, clock) {
+            let plan = Plan::measured(problem, kept.motion, PlanMethod::Rules);
+            let outcome = match plan {
+                Some(plan) if clock.is_up() => Outcome::Deadline(Some(plan)),
+                Some(plan) => Outcome::Solved(plan),
+                None => Outcome::Infeasible(NoPlan::NoRoute),
+            };
+            return Planned {
+                escape: kept.escape,
+                manoeuvres: kept.manoeuvres,
+                ..Planned::of(outcome)
+            };
+        }
+        if clock.is_up() {
+            return Planned::of(Outcome::Deadline(None));
+        }
+        if first_conflict.is_some() {
+            return refuse(no_candidate(problem, contact, grounding));
+        }
+    }
+    // the graph alone takes milliseconds around hundreds of sets
+    if first_conflict.is_some() && clock.is_up() {
+        return Planned::of(Outcome::Deadline(None));
+    }
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    if first_conflict.is_some() {
+        conflicts = by_obstacle(proxies)
+            .filter_map(|h| Conflict::of(h, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
+            .collect();
+        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
+        conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
+    }
+    let targets = by_obstacle(proxies).count();
+    let budget = SearchBudget::of(targets, others.is_some(), problem.search);
+    let best = attempt(&context, budget, &nominal_motion, &conflicts, others, clock);
+    let outcome = match (best.plan, best.timed_out) {
+        (plan, true) => Outcome::Deadline(plan),
+        (Some(plan), false) => Outcome::Solved(plan),
+        (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
+    };
+    Planned {
+        is_cut_short: best.is_cut_short,
+        stats: Some(best.stats),
+        explored: best.explored,
+        ..Planned::of(outcome)
+    }
+}
+
+/// The cheapest candidate of a search within a budget.
+struct Attempt {
+    plan: Option<Plan>,
+    timed_out: bool,
+    is_cut_short: bool,
+    stats: SearchStats,
+    explored: ExploredGraph,
+}
+
+/// Searches the graph, and among several targets a grid and the ways of passing them. Refines what
+/// they find and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that
+/// are far apart one after another, unless `others` are asked for.
+fn attempt(
+    context: &Context,
+    budget: &SearchBudget,
+    nominal_motion: &[Segment],
+    conflicts: &[Conflict],
+    others: Option<&mut Vec<Vec<Segment>>>,
+    clock: Clock,
+) -> Attempt {
+    let mut selection = Selection::new(*context, budget);
+    selection.others = others.is_some().then(Vec::new);
+    let several = budget.conflict_nodes > 0 && context.first_conflict(nominal_motion).is_some();
+    let (search, stop) = match several {
+        true => searched_among_several(context, budget, nominal_motion, &mut selection, clock),
+        false => searched_graph(context, budget, nominal_motion, clock),
+    };
+    if let Stop::Goal(goal) = stop {
+        let path = node::path_to(&search, goal);
+        let cost = search.nodes()[goal].cost;
+        selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>());
+    }
+    let mut timed_out = matches!(stop, Stop::Time);
+    let mut is_cut_short = false;
+    timed_out |= selection.refine(nominal_motion, conflicts, clock);
+    if let Some(others) = others {
+        *others = selection.others.take().unwrap_or_default();
+    } else if !timed_out && sequential::are_several(conflicts) {
+        // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
+        let (motion, is_late) =
+            sequential::resolve_sequentially(context, nominal_motion, &selection, budget, clock);
+        // without a motion, too, the time may have been up
+        timed_out = clock.is_up();
+        is_cut_short = is_late;
+        if let Some(motion) = motion {
+            selection.add_candidate(motion);
+        }
+    }
+    Attempt {
+        plan: selection.plan(),
+        timed_out,
+        is_cut_short,
+        stats: search.counts(),
+        explored: node::explored(search),
+    }
+}
+
+/// Searches the graph and a coarse grid, and at the same time the ways of passing the targets.
+fn searched_among_several<'a>(
+    context: &Context<'a>,
+    budget: &SearchBudget,
+    nominal_motion: &'a [Segment],
+    selection: &mut Selection<'a>,
+    clock: Clock,
+) -> (Search<State>, Stop) {
+    let search_grid = || {
+        let grid = CoarseSearch::new(*context, nominal_motion, clock)?;
+        let along = grid.along_grid(clock);
+        Some((grid, along))
+    };
+    let (most, steps) = (budget.conflict_nodes, conflict_search::STEPS);
+    let ((graph, grid), resolved) = parallel::join(
+        || {
+            let graph = searched_graph(context, budget, nominal_motion, clock);
+            (graph, search_grid())
+        },
+        || conflict_search::resolve(context, nominal_motion, most, steps, clock),
+    );
+    for (guess, motion) in resolved {
+        selection.add_initial_guess(guess);
+        selection.add_candidate(motion);
+    }
+    if let Some((grid, along)) = grid {
+        selection.add_coarse_search(grid, along);
+    }
+    graph
+}
+
+/// Searches the graph in the stages of the budget.
+fn searched_graph(
+    context: &Context,
+    budget: &SearchBudget,
+    nominal_motion: &[Segment],
+    clock: Clock,
+) -> (Search<State>, Stop) {
+    let mut graph = Graph::new(context, nominal_motion, clock);
+    let mut search = Search::new(graph.root());
+    let mut expansions = 0;
+    let mut stages = budget.stages.iter();
+    loop {
+        let stop = search.next_goal(&mut graph, expansions);
+        let (Stop::Budget, Some((most, weight))) = (&stop, stages.next()) else {
+            return (search, stop);
+        };
+        if context.problem.search != SearchKind::Dijkstra {
+            search.weigh(*weight);
+        }
+        expansions = *most;
+    }
+}
+
+/// Reason that names the first contact of the nominal motion, with land or with a target's set.
+fn no_candidate(
+    problem: &Problem,
+    contact: Option<(usize, f64)>,
+    grounding: Option<f64>,
+) -> NoPlan {
+    let target = contact.map(|(i, time)| (problem.obstacles[i].name().to_owned(), time));
+    let land = grounding.map(|time| (LAND.to_owned(), time));
+    let first = target
+        .into_iter()
+        .chain(land)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    first.map_or(NoPlan::NoTrajectory, |(target, time)| {
+        if problem.duty().is_none() {
+            NoPlan::NoCandidate { target, time }
+        } else {
+            NoPlan::NoneComplies { target, time }
+        }
+    })
+}

@@ -1,0 +1,302 @@
+//! Requirements of the collision regulations on a manoeuvre after its first alteration, toward
+//! targets on their nominal tracks.
+
+use crate::Problem;
+use crate::space_time::motion::until as motion_until;
+use searoom_colregs::compliance::{ComplianceReport, OwnSamples};
+use searoom_colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
+use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use searoom_model::target::ShipTrack;
+use searoom_model::trajectory::{Segment, Trajectory};
+use searoom_model::vessel::Hull;
+
+/// Samples per segment for the position relative to a target.
+const ARC_SAMPLES: u32 = 32;
+
+/// Seconds after the closest approach of the hulls at which a target counts as passed: more than
+/// the step of the samples that it is found by, and of those of the judges.
+const PASSED_S: f64 = 3.0;
+
+/// Greatest time between two samples for the closest approach, seconds.
+const NEAREST_S: f64 = 1.0;
+
+/// True when a motion passes every target as its role requires ([`Role::duties`]).
+///
+/// It checks crossing ahead, the passing side, forbidden courses and small turns. `off_route` is the
+/// part that begins with the turn off the route. It is empty where own ship only slows down.
+///
+/// [`Role::duties`]: searoom_colregs::Role::duties
+pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segment]) -> bool {
+    problem.encountered.iter().all(|encountered| {
+        let duties = encountered.role.duties();
+        if !keeps_off_bow_of(encountered, motion) {
+            return false;
+        }
+        let nearest = Nearest::of(&problem.own.hull, encountered, motion);
+        let passes = nearest.drifts_to_port || !duties.port_to_port;
+        let until = nearest.time + PASSED_S;
+        let off = |side| keeps_off(problem, off_route, side, until);
+        let heads = duties.no_heading_to.is_none_or(off);
+        let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+        passes && heads && plain
+    })
+}
+
+/// Number of rules that both judges find broken by a motion. O(targets × seconds).
+pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
+    let Ok(trajectory) = Trajectory::new(motion.to_vec()) else {
+        return usize::MAX;
+    };
+    let thresholds = problem.thresholds;
+    let own = OwnSamples::along(&[], &trajectory, problem.own);
+    let samples = problem.encountered.iter().map(|e| {
+        let track = ShipTrack {
+            risk_distance: e.risk_distance,
+            ..ShipTrack::exact(e.ship.pose, e.ship.speed, e.hull)
+        };
+        // a role that has begun before the plan is kept
+        let known = (e.risk_since <= 0.0).then(|| TargetMemory {
+            role: Some(Risk {
+                role: e.role,
+                time: e.risk_since,
+                own: e.own,
+                target: e.ship,
+            }),
+            ..TargetMemory::default()
+        });
+        ComplianceReport::samples(&own, &track, known.as_ref(), thresholds)
+    });
+    let samples: Vec<_> = samples.collect();
+    let reports = ComplianceReport::of_all(samples.iter(), thresholds);
+    reports.iter().map(|report| report.broken().count()).sum()
+}
+
+/// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
+/// count as one.
+fn small_turns(motion: &[Segment], until: f64) -> usize {
+    let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
+    let before = motion_until(motion, until);
+    let sums = before
+        .chunk_by(turns)
+        .map(|c| c.iter().map(|s| s.turn_rate * s.duration).sum::<f64>());
+    sums.filter(|turn| turn.abs() > ON_COURSE && turn.abs() < SMALL_TURN)
+        .count()
+}
+
+/// True when a motion keeps off the bows of all targets. Where its beginning does not, the whole
+/// does not (up to sampling).
+pub(super) fn keeps_off_bows(problem: &Problem, motion: &[Segment]) -> bool {
+    let mut all = problem.encountered.iter();
+    all.all(|encountered| keeps_off_bow_of(encountered, motion))
+}
+
+/// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
+/// of the target, nor is slower than a target that it overtakes there.
+fn keeps_off_bow_of(encountered: &Encountered, motion: &[Segment]) -> bool {
+    let room = encountered.bow_room();
+    if room <= 0.0 {
+        return true;
+    }
+    let ship = &encountered.ship;
+    let seen = |s: &Segment, time: f64| {
+        let target = Pose {
+            position: ship.pose.position + ship.velocity() * time,
+            ..ship.pose
+        };
+        target.body_coordinates(s.pose_at(time).position)
+    };
+    let mut before: Option<Vector> = None;
+    motion.iter().all(|s| {
+        let hampers = room.is_finite() && s.speed < ship.speed;
+        (0..=ARC_SAMPLES).all(|k| {
+            let share = f64::from(k) / f64::from(ARC_SAMPLES);
+            let here = seen(s, s.start_time + s.duration * share);
+            if hampers && here.x > 0.0 && here.norm() < room {
+                return false;
+            }
+            let from = before.replace(here).unwrap_or(here);
+            if (from.y < 0.0) == (here.y < 0.0) {
+                return true;
+            }
+            let ahead = from.x + (here.x - from.x) * from.y / (from.y - here.y);
+            // a NaN counts as ahead of the bow
+            ahead <= 0.0 || ahead >= room
+        })
+    })
+}
+
+/// True unless own ship heads to a side both of its course before the departure and of the path's
+/// course there, until a time.
+fn keeps_off(problem: &Problem, off_route: &[Segment], side: Side, until: f64) -> bool {
+    let before = match problem.under_way {
+        Some(begun) => begun.first_heading,
+        None => off_route.first().map_or(0.0, |s| s.start.heading),
+    };
+    motion_until(off_route, until).iter().all(|s| {
+        [s.start, s.end()].iter().all(|pose| {
+            let at = problem
+                .desired
+                .nearest(pose.position, s.start_time, problem.time_weight);
+            let path = heading_of(problem.desired.legs()[at.leg].direction);
+            let beyond = |course: f64| side.turn_sign() * wrap(pose.heading - course) > ON_COURSE;
+            !(beyond(before) && beyond(path))
+        })
+    })
+}
+
+/// Closest approach of the hulls on a motion to a target that holds course and speed.
+#[derive(Debug)]
+struct Nearest {
+    time: f64,
+    /// True when the target then moves from starboard to port as seen from own ship.
+    drifts_to_port: bool,
+}
+
+impl Nearest {
+    /// By samples every [`NEAREST_S`] seconds, and at the ends of the segments.
+    fn of(own: &Hull, encountered: &Encountered, motion: &[Segment]) -> Self {
+        let ship = &encountered.ship;
+        let at = |s: &Segment, time: f64| {
+            let target = ship.pose.position + ship.velocity() * time;
+            (s.pose_at(time), target)
+        };
+        let apart = |s: &Segment, time: f64| {
+            let (pose, target) = at(s, time);
+            (pose.position - target).norm()
+        };
+        let steps = |s: &Segment| (s.duration / NEAREST_S).ceil().max(1.0);
+        let sample = |s: &Segment, k: f64| s.start_time + s.duration * (k / steps(s));
+        // least range of a segment's samples: on a line of the one nearest to the closest approach,
+        // on an arc a lower bound
+        let centres_on = |s: &Segment| {
+            if s.is_arc() {
+                let (from, to) = (apart(s, s.start_time), apart(s, s.end_time()));
+                let closing = s.speed + ship.speed;
+                return 0.5 * (from + to - closing * s.duration);
+            }
+            let offset = s.start.position - ship.pose.position - ship.velocity() * s.start_time;
+            let relative = s.velocity_at(s.start_time) - ship.velocity();
+            let ahead = -offset.dot(&relative) / relative.norm_squared();
+            // a NaN, without relative motion, is the first
+            let k = (ahead / s.duration * steps(s)).round().max(0.0);
+            apart(s, sample(s, k.min(steps(s))))
+        };
+        let ends = |s: &Segment| apart(s, s.start_time).min(apart(s, s.end_time()));
+        let centres = (motion.iter())
+            .map(|s| if s.is_arc() { ends(s) } else { centres_on(s) })
+            .fold(f64::INFINITY, f64::min);
+        // hulls may be nearest where the centres are not: they are no nearer than the range less
+        // `long`, and no farther than the range less `wide`
+        let long = own.half_diagonal() + encountered.hull.half_diagonal();
+        let wide = [own, &encountered.hull].map(|hull| 0.5 * hull.length.min(hull.beam));
+        let most = centres + long - wide.iter().sum::<f64>();
+        let (mut least, mut nearest) = (f64::INFINITY, None);
+        let origin = |heading| Pose::new(Vector::zeros(), heading);
+        let hull = encountered.hull.polygon(&origin(ship.pose.heading));
+        let both = |heading| hull.minkowski_sum(&own.polygon(&origin(heading)).negated());
+        for s in motion {
+            if centres_on(s) > most {
+                continue;
+            }
+            // on a line the heading is that of its start
+            let on_line = (!s.is_arc()).then(|| both(s.start.heading));
+            for k in 0..=steps(s) as usize {
+                let time = sample(s, k as f64);
+                let (pose, target) = at(s, time);
+                let from_target = pose.position - target;
+                let range = from_target.norm();
+                if range > most || range - long >= least {
+                    continue;
+                }
+                let hulls = match &on_line {
+                    Some(sum) => sum.signed_distance(from_target),
+                    None => both(pose.heading).signed_distance(from_target),
+                };
+                if hulls < least {
+                    let relative = s.velocity_at(time) - ship.velocity();
+                    least = hulls;
+                    nearest = Some(Self {
+                        time,
+                        drifts_to_port: cross(relative, from_target) < 0.0,
+                    });
+                }
+            }
+        }
+        nearest.unwrap_or(Self {
+            time: 0.0,
+            drifts_to_port: false,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::geometry_fixtures::random_vector;
+    use crate::ship_fixtures::chain;
+    use searoom_colregs::{Role, SteadyShip};
+
+    /// Distance of the hulls, time and drift to port, every second of a motion.
+    fn every_sample(own: &Hull, e: &Encountered, motion: &[Segment]) -> Vec<(f64, f64, bool)> {
+        let samples = motion.iter().flat_map(|s| {
+            let steps = (s.duration / NEAREST_S).ceil().max(1.0);
+            (0..=steps as usize).map(move |k| {
+                let time = s.start_time + s.duration * (k as f64 / steps);
+                let (pose, target) = (s.pose_at(time), e.ship.moved(time).pose);
+                let sum = (e.hull.polygon(&target)).minkowski_sum(&own.polygon(&pose).negated());
+                let relative = s.velocity_at(time) - e.ship.velocity();
+                let drift = cross(relative, pose.position - target.position) < 0.0;
+                (sum.signed_distance(Vector::zeros()), time, drift)
+            })
+        });
+        samples.collect()
+    }
+
+    fn one_of(rng: &mut ChaCha8Rng, values: &[f64]) -> f64 {
+        values[rng.random_range(0..values.len())]
+    }
+
+    /// Lines, circles and waits past targets that are crossed, followed or passed more than once.
+    #[test]
+    fn the_nearest_sample_is_that_of_all_samples() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for case in 0..1_000 {
+            let mut hull = || {
+                let length = one_of(&mut rng, &[1.0, 6.0, 30.0, 120.0]);
+                Hull::new(length, length * rng.random_range(0.1..3.0))
+            };
+            let (own, hull) = (hull(), hull());
+            let parts = (0..rng.random_range(1..7)).map(|_| {
+                let speed = one_of(&mut rng, &[0.0, 3.0, 5.0, 15.0]);
+                let turn = one_of(&mut rng, &[0.0, 0.06, -0.06]) * f64::from(speed > 0.0);
+                (rng.random_range(0.5..80.0), speed, turn)
+            });
+            let motion = chain(Pose::new(Vector::zeros(), 0.0), &parts.collect::<Vec<_>>());
+            let met = motion[rng.random_range(0..motion.len())];
+            let time = met.start_time + met.duration * rng.random_range(0.0..1.0);
+            let there = met.pose_at(time);
+            let heading = [there.heading, rng.random_range(-3.0..3.0)][case % 2];
+            let place = there.position + random_vector(&mut rng, [1.0, 20.0, 120.0][case % 3]);
+            let speed = one_of(&mut rng, &[0.0, 1.0, 5.0, 20.0]);
+            let ship = SteadyShip::new(Pose::new(place, heading), speed).moved(-time);
+            let encountered = Encountered {
+                role: Role::GiveWay,
+                ship,
+                hull,
+                risk_distance: 0.0,
+                own: ship,
+                risk_since: 0.0,
+                tcpa: 0.0,
+            };
+            let mut all = every_sample(&own, &encountered, &motion);
+            let least = all.iter().fold(f64::INFINITY, |least, s| least.min(s.0));
+            all.retain(|(distance, ..)| *distance <= least + 1e-9);
+            let found = Nearest::of(&own, &encountered, &motion);
+            let same = |s: &(_, f64, bool)| (s.1, s.2) == (found.time, found.drifts_to_port);
+            assert!(all.iter().any(same), "{case}: {found:?}, {all:?}");
+        }
+    }
+}

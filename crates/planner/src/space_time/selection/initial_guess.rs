@@ -1,0 +1,442 @@
+//! Initial guesses of the refinement: the graph's plans, and predefined manoeuvres on both sides.
+
+use crate::Problem;
+use crate::space_time::graph::node::State;
+use crate::space_time::motion::{pose_at, sailed_between};
+use crate::space_time::proxy::Proxy;
+use crate::space_time::refinement::InitialGuess;
+use crate::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::space_time::refinement::structure::{Ending, SegmentVariable};
+use crate::space_time::route::Route;
+use searoom_geometry::frame::{Side, to_port};
+use searoom_model::trajectory::Segment;
+
+/// Speeds of the manoeuvres: least and greatest speed, and the desired one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ManoeuvreSpeeds {
+    pub slow: f64,
+    pub normal: f64,
+    pub fast: f64,
+}
+
+impl ManoeuvreSpeeds {
+    /// Least and greatest moving speed, and the one nearest to the desired speed.
+    pub(crate) fn of(problem: &Problem) -> Self {
+        let mut moving = problem.own.moving_speeds();
+        let desired = problem.desired.length() / problem.desired.duration();
+        let off = |u: &f64| (u - desired).abs();
+        let nearest = moving.clone().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let fast = problem.own.max_speed();
+        Self {
+            slow: moving.next().unwrap_or(fast),
+            normal: nearest.unwrap_or(fast),
+            fast,
+        }
+    }
+}
+
+/// Stretch of the nominal motion inside a set, and the offsets that clear the set.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conflict {
+    /// Seconds at which the contact begins and ends.
+    pub from: f64,
+    pub to: f64,
+    /// Distance sailed inside, metres.
+    pub through: f64,
+    /// Offsets to starboard and to port that clear the set throughout, metres.
+    pub offsets: [f64; 2],
+    /// Offset astern that clears the set throughout, metres, and the time at which it is needed.
+    pub astern: (f64, f64),
+    /// Offset ahead that clears the set throughout, metres, and the time at which it is needed.
+    pub ahead: (f64, f64),
+}
+
+impl Conflict {
+    /// Offset to a side, metres.
+    pub(crate) fn offset(&self, side: Side) -> f64 {
+        self.offsets[usize::from(side == Side::Port)]
+    }
+
+    /// Ratio of the distance sailed inside to the smaller offset.
+    pub(crate) fn slenderness(&self) -> f64 {
+        self.through / self.nearest_offset().max(1.0)
+    }
+
+    /// Smaller offset of the two sides, metres.
+    pub(crate) fn nearest_offset(&self) -> f64 {
+        self.offsets[0].min(self.offsets[1])
+    }
+
+    /// Conflict of an instant, without a width, and with these offsets astern and ahead.
+    pub(crate) fn at(time: f64, along: f64) -> Self {
+        Self {
+            from: time,
+            to: time,
+            through: 0.0,
+            offsets: [0.0; 2],
+            astern: (along, time),
+            ahead: (along, time),
+        }
+    }
+
+    /// Contact of one obstacle, given by its proxies, with the nominal motion, from its first to
+    /// its last instant.
+    pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
+        let from = proxies
+            .iter()
+            .filter_map(|h| nominal_motion.iter().find_map(|s| h.first_contact(s)))
+            .min_by(f64::total_cmp)?;
+        let end = nominal_motion.last()?.end_time();
+        let mut conflict = Self::at(from, 0.0);
+        for k in 0..=CONFLICT_SAMPLES {
+            let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
+            let pose = pose_at(nominal_motion, time)?;
+            let inside = |h: &&Proxy| {
+                h.slack(pose.position, time)
+                    .is_some_and(|slack| !(slack > 0.0))
+            };
+            let Some(proxy) = proxies.iter().find(inside) else {
+                continue;
+            };
+            conflict.to = time;
+            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
+            if behind > conflict.astern.0 {
+                conflict.astern = (behind, time);
+            }
+            let before = proxy.exit_distance(pose.position, time, pose.ahead());
+            if before > conflict.ahead.0 {
+                conflict.ahead = (before, time);
+            }
+            for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
+                let beam = to_port(pose.ahead()) * side.turn_sign();
+                *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
+            }
+        }
+        conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
+        Some(conflict)
+    }
+}
+
+/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
+pub(crate) const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
+
+/// Turn of a waiting manoeuvre, radians.
+const WAITING_TURN: f64 = 0.6;
+
+/// Distance beyond the route behind a target that passed ahead, metres, and return angle, radians.
+const OVERSHOOT_M: f64 = 20.0;
+const OVERSHOOT_RETURN: f64 = 0.08;
+
+/// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
+/// and return turn, radians; lines, metres.
+const MAX_FAST_RATIO: f64 = 1.6;
+const AHEAD_TURN: f64 = 0.5;
+const AHEAD_RETURN: f64 = 0.3;
+const AHEAD_OUT_M: f64 = 40.0;
+
+/// Samples of a conflict's width.
+const CONFLICT_SAMPLES: usize = 24;
+
+/// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
+/// line until the set is passed, return.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EvasiveManoeuvre {
+    /// Turn, radians.
+    pub turn: f64,
+    /// Fraction of the outbound part that precedes the contact.
+    pub lead: f64,
+    /// Target offset as a fraction of the conflict's offset.
+    pub reach: f64,
+    /// True where the outbound part uses the least speed, not the greatest.
+    pub slow: bool,
+    /// Fraction of the time before it that is sailed at the greatest speed.
+    pub fast_share: f64,
+}
+
+/// Initial guess under construction.
+#[derive(Debug, Default)]
+pub(crate) struct InitialGuessBuilder {
+    pieces: Vec<(SegmentVariable, f64)>,
+}
+
+impl InitialGuessBuilder {
+    pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
+        self.pieces.push((variable, length));
+    }
+
+    fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            let speed = *speed;
+            self.push(SegmentVariable::Arc { side, speed }, *length);
+        }
+    }
+
+    fn line(&mut self, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            self.push(SegmentVariable::Line { speed: *speed }, *length);
+        }
+    }
+
+    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
+        let runs = [
+            (speeds.normal, normal),
+            (speeds.fast, fast),
+            (speeds.slow, slow),
+        ];
+        for (speed, length) in runs {
+            self.push(SegmentVariable::Run { speed }, length);
+        }
+    }
+
+    pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
+        // the ending may have two segment variables
+        let has_room = self.pieces.len() + 2 <= MAX_VARIABLES;
+        has_room.then(|| InitialGuess::new(&self.pieces, ending))
+    }
+}
+
+impl EvasiveManoeuvre {
+    /// Manoeuvre whose outbound part uses the greatest speed.
+    pub(crate) const fn new(turn: f64, lead: f64, reach: f64) -> Self {
+        Self {
+            turn,
+            lead,
+            reach,
+            slow: false,
+            fast_share: 0.0,
+        }
+    }
+
+    /// Manoeuvre whose outbound part uses the least speed.
+    pub(crate) const fn slow(turn: f64, lead: f64, reach: f64) -> Self {
+        Self {
+            slow: true,
+            ..Self::new(turn, lead, reach)
+        }
+    }
+
+    /// Initial guess on one side of the route.
+    pub(crate) fn guess(
+        &self,
+        problem: &Problem,
+        route: &Route,
+        side: Side,
+        conflict: &Conflict,
+        leg: usize,
+    ) -> Option<InitialGuess> {
+        let speeds = ManoeuvreSpeeds::of(problem);
+        let radius = problem.own.turning_radius;
+        let (slow, fast) = (speeds.slow, speeds.fast);
+        let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
+        // two arcs alone reach an offset of twice the versine
+        let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
+        let turn = self.turn.min(needed.max(0.1));
+        let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
+        let arc = turn * radius;
+        let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
+        let departure = (conflict.from - self.lead * exit_distance).max(0.0);
+        let lead = (departure * speeds.normal).min(route.length());
+        // progress along the route outbound, and on the return at the smallest angle that fits
+        let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
+        let room = route.length() - made_good;
+        let way_back = |angle: f64| {
+            let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
+            2.0 * radius * angle.sin() + line / angle.tan()
+        };
+        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
+        let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
+        let along = along
+            .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
+            .max(0.0);
+        let mut builder = InitialGuessBuilder::default();
+        builder.runs(
+            &speeds,
+            (1.0 - self.fast_share) * lead,
+            self.fast_share * departure * fast,
+            0.0,
+        );
+        let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
+        let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
+        let back = side.opposite();
+        builder.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        builder.line(&[(slow, slow_line), (fast, fast_line)]);
+        builder.turn(back, &[(fast, arc)]);
+        builder.line(&[(fast, 0.5 * along)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.line(&[(fast, 0.5 * along)]);
+        let Some(angle) = angle else {
+            return builder.build(Ending::Goal {
+                side: back,
+                speed: fast,
+            });
+        };
+        builder.turn(back, &[(fast, angle.min(needed.max(0.1)) * radius)]);
+        builder.build(Ending::Return { leg, speed: fast })
+    }
+}
+
+/// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down. It loses
+/// distance by a turn of [`WAITING_TURN`] to the side, a turn back of twice that, and a turn onto
+/// the route.
+pub(crate) fn waiting(
+    problem: &Problem,
+    side: Side,
+    across: bool,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<InitialGuess> {
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
+    let (lag, due) = conflict.astern;
+    let needed = lag / (normal - slow * WAITING_TURN.cos());
+    let begin = (due - needed).max(0.0);
+    let arc = WAITING_TURN * problem.own.turning_radius;
+    let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
+    // negated on purpose: a NaN gives no initial guess
+    if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
+        return None;
+    }
+    let back = side.opposite();
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, 0.0, 0.0);
+    builder.turn(side, &[(fast, 0.0), (slow, arc)]);
+    builder.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    builder.line(&[(slow, 0.4 * lines)]);
+    if across {
+        let (sine, cosine) = WAITING_TURN.sin_cos();
+        let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
+        builder.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.turn(
+            side,
+            &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
+        );
+        builder.line(&[(fast, 0.0)]);
+        return builder.build(Ending::Return { leg, speed: fast });
+    }
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: fast })
+}
+
+/// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed. It turns to
+/// the side halfway through the contact for the missing distance, and loses its lead on a slow
+/// return.
+pub(crate) fn ahead(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<InitialGuess> {
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
+    let (lead, due) = conflict.ahead;
+    let needed = lead / (fast - normal);
+    let begin = (due - needed).max(0.0);
+    let turn = 0.5 * (conflict.from + due);
+    // negated on purpose: a NaN gives no initial guess
+    if !(fast > normal && needed < MAX_FAST_RATIO * due && turn > begin) {
+        return None;
+    }
+    let radius = problem.own.turning_radius;
+    let arc = AHEAD_TURN * radius;
+    let back = side.opposite();
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
+    builder.turn(side, &[(fast, arc)]);
+    builder.line(&[(fast, AHEAD_OUT_M)]);
+    builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    builder.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    builder.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    builder.line(&[(slow, 0.0), (fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: normal })
+}
+
+/// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
+/// beside each, and an empty turn back where it has only one turn. `path` holds the states after
+/// the root.
+pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (last, before) = path.split_last()?;
+    let (departure, vertices) = before.split_first()?;
+    if vertices.is_empty() {
+        return None;
+    }
+    let mut builder = InitialGuessBuilder::default();
+    let along: f64 = departure.motion.iter().map(Segment::length).sum();
+    builder.runs(&speeds, along, 0.0, 0.0);
+    let mut side = None;
+    let mut turns = 0;
+    for vertex in vertices {
+        let turn = vertex.motion.iter().find(|s| s.is_arc());
+        let line = vertex.motion.iter().find(|s| !s.is_arc());
+        let before = side;
+        side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
+        let side = side.unwrap_or(Side::Starboard);
+        turns += usize::from(before != Some(side));
+        group(&mut builder, &speeds, side, turn, line, vertices.len());
+        if vertices.len() == 1 {
+            builder.turn(side, &[(speeds.fast, 0.0)]);
+            builder.line(&[(speeds.fast, 0.0)]);
+        }
+    }
+    let back = side.unwrap_or(Side::Starboard).opposite();
+    if turns < 2 && vertices.len() < 3 {
+        group(&mut builder, &speeds, back, None, None, vertices.len());
+    }
+    match last.ending {
+        Ending::Return { leg, .. } => {
+            let first = last.motion.first().filter(|s| s.is_arc());
+            let side = first
+                .and_then(|s| Side::of_turn(s.turn_rate))
+                .unwrap_or(back);
+            let length = first.map_or(0.0, Segment::length);
+            let speed = speeds.fast;
+            builder.turn(side, &[(speed, length)]);
+            builder.build(Ending::Return { leg, speed })
+        }
+        Ending::Goal { side, speed } => builder.build(Ending::Goal { side, speed }),
+        Ending::Follow => None,
+    }
+}
+
+/// Turn and line, with fewer speeds where there are many such groups.
+fn group(
+    builder: &mut InitialGuessBuilder,
+    speeds: &ManoeuvreSpeeds,
+    side: Side,
+    turn: Option<&Segment>,
+    line: Option<&Segment>,
+    groups: usize,
+) {
+    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
+    let own = turn.or(line).map_or(fast, |s| s.speed);
+    let (turns, lines): (&[f64], &[f64]) = match groups {
+        0..=3 => (&[slow, fast], &[slow, normal, fast]),
+        // limits the number of variables
+        4 => (&[own], &[slow, normal, fast]),
+        _ => (&[own], &[slow, fast]),
+    };
+    let turns = shared(turn, turns);
+    builder.turn(side, &turns);
+    let lines = shared(line, lines);
+    builder.line(&lines);
+}
+
+/// Speeds without repetition; the one nearest to the segment's speed gets its length.
+fn shared(segment: Option<&Segment>, speeds: &[f64]) -> Vec<(f64, f64)> {
+    let mut lengths: Vec<(f64, f64)> = speeds.iter().map(|u| (*u, 0.0)).collect();
+    lengths.dedup();
+    if let Some(s) = segment {
+        let nearest = lengths
+            .iter_mut()
+            .min_by(|a, b| (a.0 - s.speed).abs().total_cmp(&(b.0 - s.speed).abs()));
+        if let Some(nearest) = nearest {
+            nearest.1 = s.length();
+        }
+    }
+    lengths
+}

@@ -1,0 +1,453 @@
+//! Candidate selection: refines the plans of the searches and predefined manoeuvres; the cheapest
+//! clear candidate wins.
+
+pub(crate) mod budget;
+pub(crate) mod coarse_search;
+pub(crate) mod conflict_search;
+pub(crate) mod initial_guess;
+mod tidy;
+pub(crate) mod warm_start;
+
+use crate::clock::Clock;
+use crate::space_time::graph::node::State;
+use crate::space_time::land;
+use crate::space_time::proxy::first_met;
+use crate::space_time::refinement::approach::COARSE_CHORD_RAD;
+use crate::space_time::refinement::insertion::{pruned, with_insertions};
+use crate::space_time::refinement::trial::Context;
+use crate::space_time::refinement::{InitialGuess, Refinement};
+use crate::space_time::selection::budget::SearchBudget;
+use crate::space_time::selection::coarse_search::CoarseSearch;
+use crate::space_time::selection::initial_guess::{
+    Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
+};
+use crate::space_time::selection::tidy::Prices;
+use crate::{Plan, PlanMethod};
+use searoom_geometry::frame::Side;
+use searoom_model::trajectory::Segment;
+use searoom_parallel as parallel;
+
+/// Ahead of schedule first, then around the set: useful in every conflict.
+const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
+    fast_share: 0.5,
+    ..EvasiveManoeuvre::new(0.5, 0.3, 0.9)
+};
+
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
+/// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
+/// offsets.
+const COMPACT: [EvasiveManoeuvre; 4] = [
+    EvasiveManoeuvre::new(1.4, 0.6, 0.6),
+    EvasiveManoeuvre::slow(1.0, 1.0, 0.9),
+    EvasiveManoeuvre::new(0.4, 1.4, 0.6),
+    FASTER_FIRST,
+];
+
+/// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
+const SLENDER: [EvasiveManoeuvre; 5] = [
+    EvasiveManoeuvre::new(0.2, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.2, 1.0, 0.9),
+    EvasiveManoeuvre::slow(0.7, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.4, 0.3, 0.9),
+    FASTER_FIRST,
+];
+
+/// Slenderness from which a conflict uses [`SLENDER`].
+const SLENDER_FROM: f64 = 2.5;
+
+/// Ratio of the offset astern to the lateral one below which waiting is tried as well.
+const WAITING_RATIO: f64 = 1.2;
+
+/// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
+const PASS_AHEAD_RATIO: f64 = 1.2;
+
+/// Largest number of conflicts with manoeuvres of their own, earliest first.
+const MAX_CONFLICTS: usize = 2;
+
+/// Relative cost difference below which two manoeuvres count as the same.
+const SAME_COST: f64 = 1e-3;
+
+/// Largest number of ways past the sets, where others than the cheapest are asked for.
+const MOST_WAYS: usize = 5;
+
+/// Relative cost difference below which two motions with the same first turn are the same way.
+const SAME_WAY: f64 = 0.02;
+
+/// Length above which lines are divided for the first and for the second insertion, metres.
+const UNCUT_M: [f64; 2] = [200.0, 80.0];
+
+/// Steps of a refinement after an insertion, and after the final pruning.
+const STEPS_AFTER_INSERTION: usize = 8;
+const STEPS_AFTER_PRUNING: usize = 6;
+
+/// Relative gain of an insertion that justifies another.
+const MIN_INSERTION_GAIN: f64 = 0.01;
+
+/// Relative cost that pruning may add.
+const PRUNING_COST: f64 = 2e-3;
+
+/// Number of rounds after which arcs are divided into fine chords.
+const FINE_FROM: usize = 6;
+
+/// Clear trajectory.
+#[derive(Debug, Clone)]
+struct Candidate {
+    motion: Vec<Segment>,
+    /// Cost with the price of its alterations, m².
+    cost: f64,
+}
+
+/// Candidates of one problem.
+#[derive(Debug)]
+pub(crate) struct Selection<'a> {
+    context: Context<'a>,
+    search_budget: &'a SearchBudget,
+    guesses: Vec<InitialGuess>,
+    best: Option<Candidate>,
+    graph_cost: Option<f64>,
+    prices: Prices,
+    coarse_search: Option<CoarseSearch<'a>>,
+    along_grid: Vec<Refinement>,
+    /// Clear motions that pass the sets in other ways than the cheapest, where they are asked for.
+    pub others: Option<Vec<Vec<Segment>>>,
+}
+
+impl<'a> Selection<'a> {
+    pub(crate) fn new(context: Context<'a>, search_budget: &'a SearchBudget) -> Self {
+        Self {
+            context,
+            search_budget,
+            guesses: Vec::new(),
+            best: None,
+            graph_cost: None,
+            prices: Prices::of(context.problem, context.route),
+            coarse_search: None,
+            along_grid: Vec::new(),
+            others: None,
+        }
+    }
+
+    /// Adds a manoeuvre to refine.
+    pub(crate) fn add_initial_guess(&mut self, guess: InitialGuess) {
+        self.guesses.push(guess);
+    }
+
+    /// Adds a tested plan of the graph, given by the states after the root.
+    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) {
+        let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
+        self.graph_cost = Some(cost);
+        self.guesses.extend(from_graph(self.context.problem, path));
+        self.add_candidate(motion);
+    }
+
+    /// Adds a coarse search, with its refined manoeuvres.
+    pub(crate) fn add_coarse_search(&mut self, search: CoarseSearch<'a>, along: Vec<Refinement>) {
+        self.coarse_search = Some(search);
+        self.along_grid = along;
+    }
+
+    /// Refines the manoeuvres added and the predefined ones around the conflicts of the nominal
+    /// motion. Among several targets another conflict search follows where nothing is clear, with
+    /// more steps and fewer nodes, and a hybrid A* for a cheaper motion. True when the deadline was
+    /// reached.
+    pub(crate) fn refine(
+        &mut self,
+        nominal_motion: &[Segment],
+        conflicts: &[Conflict],
+        clock: Clock,
+    ) -> bool {
+        let context = self.context;
+        let (problem, route) = (context.problem, context.route);
+        let mut guesses = std::mem::take(&mut self.guesses);
+        let leg = problem.desired.legs().len() - 1;
+        for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
+                for across in [false, true] {
+                    let both = Side::BOTH.into_iter();
+                    guesses.extend(
+                        both.filter_map(|side| waiting(problem, side, across, conflict, leg)),
+                    );
+                }
+            }
+            if conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
+                let both = Side::BOTH.into_iter();
+                guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
+            }
+            let slender = conflict.slenderness() > SLENDER_FROM;
+            let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
+            for side in Side::BOTH {
+                guesses.extend(
+                    manoeuvres
+                        .iter()
+                        .filter_map(|c| c.guess(problem, route, side, conflict, leg)),
+                );
+            }
+        }
+        let tidy = problem.tidy.map(|tidy| (tidy, guesses.clone()));
+        let coarse = Context {
+            chord: COARSE_CHORD_RAD,
+            ..context
+        };
+        let mut running: Vec<Refinement> = guesses
+            .into_iter()
+            .take_while(|_| !clock.is_up())
+            .filter_map(|s| Refinement::fitting(&coarse, s))
+            .collect();
+        let SearchBudget { steps, rounds, .. } = *self.search_budget;
+        let mut round = 0;
+        while round < steps {
+            let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
+            // only manoeuvres checked with fine chords count as clear
+            if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
+                break;
+            }
+            // up to `rounds` no refinement depends on another
+            let next = rounds.max(round + 1).min(steps);
+            parallel::each(&mut running, |refinement| {
+                (round..next).for_each(|round| advance(refinement, &context, round, clock));
+            });
+            if clock.is_up() {
+                running.append(&mut self.along_grid);
+                self.collect(ranked(&running));
+                return true;
+            }
+            round = next;
+        }
+        parallel::each(&mut running, |refinement| {
+            if !refinement.is_finished() && !clock.is_up() {
+                refinement.finish(&context);
+            }
+        });
+        running.append(&mut self.along_grid);
+        let most = self.search_budget.conflict_nodes;
+        if most > 0 && !self.least(&running).is_finite() {
+            let (most, steps) = (most / 2, conflict_search::MORE_STEPS);
+            let resolved = conflict_search::resolve(&context, nominal_motion, most, steps, clock);
+            for (guess, motion) in resolved {
+                running.extend(Refinement::fitting(&context, guess));
+                self.add_candidate(motion);
+            }
+        }
+        let (grid, least) = (self.coarse_search.take(), self.least(&running));
+        if let Some((motions, along)) = grid.map(|g| g.along_hybrid(least, clock)) {
+            for motion in motions {
+                self.add_candidate(motion);
+            }
+            running.extend(along);
+        }
+        if let Some((tidy, guesses)) = tidy {
+            self.add_tidy(&tidy, &running, &guesses, clock);
+        } else {
+            let pruned = self.insert_and_prune(&mut running, clock);
+            self.collect(pruned.iter().chain(ranked(&running)));
+        }
+        if self.others.is_some() {
+            self.others = Some(self.other_ways(&running));
+        }
+        clock.is_up()
+    }
+
+    /// Cost of the cheapest clear motion so far, m²; infinite without any.
+    fn least(&self, running: &[Refinement]) -> f64 {
+        let refined = best_of(running).map_or(f64::INFINITY, Refinement::best_cost);
+        let best = self
+            .best
+            .as_ref()
+            .map(|b| self.context.problem.error_to_end(&b.motion));
+        best.unwrap_or(f64::INFINITY).min(refined)
+    }
+
+    /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
+    /// them. In the end prunes short segments where that costs almost nothing.
+    fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
+        let SearchBudget {
+            leaders: most,
+            leader_margin: margin,
+            ..
+        } = *self.search_budget;
+        let leaders = leaders(running, most, margin);
+        let mut least = leaders.first()?.1;
+        let [first, then] = UNCUT_M;
+        let mut best = None;
+        let mut gained = 0.0;
+        let mut leaders: Vec<_> = leaders.into_iter().map(|l| (l, None)).collect();
+        parallel::each(&mut leaders, |((guess, _), again)| {
+            *again = self.with_insertions(guess, first, clock);
+        });
+        for ((guess, rank), again) in leaders {
+            let after = again
+                .as_ref()
+                .map_or(f64::INFINITY, Refinement::rank)
+                .min(rank);
+            if best.is_none() || after < least {
+                gained = 1.0 - after / rank;
+                best = again.as_ref().and_then(Refinement::best).or(Some(guess));
+                least = after;
+            }
+            running.extend(again);
+        }
+        if self.search_budget.insert_twice && gained > MIN_INSERTION_GAIN {
+            let again = best
+                .as_ref()
+                .and_then(|s| self.with_insertions(s, then, clock));
+            best = again.as_ref().and_then(Refinement::best).or(best);
+            running.extend(again);
+        }
+        let least = best_of(running)?.rank();
+        let guess = best.and_then(|s| pruned(&self.context, &s));
+        let tidy = guess.and_then(|s| refined(&self.context, s, STEPS_AFTER_PRUNING, clock))?;
+        (tidy.rank() <= (1.0 + PRUNING_COST) * least).then_some(tidy)
+    }
+
+    /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
+    /// reached.
+    fn with_insertions(
+        &self,
+        guess: &InitialGuess,
+        uncut: f64,
+        clock: Clock,
+    ) -> Option<Refinement> {
+        if clock.is_up() {
+            return None;
+        }
+        let guess = with_insertions(&self.context, guess, uncut)?;
+        refined(&self.context, guess, STEPS_AFTER_INSERTION, clock)
+    }
+
+    /// Tests the refinements' results in the given order until one passes.
+    fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
+        for refinement in found {
+            let Some(motion) = refinement.best_motion(&self.context) else {
+                return;
+            };
+            if self.add_candidate(motion) {
+                return;
+            }
+        }
+    }
+
+    /// The cheapest clear motions of other ways than that of the best candidate.
+    fn other_ways(&self, running: &[Refinement]) -> Vec<Vec<Segment>> {
+        let best = self.best.iter();
+        let mut ways: Vec<_> = best.map(|b| (b.motion.clone(), b.cost)).collect();
+        for refinement in ranked(running) {
+            let Some(motion) = refinement.best_motion(&self.context) else {
+                break;
+            };
+            let cost = self.cost_of(&motion);
+            let is_same = |(other, of): &(Vec<_>, f64)| is_same_way((other, *of), (&motion, cost));
+            if !ways.iter().any(is_same) && self.is_clear(&motion) {
+                ways.push((motion, cost));
+            }
+            if ways.len() == MOST_WAYS {
+                break;
+            }
+        }
+        let others = ways.into_iter().skip(1);
+        others.map(|(motion, _)| motion).collect()
+    }
+
+    /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
+    pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
+        let cost = self.cost_of(&motion);
+        let clear = cost.is_finite() && self.is_clear(&motion);
+        if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
+            self.best = Some(Candidate { motion, cost });
+        }
+        clear
+    }
+
+    fn is_clear(&self, motion: &[Segment]) -> bool {
+        let problem = self.context.problem;
+        let in_time = motion
+            .last()
+            .is_some_and(|s| s.end_time() <= problem.horizon);
+        in_time
+            && first_met(self.context.proxies, motion).is_none()
+            && !land::meets(problem.land_obstacle, motion)
+    }
+
+    /// Cost of a motion with the price of its alterations, m².
+    pub(crate) fn cost_of(&self, motion: &[Segment]) -> f64 {
+        self.context.problem.error_to_end(motion) * self.prices.factor(motion)
+    }
+
+    /// [`Self::cost_of`] the best candidate; infinite without any.
+    pub(crate) fn least_cost(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
+    }
+
+    /// Cheapest clear motion.
+    pub(crate) fn plan(self) -> Option<Plan> {
+        let best = self.best?;
+        let method = PlanMethod::of(self.context.problem.search);
+        Some(Plan {
+            graph_cost: self.graph_cost,
+            ..Plan::measured(self.context.problem, best.motion, method)?
+        })
+    }
+}
+
+/// True where two motions, with their costs, cost alike and turn to the same side first.
+pub(crate) fn is_same_way(one: (&[Segment], f64), other: (&[Segment], f64)) -> bool {
+    let side = |motion: &[Segment]| motion.iter().find_map(|s| Side::of_turn(s.turn_rate));
+    (one.1 - other.1).abs() <= SAME_WAY * one.1 && side(one.0) == side(other.0)
+}
+
+/// Refinement with at most `most` steps, and fewer after the deadline.
+fn refined(
+    context: &Context,
+    guess: InitialGuess,
+    most: usize,
+    clock: Clock,
+) -> Option<Refinement> {
+    Some(Refinement::fitting(context, guess)?.run(context, most, clock))
+}
+
+fn best_of(running: &[Refinement]) -> Option<&Refinement> {
+    let costs = |a: &&Refinement, b: &&Refinement| a.rank().total_cmp(&b.rank());
+    running.iter().min_by(costs)
+}
+
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`. None is
+/// dearer than the cheapest by more than a fraction: insertions can gain more than its lead.
+fn leaders(running: &[Refinement], most: usize, margin: f64) -> Vec<(InitialGuess, f64)> {
+    let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
+    for refinement in ranked(running) {
+        let rank = refinement.rank();
+        let least = found.first().map_or(rank, |f| f.1);
+        let alike = found.iter().any(|f| rank <= (1.0 + SAME_COST) * f.1);
+        // negated on purpose: a NaN is too expensive
+        if found.len() == most || !(rank <= (1.0 + margin) * least && rank.is_finite()) {
+            break;
+        }
+        if !alike {
+            found.extend(refinement.best().map(|guess| (guess, rank)));
+        }
+    }
+    found
+}
+
+/// Refinements by rank, cheapest first.
+fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
+    let mut found: Vec<_> = running.iter().collect();
+    found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
+    found.into_iter()
+}
+
+/// One round of a refinement, with fine chords from [`FINE_FROM`] on.
+fn advance(refinement: &mut Refinement, context: &Context, round: usize, clock: Clock) {
+    let mut context = *context;
+    if round < FINE_FROM {
+        context.chord = COARSE_CHORD_RAD;
+    }
+    if clock.is_up() {
+        return;
+    }
+    if round == FINE_FROM {
+        refinement.reevaluate(&context);
+    }
+    if !refinement.is_finished() {
+        refinement.step(&context);
+    }
+}

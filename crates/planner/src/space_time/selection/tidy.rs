@@ -1,0 +1,446 @@
+//! Tidy manoeuvres: few turns, few changes of speed, no short segments.
+//!
+//! A refined manoeuvre is simplified: one speed, no short segment variables, few turns. It is
+//! refined again with a least time for each segment variable. Candidates are ranked by their cost
+//! with the [`Prices`] of their alterations. So the manoeuvre as it was wins where the simpler one
+//! is too dear or not clear.
+
+use super::{Selection, leaders, refined};
+use crate::clock::Clock;
+use crate::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::space_time::refinement::structure::{Ending, SegmentVariable};
+use crate::space_time::refinement::trial::Context;
+use crate::space_time::refinement::{InitialGuess, Refinement};
+use crate::space_time::route::Route;
+use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
+use crate::{Problem, Tidiness};
+use searoom_model::trajectory::Segment;
+use searoom_parallel as parallel;
+
+/// Price of a change of speed or a turn, as a fraction of the cost.
+const PRICE: f64 = 0.05;
+
+/// Price of each of them that is one too many, and of a segment or a time at a speed that is too
+/// short. No more than two are counted: a long voyage may need many, and a tidy plan must not cost
+/// a multiple without limit.
+const EXCESS_PRICE: f64 = 6.0;
+const MOST_EXCESS: usize = 2;
+
+/// Changes of speed and turns of a tidy plan, at most.
+const MOST_SPEED_CHANGES: usize = 2;
+const MOST_TURNS: usize = 4;
+
+/// Least change of speed as a fraction of own speed, and least turn in radians (2°).
+const SPEED_CHANGE: f64 = 0.02;
+const TURN: f64 = std::f64::consts::PI / 90.0;
+
+/// Fraction of the least time below which a segment variable is dropped, not prolonged. Also the
+/// fraction of the least time at a speed below which less speed is given up.
+const DROPPED: f64 = 0.5;
+
+/// Number of manoeuvres that are simplified, and relative cost difference up to which they are.
+const LEADERS: usize = 2;
+const LEADER_MARGIN: f64 = 0.5;
+
+/// Priced cost of a tidy manoeuvre over that of a refinement, below which it is not simplified: six
+/// alterations, and a little.
+const ENOUGH: f64 = 1.35;
+
+/// Steps of a refinement after simplifying.
+const STEPS: usize = 12;
+
+/// Prices of the alterations of a motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Prices {
+    /// `None` where tidiness is not asked for.
+    tidy: Option<Tidiness>,
+    own_speed: f64,
+    /// Alterations of the nominal motion: corners, legs of different speeds, returns to schedule;
+    /// but only those short times that own ship cannot avoid.
+    nominal: Alterations,
+}
+
+impl Prices {
+    pub(super) fn of(problem: &Problem, route: &Route) -> Self {
+        let (tidy, own_speed) = (problem.tidy, problem.own.speed);
+        let nominal = tidy.map(|tidy| {
+            let of = |route: &Route| Alterations::of(own_speed, &route.follow(0.0, 0.0), &tidy);
+            Alterations {
+                short: of(&route.without_recovery()).short,
+                ..of(route)
+            }
+        });
+        Self {
+            tidy,
+            own_speed,
+            nominal: nominal.unwrap_or_default(),
+        }
+    }
+
+    /// Factor of the cost of a motion by which candidates are ranked; 1 where tidiness is not asked
+    /// for.
+    pub(super) fn factor(&self, motion: &[Segment]) -> f64 {
+        let Some(tidy) = self.tidy else {
+            return 1.0;
+        };
+        let found = Alterations::of(self.own_speed, motion, &tidy);
+        let number = found.speed_changes + found.turns;
+        let excess = self.excess(&found).min(MOST_EXCESS);
+        1.0 + PRICE * number as f64 + EXCESS_PRICE * excess as f64
+    }
+
+    /// True for a motion with no more alterations than a tidy plan has, and without short times.
+    fn is_tidy(&self, motion: &[Segment]) -> bool {
+        let found = |tidy| Alterations::of(self.own_speed, motion, &tidy);
+        self.tidy.is_none_or(|tidy| self.excess(&found(tidy)) == 0)
+    }
+
+    /// Number of alterations too many and of times too short, beyond those of the nominal motion.
+    fn excess(&self, found: &Alterations) -> usize {
+        let nominal = &self.nominal;
+        let speed_changes = MOST_SPEED_CHANGES + nominal.speed_changes;
+        found.speed_changes.saturating_sub(speed_changes)
+            + found.turns.saturating_sub(MOST_TURNS + nominal.turns)
+            + found.short.saturating_sub(nominal.short)
+    }
+}
+
+/// Alterations of a motion.
+#[derive(Debug, Clone, Copy, Default)]
+struct Alterations {
+    turns: usize,
+    speed_changes: usize,
+    /// Segments and times at a speed that are too short.
+    short: usize,
+}
+
+impl Alterations {
+    /// Alterations of a motion without equal neighbours, from a speed on.
+    fn of(own_speed: f64, motion: &[Segment], tidy: &Tidiness) -> Self {
+        let is_short = |time: f64, least: f64| time < least * (1.0 - 1e-6);
+        let mut found = Self::default();
+        let (mut speed, mut since, mut turn) = (own_speed, f64::NEG_INFINITY, 0.0_f64);
+        for s in motion {
+            found.short += usize::from(is_short(s.duration, tidy.segment_time));
+            if (s.speed - speed).abs() > SPEED_CHANGE * own_speed {
+                found.speed_changes += 1;
+                found.short += usize::from(is_short(s.start_time - since, tidy.speed_time));
+                (speed, since) = (s.speed, s.start_time);
+            }
+            let by = s.turn_rate * s.duration;
+            if by == 0.0 || by * turn < 0.0 {
+                found.turns += usize::from(turn.abs() > TURN);
+                turn = 0.0;
+            }
+            turn += by;
+        }
+        found.turns += usize::from(turn.abs() > TURN);
+        found
+    }
+}
+
+impl Selection<'_> {
+    /// Adds the best clear candidate of the refinements and of tidy ones. Tidy ones are the best
+    /// refinements simplified, or, where these are not tidy or too dear, the simplified initial
+    /// guesses. Each candidate makes good the time it has lost, or does not.
+    pub(super) fn add_tidy(
+        &mut self,
+        tidy: &Tidiness,
+        running: &[Refinement],
+        guesses: &[InitialGuess],
+        clock: Clock,
+    ) {
+        let late_route = self.context.route.without_recovery();
+        let mut pool = Pool {
+            prices: self.prices,
+            on_time: Context {
+                segment_time: tidy.segment_time,
+                ..self.context
+            },
+            late: Context {
+                segment_time: tidy.segment_time,
+                route: &late_route,
+                ..self.context
+            },
+            motions: Vec::new(),
+        };
+        for refinement in running {
+            pool.add_refined(refinement);
+        }
+        let speeds = ManoeuvreSpeeds::of(self.context.problem);
+        for (guess, rank) in leaders(running, LEADERS, LEADER_MARGIN) {
+            if pool.has_tidy_below(ENOUGH * rank) {
+                break;
+            }
+            for pattern in Speeds::all(&speeds) {
+                let context = match pattern.stays_late(&speeds) {
+                    true => &pool.late,
+                    false => &pool.on_time,
+                };
+                let simple = simplified(&guess, &speeds, pattern, tidy);
+                let refined = simple.and_then(|guess| refined(context, guess, STEPS, clock));
+                refined.iter().for_each(|r| pool.add_refined(r));
+            }
+        }
+        if !pool.has_tidy_below(f64::INFINITY) && !clock.is_up() {
+            let context = pool.on_time;
+            let mut found: Vec<Refinement> = Vec::new();
+            for guess in guesses {
+                let simple = Speeds::of_one(&speeds).into_iter();
+                let simple = simple.filter_map(|at| simplified(guess, &speeds, at, tidy));
+                found.extend(simple.filter_map(|guess| Refinement::fitting(&context, guess)));
+            }
+            parallel::each(&mut found, |r| r.go_on(&context, STEPS, clock));
+            found.iter().for_each(|r| pool.add_refined(r));
+        }
+        pool.add(1.0, late_route.follow(0.0, 0.0));
+        for (_, motion) in pool.cheapest_first() {
+            if self.add_candidate(motion) {
+                return;
+            }
+        }
+    }
+}
+
+/// Candidates with their priced costs.
+struct Pool<'a> {
+    prices: Prices,
+    /// Own ship makes good the time it has lost, or does not.
+    on_time: Context<'a>,
+    late: Context<'a>,
+    motions: Vec<(f64, Vec<Segment>)>,
+}
+
+impl Pool<'_> {
+    fn add(&mut self, handicap: f64, motion: Vec<Segment>) {
+        let cost = self.on_time.problem.error_to_end(&motion);
+        let rank = handicap * cost * self.prices.factor(&motion);
+        if rank.is_finite() {
+            self.motions.push((rank, motion));
+        }
+    }
+
+    fn add_refined(&mut self, refinement: &Refinement) {
+        for context in [self.on_time, self.late] {
+            if let Some(motion) = refinement.best_motion(&context) {
+                self.add(refinement.handicap(), motion);
+            }
+        }
+    }
+
+    /// True where the candidate that ranks first is tidy and its priced cost at most this, m².
+    fn has_tidy_below(&self, most: f64) -> bool {
+        let best = self.motions.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        best.is_some_and(|(rank, motion)| *rank <= most && self.prices.is_tidy(motion))
+    }
+
+    fn cheapest_first(mut self) -> Vec<(f64, Vec<Segment>)> {
+        self.motions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.motions
+    }
+}
+
+/// Speeds of a simplified manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Speeds {
+    /// One speed from leaving the route, or from a run before that.
+    One(f64),
+    /// The slow speed from the first to the last segment variable that has it, then another.
+    SlowThen { slow: f64, then: f64 },
+}
+
+impl Speeds {
+    fn of_one(speeds: &ManoeuvreSpeeds) -> Vec<Self> {
+        let mut of_one = vec![Self::One(speeds.normal), Self::One(speeds.fast)];
+        of_one.dedup();
+        of_one
+    }
+
+    fn all(speeds: &ManoeuvreSpeeds) -> Vec<Self> {
+        let mut all = Self::of_one(speeds);
+        let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
+        if slow < normal {
+            all.extend([normal, fast].map(|then| Self::SlowThen { slow, then }));
+            all.dedup();
+        }
+        all
+    }
+
+    /// True where own ship goes on at its normal speed after less speed, without making good the
+    /// time lost.
+    fn stays_late(self, speeds: &ManoeuvreSpeeds) -> bool {
+        matches!(self, Self::SlowThen { then, .. } if then == speeds.normal)
+    }
+}
+
+/// A manoeuvre with few changes of speed and few turns, and without segment variables that take
+/// less than the least time. `None` where nothing is left of it.
+fn simplified(
+    guess: &InitialGuess,
+    speeds: &ManoeuvreSpeeds,
+    pattern: Speeds,
+    tidy: &Tidiness,
+) -> Option<InitialGuess> {
+    let normal = speeds.normal;
+    let given: Vec<_> = guess.pieces().filter(|piece| piece.1 > 0.0).collect();
+    let is_run = |variable: &SegmentVariable| matches!(variable, SegmentVariable::Run { .. });
+    let (last_speed, slow) = match pattern {
+        Speeds::One(speed) => (speed, None),
+        Speeds::SlowThen { slow, then } => {
+            let is_slow = |(variable, _): &(SegmentVariable, f64)| variable.speed() == slow;
+            let first = given.iter().position(is_slow)?;
+            let last = given.iter().rposition(is_slow)?;
+            let times = given[first..=last].iter().map(|(_, length)| length / slow);
+            let time: f64 = times.sum();
+            if time < DROPPED * tidy.speed_time {
+                return None;
+            }
+            (then, Some((first, last, slow)))
+        }
+    };
+    let mut parts: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
+    for (i, (variable, length)) in given.into_iter().enumerate() {
+        let speed = match slow {
+            Some((first, last, slow)) if (first..=last).contains(&i) => slow,
+            Some((first, ..)) if i < first => normal,
+            None if is_run(&variable) && variable.speed() != last_speed => normal,
+            _ => last_speed,
+        };
+        join(&mut parts, variable.at_speed(speed), length);
+    }
+    let is_arc = |part: &(SegmentVariable, f64)| matches!(part.0, SegmentVariable::Arc { .. });
+    loop {
+        let arcs = parts.iter().filter(|part| is_arc(part)).count();
+        let too_many = arcs + 1 > MOST_TURNS;
+        let relative = |part: &(SegmentVariable, f64)| part.1 / part.0.speed();
+        let shortest = (0..parts.len())
+            .filter(|i| !too_many || is_arc(&parts[*i]))
+            .min_by(|a, b| relative(&parts[*a]).total_cmp(&relative(&parts[*b])));
+        match shortest {
+            Some(i) if too_many || relative(&parts[i]) < DROPPED * tidy.segment_time => {
+                parts.remove(i);
+            }
+            _ => break,
+        }
+        for (variable, length) in std::mem::take(&mut parts) {
+            join(&mut parts, variable, length);
+        }
+    }
+    let follows = guess.structure.ending == Ending::Follow;
+    let returns = matches!(guess.structure.ending, Ending::Return { .. });
+    if follows && slow.is_none() || returns && !parts.iter().any(is_arc) {
+        return None;
+    }
+    for (variable, length) in &mut parts {
+        *length = length.max(tidy.segment_time * variable.speed());
+    }
+    let ending = guess.structure.ending.at_speed(last_speed);
+    Some(InitialGuess::new(&parts, ending))
+}
+
+/// Appends a segment variable, or lengthens the last one of its kind.
+fn join(parts: &mut Vec<(SegmentVariable, f64)>, variable: SegmentVariable, length: f64) {
+    match parts.last_mut() {
+        _ if length <= 0.0 => {}
+        Some((last, sum)) if *last == variable => *sum += length,
+        _ => parts.push((variable, length)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use searoom_geometry::frame::{Pose, Vector};
+
+    /// Speeds and turn rates, each for a number of seconds.
+    fn motion(parts: &[(f64, f64, f64)]) -> Vec<Segment> {
+        let mut motion: Vec<Segment> = Vec::new();
+        for (duration, speed, turn_rate) in parts {
+            let (pose, time) = motion.last().map_or_else(
+                || (Pose::new(Vector::zeros(), 0.0), 0.0),
+                |last| (last.end(), last.end_time()),
+            );
+            motion.push(Segment::new(pose, time, *duration, *speed, *turn_rate));
+        }
+        motion
+    }
+
+    #[test]
+    fn alterations_are_counted() {
+        let tidy = Tidiness::at_length(30.0);
+        for (parts, turns, speed_changes, short) in [
+            (&[(100.0, 5.0, 0.0)][..], 0, 0, 0),
+            // an arc at two speeds is one turn; 20 s are too short for a speed
+            (
+                &[(20.0, 6.0, 0.05), (10.0, 5.0, 0.05), (9.0, 5.0, -0.05)],
+                2,
+                2,
+                1,
+            ),
+            (
+                &[(40.0, 5.0, 0.0), (2.0, 5.0, 0.05), (40.0, 5.0, 0.0)],
+                1,
+                0,
+                1,
+            ),
+            // less than 2 %, less than 2 degrees
+            (
+                &[(40.0, 5.05, 0.0), (3.0, 5.0, 0.01), (40.0, 5.0, 0.0)],
+                0,
+                0,
+                0,
+            ),
+        ] {
+            let found = Alterations::of(5.0, &motion(parts), &tidy);
+            let numbers = (found.turns, found.speed_changes, found.short);
+            assert_eq!(numbers, (turns, speed_changes, short), "{parts:?}");
+        }
+    }
+
+    #[test]
+    fn a_simple_manoeuvre_has_few_turns_one_speed_and_no_short_segment() {
+        use searoom_geometry::frame::Side::{Port, Starboard};
+        let speeds = ManoeuvreSpeeds {
+            slow: 2.5,
+            normal: 5.0,
+            fast: 6.0,
+        };
+        let tidy = Tidiness::at_length(30.0);
+        let arc = |side, speed| SegmentVariable::Arc { side, speed };
+        let line = |speed| SegmentVariable::Line { speed };
+        let parts = [
+            (SegmentVariable::Run { speed: 5.0 }, 300.0),
+            (arc(Starboard, 2.5), 40.0),
+            (arc(Starboard, 6.0), 80.0),
+            (line(2.5), 3.0),
+            (arc(Port, 5.0), 1.0),
+            (line(6.0), 200.0),
+            (arc(Port, 6.0), 60.0),
+            (line(6.0), 50.0),
+            (arc(Port, 6.0), 70.0),
+            (arc(Starboard, 6.0), 25.0),
+        ];
+        let guess = InitialGuess::new(&parts, Ending::Return { leg: 0, speed: 6.0 });
+        let simple = simplified(&guess, &speeds, Speeds::One(6.0), &tidy).expect("a manoeuvre");
+        let kept: Vec<_> = simple.pieces().collect();
+        let expected = [
+            (SegmentVariable::Run { speed: 5.0 }, 300.0),
+            (arc(Starboard, 6.0), 120.0),
+            (line(6.0), 203.0),
+            (arc(Port, 6.0), 60.0),
+            (line(6.0), 50.0),
+            (arc(Port, 6.0), 70.0),
+        ];
+        assert_eq!(kept, expected);
+        // too little time at the slow speed
+        let then = Speeds::SlowThen {
+            slow: 2.5,
+            then: 5.0,
+        };
+        let slow = InitialGuess {
+            lengths: guess.lengths.map(|length| 0.1 * length),
+            ..guess
+        };
+        assert!(simplified(&slow, &speeds, then, &tidy).is_none());
+    }
+}
