@@ -184,12 +184,27 @@ fn the_gallery_is_small_and_shows_what_there_is() {
     assert!((1..PICTURES).contains(&bytes), "{bytes} bytes");
 }
 
-/// README and all pages in docs.
+/// Pages in docs, those at the root, and the README of each library and of the Python package.
 fn pages() -> Vec<String> {
-    let docs = std::fs::read_dir(file("docs")).expect("a folder").flatten();
-    let names = docs.map(|entry| format!("docs/{}", entry.file_name().to_string_lossy()));
-    let pages = names.filter(|name| name.ends_with(".md"));
-    pages.chain(["README.md".to_owned()]).collect()
+    let names = |folder: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(file(folder)).expect("a folder").flatten();
+        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.map(|name| format!("{folder}/{name}")).collect()
+    };
+    let docs = names("docs")
+        .into_iter()
+        .filter(|name| name.ends_with(".md"));
+    let crates = names("crates").into_iter();
+    let libraries = crates.map(|library| format!("{library}/README.md"));
+    let root = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "python/README.md",
+    ];
+    docs.chain(libraries)
+        .chain(root.map(str::to_owned))
+        .collect()
 }
 
 #[test]
@@ -209,4 +224,11 @@ fn every_file_that_the_documents_link_to_is_there() {
             assert!(folder.join(target).exists(), "{name}: {target}");
         }
     }
+}
+
+#[test]
+fn the_citation_has_the_version_of_the_package() {
+    let citation = read("CITATION.cff");
+    let version = concat!("version: ", env!("CARGO_PKG_VERSION"));
+    assert!(citation.lines().any(|line| line == version), "{citation}");
 }
