@@ -127,6 +127,8 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+// without them, what figures, campaigns and the program share is not used
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 // the random encounters of the tests name the crate as its users do
 #[cfg(test)]
@@ -139,6 +141,7 @@ mod geometry_fixtures;
 #[path = "../crates/model/src/ship_fixtures.rs"]
 mod ship_fixtures;
 
+#[cfg(feature = "campaign")]
 pub mod campaign;
 pub mod document;
 pub mod input;

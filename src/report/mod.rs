@@ -4,9 +4,11 @@
 mod assessment;
 mod campaign;
 mod comparison;
+#[cfg(feature = "figures")]
 pub mod figure;
 mod inspection;
 mod lint;
+#[cfg(feature = "figures")]
 pub mod page;
 mod plan;
 mod route;
