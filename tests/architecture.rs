@@ -304,10 +304,6 @@ fn the_sources_keep_the_borders() {
 const CIRCLES: &[&str] = &[
     "crates/evaluation/src/distance",
     "crates/evaluation/src/sets",
-    "crates/planner/src/space_time/fallback",
-    "crates/planner/src/space_time/graph",
-    "crates/planner/src/space_time/refinement",
-    "crates/planner/src/space_time/selection",
     "crates/sets/src/contact",
     "crates/sets/src/polytope",
     "src/cli/input",

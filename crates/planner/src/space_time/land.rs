@@ -1,24 +1,13 @@
 //! Land in the planner: groundings of the nominal motion, and land blocks near a manoeuvre.
 
 use crate::Problem;
-use crate::space_time::graph::tangent::TangentEdges;
-use crate::space_time::motion::{pose_at, sailed_between};
+use crate::space_time::manoeuvre::conflict::Conflict;
+use crate::space_time::manoeuvre::motion::{pose_at, sailed_between};
 use crate::space_time::proxy::Proxy;
-use crate::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
-use searoom_geometry::frame::{Side, Vector, to_port};
+use searoom_geometry::frame::{Side, to_port};
 use searoom_geometry::tolerance::TOUCH_M;
-use searoom_geometry::{ConvexPolygon, outer_simplified};
 use searoom_model::trajectory::Segment;
-use searoom_sets::{LAND, LandObstacle, PolytopeObstacle, window_of};
-
-/// Metres. Blocks farther than this from the nominal motion get no tangent edges.
-const AIMED_M: f64 = 40.0;
-
-/// Largest number of vertices of a block whose corners are nodes.
-const BLOCK_VERTICES: usize = 8;
-
-/// Metres. A corner at least this deep in another block is inside it, not on its boundary.
-const CORNER_M: f64 = 1e-3;
+use searoom_sets::{LandObstacle, window_of};
 
 /// Sampling interval of the nominal motion against the land, seconds.
 const STEP_S: f64 = 2.0;
@@ -116,42 +105,4 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
         conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
     }
     found
-}
-
-/// Tangent edges to land corners near the nominal motion, where that grounds. Each block is
-/// simplified to few corners; corners inside other blocks are left out because nothing can pass
-/// them.
-///
-/// Where the nominal motion stays on water, there are none. Including them took twice the time and
-/// found no cheaper plan among 60 scenarios along quays.
-pub(crate) fn tangent_edges(
-    problem: &Problem,
-    nominal_motion: &[Segment],
-) -> impl Iterator<Item = TangentEdges> {
-    let land_obstacle = problem.land_obstacle;
-    let aground = first_contact(land_obstacle, nominal_motion).is_some();
-    let blocks = if aground {
-        near(land_obstacle, nominal_motion.iter(), AIMED_M)
-    } else {
-        Vec::new()
-    };
-    let speed_table = ManoeuvreSpeeds::of(problem);
-    blocks.into_iter().filter_map(move |b| {
-        let block = &land_obstacle.blocks()[b];
-        let around = outer_simplified(block.initial(), BLOCK_VERTICES);
-        let open = |corner: Vector| {
-            !land_obstacle
-                .depth(corner)
-                .is_some_and(|depth| depth > CORNER_M)
-        };
-        if !around.vertices().iter().any(|v| open(*v)) {
-            return None;
-        }
-        let rest = ConvexPolygon::point(Vector::zeros());
-        let body = PolytopeObstacle::new(LAND, around, rest);
-        let proxy = Proxy::at_rest(problem.obstacles.len(), block);
-        let mut speeds = vec![speed_table.normal, speed_table.fast];
-        speeds.dedup();
-        Some(TangentEdges::new(&proxy, &body, speeds.into_iter(), open))
-    })
 }

@@ -9,16 +9,20 @@
 //! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
 //! test wins. The graph's own best plan is one of the candidates.
 //!
+//! What the steps share is in `manoeuvre`. Of the directories, each uses only earlier ones of
+//! `manoeuvre`, `graph` and `grid`, `refinement`, `selection`, `fallback`.
+//!
 //! Where own ship has a duty by the collision regulations, `rules` plans instead of the graph and
 //! the refinement.
 
 mod bound;
-mod chain;
+mod context;
 mod covered_end;
 mod fallback;
 mod graph;
+mod grid;
 mod land;
-mod motion;
+mod manoeuvre;
 pub(super) mod piece;
 mod proxy;
 mod refinement;
@@ -38,15 +42,17 @@ use super::{
     Planned, Planner, PlannerFacts, Problem, SearchKind, SearchStats,
 };
 use crate::search::{Search, Stop};
+use context::Context;
 use covered_end::end_covered;
 use fallback::off_station::off_station;
+use fallback::sequential;
 use fallback::waiting::waiting;
-use fallback::{hybrid_a_star, sequential};
 use graph::Graph;
 use graph::node::{self, State};
+use grid::hybrid_a_star;
+use manoeuvre::conflict::Conflict;
 use piece::pieces;
 use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
-use refinement::trial::Context;
 use route::Route;
 use rules::groups;
 use searoom_geometry::tolerance;
@@ -57,7 +63,6 @@ use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::coarse_search::CoarseSearch;
 use selection::conflict_search;
-use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
 /// Searches a graph, and refines the result.

@@ -15,7 +15,7 @@ use crate::clock::Clock;
 use crate::space_time::fallback::harm::{Harm, NominalHulls, depth_step};
 use crate::space_time::fallback::waiting::{Way, beside, nearest_speed, unfinished};
 use crate::space_time::land;
-use crate::space_time::motion::{part, pose_at, until};
+use crate::space_time::manoeuvre::motion::{part, pose_at, shifted, until};
 use crate::space_time::piece::pieces as parts_of;
 use crate::space_time::proxy::{Proxy, within_reach};
 use crate::space_time::route::Route;
@@ -534,10 +534,7 @@ fn append(
         ..problem.clone()
     };
     let mut motion = beginning.to_vec();
-    motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
-        start_time: s.start_time + start,
-        ..s
-    }));
+    motion.extend(shifted(&follow(&rest)?, start));
     Some(motion)
 }
 

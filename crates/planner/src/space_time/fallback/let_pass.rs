@@ -12,7 +12,7 @@ use crate::clock::Clock;
 use crate::space_time::fallback::escape::after_holding;
 use crate::space_time::fallback::waiting::{Way, nearest_speed};
 use crate::space_time::land;
-use crate::space_time::motion::{pose_at, until};
+use crate::space_time::manoeuvre::motion::{pose_at, until};
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{first_contact, first_met, within_reach};
 use crate::{Plan, PlanMethod, Problem};

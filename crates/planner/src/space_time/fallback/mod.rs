@@ -1,11 +1,8 @@
 //! Searches for plans that the graph and its refinement miss: sequential conflict resolution,
-//! hybrid A* over a cost-to-go grid, waiting on the route, and escape from sets that own ship
-//! starts in.
+//! waiting on the route, and escape from sets that own ship starts in.
 
-pub(crate) mod cost_to_go;
 pub(crate) mod escape;
 pub(crate) mod harm;
-pub(crate) mod hybrid_a_star;
 pub(crate) mod let_pass;
 pub(crate) mod off_station;
 pub(crate) mod sequential;

@@ -10,11 +10,11 @@
 //! nearer by bisection.
 
 use crate::clock::Clock;
-use crate::space_time::chain::Chain;
 use crate::space_time::fallback::waiting::{MOVES, Way, unfinished};
-use crate::space_time::graph::intercept::Interceptor;
 use crate::space_time::land;
-use crate::space_time::motion::{pose_at, until as to};
+use crate::space_time::manoeuvre::chain::Chain;
+use crate::space_time::manoeuvre::interceptor::Interceptor;
+use crate::space_time::manoeuvre::motion::{pose_at, until as to};
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, first_met, within_reach};
 use crate::{Plan, PlanMethod, Problem};

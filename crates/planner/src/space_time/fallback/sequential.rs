@@ -8,12 +8,12 @@ use std::collections::VecDeque;
 
 use crate::Problem;
 use crate::clock::Clock;
-use crate::space_time::motion::{pose_at, until as motion_until};
+use crate::space_time::context::Context;
+use crate::space_time::manoeuvre::conflict::Conflict;
+use crate::space_time::manoeuvre::motion::{pose_at, shifted, until as motion_until};
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, first_contact, within_reach};
-use crate::space_time::refinement::trial::Context;
 use crate::space_time::selection::budget::SearchBudget;
-use crate::space_time::selection::initial_guess::Conflict;
 use crate::space_time::selection::{Selection, is_same_way};
 use crate::space_time::ways_in_one_manoeuvre;
 use searoom_model::trajectory::Segment;
@@ -175,7 +175,7 @@ fn ways_from(
         let pieces = pieces(stage.obstacles, stage.horizon);
         let near = within_reach(&stage, &pieces);
         let ways = ways_in_one_manoeuvre(&stage, &near, clock);
-        let mut ways = ways.into_iter().map(|way| later(&way, leaves));
+        let mut ways = ways.into_iter().map(|way| shifted(&way, leaves));
         let Some(plan) = ways.next() else {
             return clear;
         };
@@ -190,12 +190,4 @@ fn ways_from(
             Some(_) => return clear,
         }
     }
-}
-
-fn later(motion: &[Segment], seconds: f64) -> Vec<Segment> {
-    let later = |s: &Segment| Segment {
-        start_time: s.start_time + seconds,
-        ..*s
-    };
-    motion.iter().map(later).collect()
 }

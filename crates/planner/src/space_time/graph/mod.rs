@@ -3,9 +3,8 @@
 //! Nodes and edges are generated on demand by the search. The graph decides on which side and in
 //! which order to pass, and whether to wait. `refinement` optimises the lengths.
 
-pub(crate) mod intercept;
+mod land_edges;
 pub(crate) mod node;
-pub(crate) mod return_to_line;
 pub(crate) mod tangent;
 
 use std::cell::Cell;
@@ -13,16 +12,17 @@ use std::cell::Cell;
 use crate::clock::Clock;
 use crate::search::Space;
 use crate::space_time::bound::Heuristic;
-use crate::space_time::chain::Chain;
-use crate::space_time::graph::intercept::{Interceptor, Limits};
+use crate::space_time::context::Context;
+use crate::space_time::graph::land_edges::land_edges;
 use crate::space_time::graph::node::State;
-use crate::space_time::graph::return_to_line::motion_back;
 use crate::space_time::graph::tangent::TangentEdges;
 use crate::space_time::land;
-use crate::space_time::motion::until;
+use crate::space_time::manoeuvre::chain::Chain;
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
+use crate::space_time::manoeuvre::motion::until;
+use crate::space_time::manoeuvre::return_to_line::motion_back;
 use crate::space_time::proxy::{Proxy, by_obstacle, first_met};
-use crate::space_time::refinement::structure::Ending;
-use crate::space_time::refinement::trial::Context;
 use crate::space_time::route::Route;
 use crate::{NodeKind, Problem, SearchKind};
 use searoom_geometry::frame::Side;
@@ -109,7 +109,7 @@ impl<'a> Graph<'a> {
                 );
                 TangentEdges::new(h, &body, problem.own.moving_speeds(), |_| true)
             })
-            .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
+            .chain(land_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
         let heuristic = (problem.search != SearchKind::Dijkstra)
             .then(|| Heuristic::new(problem.desired, problem.time_weight, problem.own));

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use petgraph::graph::NodeIndex;
 
 use crate::search::{Fate, Search};
-use crate::space_time::refinement::structure::Ending;
+use crate::space_time::manoeuvre::ending::Ending;
 use crate::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 use searoom_geometry::frame::Pose;
 use searoom_model::trajectory::Segment;

@@ -10,7 +10,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::NodeKind;
-use crate::space_time::graph::intercept::{Interception, Interceptor, Limits};
+use crate::space_time::manoeuvre::interceptor::{Interception, Interceptor, Limits};
 use crate::space_time::proxy::Proxy;
 use searoom_geometry::frame::{Side, Vector, direction, heading_of, to_port};
 use searoom_sets::contact::Interval;

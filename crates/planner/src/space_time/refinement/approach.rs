@@ -17,10 +17,6 @@ const SLIDING_M: f64 = 20.0;
 /// Seconds within which a joint coincides with the minimum beside it.
 const SAME_S: f64 = 0.2;
 
-/// Longest arc per chord in the search for minima, radians: at first and at the end.
-pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
-pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
-
 /// Largest number of cuts for one minimum.
 const MAX_CUTS: usize = 30;
 

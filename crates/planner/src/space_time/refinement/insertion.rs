@@ -6,14 +6,15 @@
 //! generation, with the multipliers of the last quadratic programme). Where no rate is negative, no
 //! structure with more segment variables is cheaper, to first order.
 
+use crate::space_time::context::Context;
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::refinement::InitialGuess;
 use crate::space_time::refinement::gauss_newton::{Accumulation, Twist, dot4};
 use crate::space_time::refinement::model::UnreducedModel;
 use crate::space_time::refinement::quadratic::{MAX_VARIABLES, Programme};
 use crate::space_time::refinement::rollout::SegmentOrigin;
-use crate::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
-use crate::space_time::refinement::trial::Context;
-use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
+use crate::space_time::refinement::structure::{SegmentVariable, Structure};
 use searoom_geometry::frame::{Side, Vector};
 
 /// Metres. Shorter segment variables are removed before the insertion.

@@ -15,11 +15,13 @@ pub(crate) mod trial;
 
 use crate::AGAINST_THE_RULES;
 use crate::clock::Clock;
-use crate::space_time::refinement::approach::FINE_CHORD_RAD;
+use crate::space_time::context::Context;
+use crate::space_time::context::FINE_CHORD_RAD;
+use crate::space_time::manoeuvre::ending::Ending;
 use crate::space_time::refinement::model::Model;
 use crate::space_time::refinement::quadratic::{Constraint, MAX_VARIABLES, Programme, Row};
-use crate::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
-use crate::space_time::refinement::trial::{Context, Trial};
+use crate::space_time::refinement::structure::{SegmentVariable, Structure};
+use crate::space_time::refinement::trial::Trial;
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 

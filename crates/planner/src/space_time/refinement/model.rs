@@ -1,12 +1,13 @@
 //! Local model of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the contact rows,
 //! all in the free lengths.
 
+use crate::space_time::context::Context;
 use crate::space_time::refinement::approach::Approach;
 use crate::space_time::refinement::gauss_newton::{GaussNewton, Residuals, reduce, reduce_matrix};
 use crate::space_time::refinement::quadratic::{Constraint, MAX_VARIABLES, Row};
 use crate::space_time::refinement::rollout::{Place, SegmentOrigin};
 use crate::space_time::refinement::structure::Structure;
-use crate::space_time::refinement::trial::{Context, Trial, WeightedPoint};
+use crate::space_time::refinement::trial::{Trial, WeightedPoint};
 use searoom_geometry::frame::to_port;
 
 /// Metres by which dependent segment variables and the leg after the return stay positive.
@@ -222,13 +223,14 @@ pub(crate) mod tests {
     use crate::Problem;
     use crate::clock::Clock;
     use crate::ship_fixtures::own_ship;
+    use crate::space_time::manoeuvre::conflict::Conflict;
+    use crate::space_time::manoeuvre::ending::Ending;
     use crate::space_time::piece::pieces;
     use crate::space_time::proxy::Proxy;
     use crate::space_time::refinement::InitialGuess;
-    use crate::space_time::refinement::structure::Ending;
     use crate::space_time::refinement::structure::SegmentVariable;
     use crate::space_time::route::Route;
-    use crate::space_time::selection::initial_guess::{Conflict, EvasiveManoeuvre};
+    use crate::space_time::selection::initial_guess::EvasiveManoeuvre;
     use searoom_geometry::frame::{Side, Vector};
     use searoom_geometry::outer_disc;
     use searoom_model::trajectory::DesiredTrajectory;

@@ -2,9 +2,9 @@
 //! position and time.
 
 use crate::cost::error_after_end;
+use crate::space_time::context::Context;
 use crate::space_time::refinement::approach::Approach;
 use crate::space_time::refinement::rollout::Rollout;
-use crate::space_time::refinement::trial::Context;
 use searoom_geometry::tolerance;
 
 /// Cost of the route from a position and time, with its rates per second and per metre and its

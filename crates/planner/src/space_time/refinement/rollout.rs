@@ -2,9 +2,9 @@
 //! lengths.
 
 use crate::Problem;
+use crate::space_time::manoeuvre::ending::Ending;
 use crate::space_time::refinement::gauss_newton::Twist;
 use crate::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::space_time::refinement::structure::Ending;
 use searoom_geometry::frame::{Vector, cross, to_port};
 use searoom_model::trajectory::Segment;
 

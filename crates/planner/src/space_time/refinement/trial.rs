@@ -1,32 +1,17 @@
 //! Trial point of the refinement: one rolled-out manoeuvre with its cost and closest approaches.
 //! This suffices to accept or reject a step; derivatives are computed for accepted ones only.
 
-use crate::Problem;
+use crate::space_time::context::Context;
 use crate::space_time::land;
-use crate::space_time::proxy::{Proxy, first_contact};
-use crate::space_time::refinement::approach::{Approach, FINE_CHORD_RAD, NEAR_M, add_approaches};
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
 use crate::space_time::refinement::model::REFINEMENT_MARGIN_M;
 use crate::space_time::refinement::quadratic::Row;
 use crate::space_time::refinement::return_segments::ReturnSegments;
 use crate::space_time::refinement::rollout::{Place, Rollout, SegmentOrigin};
-use crate::space_time::refinement::structure::{Ending, Structure};
-use crate::space_time::route::Route;
+use crate::space_time::refinement::structure::Structure;
 use searoom_geometry::numerics::{GAUSS_2, GAUSS_3, GAUSS_4};
-use searoom_model::trajectory::{Nearest, Segment};
-
-/// Data that stay fixed for one problem.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Context<'a> {
-    pub problem: &'a Problem<'a>,
-    pub route: &'a Route,
-    pub proxies: &'a [Proxy<'a>],
-    /// Land blocks.
-    pub blocks: &'a [Proxy<'a>],
-    /// Longest arc per chord in the search for approaches, radians.
-    pub chord: f64,
-    /// Least time of a segment variable, seconds.
-    pub segment_time: f64,
-}
+use searoom_model::trajectory::Nearest;
 
 /// Evaluated trial point.
 #[derive(Debug)]
@@ -67,30 +52,6 @@ pub(crate) struct WeightedPoint {
 }
 
 impl<'a> Context<'a> {
-    /// Final accuracy, and no least time.
-    pub(crate) fn new(
-        problem: &'a Problem<'a>,
-        route: &'a Route,
-        proxies: &'a [Proxy<'a>],
-        blocks: &'a [Proxy<'a>],
-    ) -> Self {
-        Self {
-            problem,
-            route,
-            proxies,
-            blocks,
-            chord: FINE_CHORD_RAD,
-            segment_time: 0.0,
-        }
-    }
-
-    /// First time at which a motion meets a set or land, seconds.
-    pub(crate) fn first_conflict(&self, motion: &[Segment]) -> Option<f64> {
-        let contact = first_contact(self.proxies, motion).map(|c| c.1);
-        let grounding = land::first_contact(self.problem.land_obstacle, motion);
-        contact.into_iter().chain(grounding).reduce(f64::min)
-    }
-
     /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
         let rollout = structure.roll_out(self.problem, self.route, lengths)?;

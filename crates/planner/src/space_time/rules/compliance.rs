@@ -2,7 +2,7 @@
 //! targets on their nominal tracks.
 
 use crate::Problem;
-use crate::space_time::motion::until as motion_until;
+use crate::space_time::manoeuvre::motion::until as motion_until;
 use searoom_colregs::compliance::{ComplianceReport, OwnSamples};
 use searoom_colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};

@@ -2,8 +2,8 @@
 //! before it may act, and not after its last escape.
 
 use crate::Problem;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::rules::manoeuvre::{LEAST_S, Manoeuvres};
-use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use searoom_colregs::{Encountered, MayAct, Role, SMALL_TURN};
 use searoom_geometry::frame::{heading_of, wrap};
 use searoom_geometry::tolerance;

@@ -1,7 +1,7 @@
 //! Several targets: those that are passed in one manoeuvre, and the manoeuvres one after another.
 
 use crate::clock::Clock;
-use crate::space_time::refinement::trial::Context;
+use crate::space_time::context::Context;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::can_hold_speed;
 use crate::space_time::rules::manoeuvre::{Manoeuvre, Manoeuvres};

@@ -10,14 +10,14 @@
 //! parameters. It is allowed if it is clear and by the rules.
 
 use crate::clock::Clock;
-use crate::space_time::chain::Chain;
-use crate::space_time::graph::return_to_line::motion_back;
+use crate::space_time::context::Context;
 use crate::space_time::land;
-use crate::space_time::motion::until;
+use crate::space_time::manoeuvre::chain::Chain;
+use crate::space_time::manoeuvre::motion::until;
+use crate::space_time::manoeuvre::return_to_line::motion_back;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::proxy::{Proxy, first_met};
-use crate::space_time::refinement::trial::Context;
 use crate::space_time::rules::compliance::complies;
-use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::{APPARENT_TIME, APPARENT_TURN, Encountered};
 use searoom_geometry::frame::{Pose, Vector, wrap};

@@ -11,13 +11,13 @@
 use std::ops::RangeInclusive;
 
 use crate::UnderWay;
-use crate::space_time::motion::until;
+use crate::space_time::manoeuvre::motion::until;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::rules::compliance::keeps_off_bows;
 use crate::space_time::rules::departure::SAMPLE_S;
 use crate::space_time::rules::manoeuvre::{
     Ending, FirstAlteration, Manoeuvre, Manoeuvres, OutwardLeg, Passing,
 };
-use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN, ON_COURSE};
 use searoom_geometry::frame::{Side, wrap};
 

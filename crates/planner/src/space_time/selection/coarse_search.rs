@@ -5,11 +5,12 @@
 //! corners and refined like any other manoeuvre.
 
 use crate::clock::Clock;
-use crate::space_time::fallback::cost_to_go::CostToGoGrid;
-use crate::space_time::fallback::hybrid_a_star;
+use crate::space_time::context::Context;
+use crate::space_time::grid::cost_to_go::CostToGoGrid;
+use crate::space_time::grid::hybrid_a_star;
+use crate::space_time::manoeuvre::corner::Corner;
 use crate::space_time::refinement::Refinement;
-use crate::space_time::refinement::trial::Context;
-use crate::space_time::selection::conflict_search::{Corner, MAX_CORNERS, SHORTEST_M, through};
+use crate::space_time::selection::conflict_search::{MAX_CORNERS, SHORTEST_M, through};
 use crate::space_time::selection::warm_start::initial_guess_from;
 use crate::{Problem, SearchKind};
 use searoom_geometry::frame::Vector;

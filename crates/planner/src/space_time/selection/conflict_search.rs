@@ -6,17 +6,19 @@
 //! doi:10.1016/j.artint.2014.11.006) on targets in place of agents.
 
 use crate::clock::Clock;
+use crate::space_time::context::Context;
 use crate::space_time::land;
-use crate::space_time::motion::sailed_between;
+use crate::space_time::manoeuvre::conflict::Conflict;
+use crate::space_time::manoeuvre::corner::{Corner, corners_of};
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::manoeuvre::motion::{pose_at, sailed_between};
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::proxy::{Proxy, by_obstacle, first_contact};
 use crate::space_time::refinement::rollout::SegmentOrigin;
-use crate::space_time::refinement::structure::{Ending, SegmentVariable};
-use crate::space_time::refinement::trial::Context;
+use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::refinement::{InitialGuess, Refinement};
-use crate::space_time::selection::initial_guess::{
-    Conflict, InitialGuessBuilder, ManoeuvreSpeeds, RETURN_ANGLES,
-};
-use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
+use crate::space_time::selection::initial_guess::{InitialGuessBuilder, RETURN_ANGLES};
+use searoom_geometry::frame::{Side, Vector, cross, heading_of, to_port, wrap};
 use searoom_model::trajectory::Segment;
 
 /// Largest number of answers: the cheapest one before insertions need not be the cheapest one after
@@ -46,18 +48,8 @@ const TURN_OUT: f64 = 0.6;
 /// Metres. A manoeuvre does not return where its last corner is.
 pub(crate) const SHORTEST_M: f64 = 1.0;
 
-/// Turns below this are no corners, radians.
-const STRAIGHT: f64 = 0.03;
-
 /// Longest turn at a corner, radians.
 const SHARPEST: f64 = 2.2;
-
-/// Corner of a manoeuvre: where its lines meet, and about when.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Corner {
-    pub time: f64,
-    pub position: Vector,
-}
 
 /// Manoeuvre that is clear of the targets considered.
 #[derive(Debug)]
@@ -145,50 +137,58 @@ fn children(
         proxies: &proxies,
         ..*context
     };
-    let mut ways = beside(&context, node, conflict, Side::Starboard);
-    ways.extend(beside(&context, node, conflict, Side::Port));
-    ways.push(along(node, conflict.astern, -1.0));
-    ways.push(along(node, conflict.ahead, 1.0));
-    ways.into_iter()
+    let beside = Side::BOTH.map(|side| beside(&context, node, conflict, side));
+    let ways = beside.into_iter().flatten().flatten();
+    let ahead_or_astern = [
+        along(node, conflict.astern, -1.0),
+        along(node, conflict.ahead, 1.0),
+    ];
+    ways.chain(ahead_or_astern.into_iter().flatten())
         .take_while(|_| !clock.is_up())
         .filter_map(|corners| child(&context, node, &corners, &considered, steps, clock))
         .collect()
 }
 
-/// Corners of manoeuvres that pass a target at a distance on one side.
-fn beside(context: &Context, node: &Node, conflict: &Conflict, side: Side) -> Vec<Vec<Corner>> {
+/// Corners of manoeuvres that pass a target at a distance on one side; `None` for an empty motion.
+fn beside(
+    context: &Context,
+    node: &Node,
+    conflict: &Conflict,
+    side: Side,
+) -> Option<Vec<Vec<Corner>>> {
     let offset = conflict.offset(side);
     let speeds = ManoeuvreSpeeds::of(context.problem);
     let at = |time: f64| {
-        let pose = pose_at(&node.motion, time);
+        let pose = pose_at(&node.motion, time)?;
         let beam = to_port(pose.ahead()) * side.turn_sign();
-        Corner {
+        Some(Corner {
             time,
             position: pose.position + beam * offset,
-        }
+        })
     };
     let (from, to) = (conflict.from, conflict.to);
     let lead = offset / (speeds.normal * TURN_OUT.sin());
     if conflict.through > offset {
-        let mut all = vec![inserted(node, &[at(from), at(to)], lead)];
+        let mut all = vec![inserted(node, &[at(from)?, at(to)?], lead)?];
         if !node.corners.is_empty() {
-            all.push(inserted(node, &[at(to)], lead));
+            all.push(inserted(node, &[at(to)?], lead)?);
         }
-        all
+        Some(all)
     } else {
-        vec![inserted(node, &[at(0.5 * (from + to))], lead)]
+        Some(vec![inserted(node, &[at(0.5 * (from + to))?], lead)?])
     }
 }
 
-/// Corners of a manoeuvre that is ahead of the node's, or behind it.
-fn along(node: &Node, (distance, time): (f64, f64), sign: f64) -> Vec<Corner> {
-    let pose = pose_at(&node.motion, time);
+/// Corners of a manoeuvre that is ahead of the node's, or behind it; `None` for an empty motion.
+fn along(node: &Node, (distance, time): (f64, f64), sign: f64) -> Option<Vec<Corner>> {
+    let pose = pose_at(&node.motion, time)?;
     let position = pose.position + pose.ahead() * (sign * distance);
     inserted(node, &[Corner { time, position }], 0.0)
 }
 
-/// The node's corners and those of passing a target; those meanwhile are replaced.
-fn inserted(node: &Node, passing: &[Corner], lead: f64) -> Vec<Corner> {
+/// The node's corners and those of passing a target; those meanwhile are replaced. `None` for an
+/// empty motion.
+fn inserted(node: &Node, passing: &[Corner], lead: f64) -> Option<Vec<Corner>> {
     let (first, last) = (passing[0], passing[passing.len() - 1]);
     let leaves = (first.time - lead).max(0.0);
     let before = node
@@ -201,19 +201,12 @@ fn inserted(node: &Node, passing: &[Corner], lead: f64) -> Vec<Corner> {
     if lead > 0.0 && (corners.is_empty() || leaves > ends) {
         corners.push(Corner {
             time: leaves,
-            position: pose_at(&node.motion, leaves).position,
+            position: pose_at(&node.motion, leaves)?.position,
         });
     }
     corners.extend(passing);
     corners.extend(node.corners.iter().filter(|c| c.time > last.time + 1.0));
-    corners
-}
-
-/// Pose at a time, or at the end.
-fn pose_at(motion: &[Segment], time: f64) -> Pose {
-    let found = motion.iter().find(|s| s.end_time() >= time);
-    let segment = found.unwrap_or(&motion[motion.len() - 1]);
-    segment.pose_at(time.max(segment.start_time))
+    Some(corners)
 }
 
 /// Refinement of a manoeuvre through at least two corners. It leaves the nominal motion at the
@@ -275,44 +268,6 @@ fn child(
         motion,
         guess: Some(guess),
     })
-}
-
-/// Where the lines of a motion meet; its end if there is no turn.
-fn corners_of(legs: &[Segment]) -> Vec<Corner> {
-    let mut corners: Vec<Corner> = Vec::new();
-    let mut turn: Option<(Segment, f64)> = None;
-    let mut end = |turn: &mut Option<(Segment, f64)>| {
-        if let Some((first, angle)) = turn.take()
-            && angle.abs() > STRAIGHT
-        {
-            let radius = first.speed / first.turn_rate.abs();
-            corners.push(Corner {
-                time: first.start_time + 0.5 * angle.abs() / first.turn_rate.abs(),
-                position: first.start.position
-                    + first.start.ahead() * (radius * (0.5 * angle.abs()).min(1.2).tan()),
-            });
-        }
-    };
-    for leg in legs.iter().filter(|leg| leg.duration > 0.0) {
-        let angle = leg.turn_rate * leg.duration;
-        match &mut turn {
-            Some((_, sum)) if angle * *sum > 0.0 => *sum += angle,
-            _ if angle != 0.0 => {
-                end(&mut turn);
-                turn = Some((*leg, angle));
-            }
-            Some(_) if leg.length() > 1.0 => end(&mut turn),
-            _ => {}
-        }
-    }
-    end(&mut turn);
-    if corners.is_empty() {
-        corners.extend(legs.last().map(|leg| Corner {
-            time: leg.end_time(),
-            position: leg.end().position,
-        }));
-    }
-    corners
 }
 
 /// Manoeuvre through corners. After the last one it goes to the last waypoint if the node does.

@@ -9,18 +9,17 @@ mod tidy;
 pub(crate) mod warm_start;
 
 use crate::clock::Clock;
+use crate::space_time::context::COARSE_CHORD_RAD;
+use crate::space_time::context::Context;
 use crate::space_time::graph::node::State;
 use crate::space_time::land;
+use crate::space_time::manoeuvre::conflict::Conflict;
 use crate::space_time::proxy::first_met;
-use crate::space_time::refinement::approach::COARSE_CHORD_RAD;
 use crate::space_time::refinement::insertion::{pruned, with_insertions};
-use crate::space_time::refinement::trial::Context;
 use crate::space_time::refinement::{InitialGuess, Refinement};
 use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::coarse_search::CoarseSearch;
-use crate::space_time::selection::initial_guess::{
-    Conflict, EvasiveManoeuvre, ahead, from_graph, waiting,
-};
+use crate::space_time::selection::initial_guess::{EvasiveManoeuvre, ahead, from_graph, waiting};
 use crate::space_time::selection::tidy::Prices;
 use crate::{Plan, PlanMethod};
 use searoom_geometry::frame::Side;

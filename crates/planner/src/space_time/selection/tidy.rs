@@ -7,12 +7,13 @@
 
 use super::{Selection, leaders, refined};
 use crate::clock::Clock;
+use crate::space_time::context::Context;
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::refinement::quadratic::MAX_VARIABLES;
-use crate::space_time::refinement::structure::{Ending, SegmentVariable};
-use crate::space_time::refinement::trial::Context;
+use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::refinement::{InitialGuess, Refinement};
 use crate::space_time::route::Route;
-use crate::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::{Problem, Tidiness};
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;

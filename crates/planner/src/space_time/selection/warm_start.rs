@@ -1,20 +1,22 @@
 //! Warm start: refines an earlier plan against new sets without a new search.
 
 use crate::clock::Clock;
+use crate::space_time::context::Context;
 use crate::space_time::land;
+use crate::space_time::manoeuvre::ending::Ending;
+use crate::space_time::manoeuvre::motion::merged;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::plan_normalised;
 use crate::space_time::proxy::Proxy;
 use crate::space_time::refinement::InitialGuess;
 use crate::space_time::refinement::quadratic::MAX_VARIABLES;
-use crate::space_time::refinement::structure::{Ending, SegmentVariable};
-use crate::space_time::refinement::trial::Context;
+use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::route::Route;
 use crate::space_time::selection::Selection;
 use crate::space_time::selection::budget::SearchBudget;
-use crate::space_time::selection::initial_guess::{InitialGuessBuilder, ManoeuvreSpeeds};
+use crate::space_time::selection::initial_guess::InitialGuessBuilder;
 use crate::{NoPlan, Outcome, Plan, PlanMethod, Planned, Problem};
 use searoom_geometry::frame::{Pose, Side, wrap};
-use searoom_geometry::tolerance;
 use searoom_model::trajectory::{Segment, Trajectory};
 
 /// Distance (metres) and angle (radians) within which a pose is on the route.
@@ -142,21 +144,6 @@ pub(crate) fn initial_guess_from(
         }
     }
     builder.build(ending)
-}
-
-/// Motion without segments of zero length and with equal neighbours merged.
-fn merged(motion: &[Segment]) -> Vec<Segment> {
-    let mut merged: Vec<Segment> = Vec::with_capacity(motion.len());
-    let of_use = |s: &&Segment| s.speed <= 0.0 || s.length() > tolerance::LENGTH_M;
-    for s in motion.iter().filter(of_use) {
-        match merged.last_mut() {
-            Some(last) if last.speed == s.speed && last.turn_rate == s.turn_rate => {
-                last.duration += s.duration;
-            }
-            _ => merged.push(*s),
-        }
-    }
-    merged
 }
 
 fn is_at(route: &Route, distance: f64, pose: Pose) -> bool {

@@ -1,7 +1,7 @@
 //! Return onto a leg: turn, line, turn.
 
 use crate::Problem;
-use crate::space_time::chain::Chain;
+use crate::space_time::manoeuvre::chain::Chain;
 use crate::space_time::route::Route;
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_model::trajectory::Segment;

@@ -9,10 +9,10 @@ use std::collections::HashSet;
 
 use crate::clock::Clock;
 use crate::search::{Search, Space, Stop};
-use crate::space_time::chain::Chain;
-use crate::space_time::fallback::cost_to_go::CostToGoGrid;
-use crate::space_time::graph::intercept::Interceptor;
+use crate::space_time::grid::cost_to_go::CostToGoGrid;
 use crate::space_time::land;
+use crate::space_time::manoeuvre::chain::Chain;
+use crate::space_time::manoeuvre::interceptor::Interceptor;
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, first_met, within_reach};
 use crate::{Outcome, Plan, PlanMethod, Planned, Problem, SearchStats};

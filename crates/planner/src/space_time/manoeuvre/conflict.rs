@@ -1,0 +1,91 @@
+//! Where the nominal motion meets a set, and how far aside own ship has to go.
+
+use crate::space_time::manoeuvre::motion::{pose_at, sailed_between};
+use crate::space_time::proxy::Proxy;
+use searoom_geometry::frame::{Side, to_port};
+use searoom_model::trajectory::Segment;
+
+/// Samples of a conflict's width.
+const CONFLICT_SAMPLES: usize = 24;
+
+/// Stretch of the nominal motion inside a set, and the offsets that clear the set.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conflict {
+    /// Seconds at which the contact begins and ends.
+    pub from: f64,
+    pub to: f64,
+    /// Distance sailed inside, metres.
+    pub through: f64,
+    /// Offsets to starboard and to port that clear the set throughout, metres.
+    pub offsets: [f64; 2],
+    /// Offset astern that clears the set throughout, metres, and the time at which it is needed.
+    pub astern: (f64, f64),
+    /// Offset ahead that clears the set throughout, metres, and the time at which it is needed.
+    pub ahead: (f64, f64),
+}
+
+impl Conflict {
+    /// Offset to a side, metres.
+    pub(crate) fn offset(&self, side: Side) -> f64 {
+        self.offsets[usize::from(side == Side::Port)]
+    }
+
+    /// Ratio of the distance sailed inside to the smaller offset.
+    pub(crate) fn slenderness(&self) -> f64 {
+        self.through / self.nearest_offset().max(1.0)
+    }
+
+    /// Smaller offset of the two sides, metres.
+    pub(crate) fn nearest_offset(&self) -> f64 {
+        self.offsets[0].min(self.offsets[1])
+    }
+
+    /// Conflict of an instant, without a width, and with these offsets astern and ahead.
+    pub(crate) fn at(time: f64, along: f64) -> Self {
+        Self {
+            from: time,
+            to: time,
+            through: 0.0,
+            offsets: [0.0; 2],
+            astern: (along, time),
+            ahead: (along, time),
+        }
+    }
+
+    /// Contact of one obstacle, given by its proxies, with the nominal motion, from its first to
+    /// its last instant.
+    pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
+        let from = proxies
+            .iter()
+            .filter_map(|h| nominal_motion.iter().find_map(|s| h.first_contact(s)))
+            .min_by(f64::total_cmp)?;
+        let end = nominal_motion.last()?.end_time();
+        let mut conflict = Self::at(from, 0.0);
+        for k in 0..=CONFLICT_SAMPLES {
+            let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
+            let pose = pose_at(nominal_motion, time)?;
+            let inside = |h: &&Proxy| {
+                h.slack(pose.position, time)
+                    .is_some_and(|slack| !(slack > 0.0))
+            };
+            let Some(proxy) = proxies.iter().find(inside) else {
+                continue;
+            };
+            conflict.to = time;
+            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
+            if behind > conflict.astern.0 {
+                conflict.astern = (behind, time);
+            }
+            let before = proxy.exit_distance(pose.position, time, pose.ahead());
+            if before > conflict.ahead.0 {
+                conflict.ahead = (before, time);
+            }
+            for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
+                let beam = to_port(pose.ahead()) * side.turn_sign();
+                *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
+            }
+        }
+        conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
+        Some(conflict)
+    }
+}

@@ -1,0 +1,11 @@
+//! What manoeuvres are made of, for all searches: parts of motions, the speeds, the ways to end,
+//! the conflicts that they resolve, and turns and lines in closed form.
+
+pub(crate) mod chain;
+pub(crate) mod conflict;
+pub(crate) mod corner;
+pub(crate) mod ending;
+pub(crate) mod interceptor;
+pub(crate) mod motion;
+pub(crate) mod return_to_line;
+pub(crate) mod speeds;
