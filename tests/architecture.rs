@@ -308,8 +308,6 @@ const CIRCLES: &[&str] = &[
     "crates/sets/src/polytope",
     "src/cli/input",
     "src/cli/output",
-    "src/document/plan",
-    "src/document/targets",
     "src/recording/canvas",
     "src/recording/layout",
     "src/recording/views",

@@ -22,6 +22,13 @@ impl PositionDocument {
     }
 }
 
+pub(crate) fn position(p: Vector) -> PositionDocument {
+    PositionDocument {
+        east_m: p.x + 0.0,
+        north_m: p.y + 0.0,
+    }
+}
+
 /// Own ship and its limits, with the keys of the scenario file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OwnShipDocument {

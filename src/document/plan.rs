@@ -20,16 +20,14 @@ use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
 use super::out_of_reach::OutOfReachDocument;
 use super::parts::{
     CostDocument, EscapeDocument, ImprovementDocument, LowerBoundDocument, MissionDocument,
-    NodeDocument, ObstacleDocument, OwnShipDocument, PlanMethod, PositionDocument,
-    RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument,
-    TimingDocument, TrajectoryDocument, ViolationDocument,
+    NodeDocument, ObstacleDocument, OwnShipDocument, PlanMethod, RelaxationDocument,
+    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
+    TrajectoryDocument, ViolationDocument, position,
 };
 use super::targets::sets::vertices;
 use super::targets::{TargetDocument, target};
 use crate::evaluation::{Evaluation, Violation};
-use crate::frame::{
-    Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
-};
+use crate::frame::{Pose, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
@@ -227,13 +225,6 @@ pub(crate) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
         t_s: finite(violation.time),
     };
     found.iter().map(document).collect()
-}
-
-pub(crate) fn position(p: Vector) -> PositionDocument {
-    PositionDocument {
-        east_m: p.x + 0.0,
-        north_m: p.y + 0.0,
-    }
 }
 
 pub(crate) fn timing(run: &Run) -> TimingDocument {

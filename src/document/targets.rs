@@ -5,8 +5,7 @@ pub(super) mod sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::PositionDocument;
-use super::plan::position;
+use super::parts::{PositionDocument, position};
 use crate::frame::{
     Pose, course_deg_from_heading, deg_from_radians, heading_from_course_deg, radians_from_deg,
 };
