@@ -304,8 +304,6 @@ fn the_sources_keep_the_borders() {
 const CIRCLES: &[&str] = &[
     "crates/evaluation/src/distance",
     "crates/evaluation/src/sets",
-    "crates/sets/src/contact",
-    "crates/sets/src/polytope",
     "src/cli/input",
     "src/cli/output",
     "src/recording/canvas",

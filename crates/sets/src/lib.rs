@@ -12,6 +12,7 @@ mod ellipsoid;
 mod interior;
 mod land;
 mod polytope;
+mod polytope_queries;
 mod projection;
 mod risk;
 mod slabs;
