@@ -1,9 +1,9 @@
 //! Distance from own hull to land, by the edges of polygons and the even-odd rule.
 
 use crate::distance::clearance::{Body, least_distance_below};
-use crate::distance::least::Least;
-use crate::distance::piece::Piece;
-use crate::sets::space_time_set::MovingSet;
+use crate::least::Least;
+use crate::moving_set::MovingSet;
+use crate::piece::Piece;
 use searoom_geometry::frame::Vector;
 use searoom_geometry::{ConvexPolygon, EdgeTree, Polygon};
 

@@ -13,12 +13,16 @@ mod along;
 mod cost;
 mod distance;
 mod land;
+mod least;
 mod met;
 mod motion;
+mod moving_set;
+mod piece;
 mod request;
 mod safety;
 mod sets;
 mod steered;
+mod turn;
 mod words;
 
 pub use cost::counted::counted_error_of_segments;
@@ -37,12 +41,12 @@ pub use steered::{Steering, evaluate_steered};
 pub use words::{NOT_BY_THE_RULES, facts, outcome_word, skipped_waypoints, without_rules};
 pub use words::{risk_figure, said_risk};
 
-use distance::least::Least;
-use distance::piece::Piece;
-use distance::turn::{Turn, turns};
 use land::LandBodies;
+use least::Least;
 use met::passage;
+use piece::Piece;
 use safety::{Claim, collision, grounding};
+use turn::{Turn, turns};
 
 use std::collections::HashMap;
 

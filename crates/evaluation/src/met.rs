@@ -3,11 +3,10 @@
 use super::safety::{Claim, entered};
 use super::{Passage, Request, Safety, TurnedHull};
 use crate::distance::clearance::Body;
-use crate::distance::least::Least;
-use crate::distance::piece::{Piece, at_rest};
-use crate::distance::turn::{Turn, least_while_turning};
+use crate::least::Least;
+use crate::piece::{Piece, at_rest, end_of, since};
 use crate::sets::moving_slabs::MovingSlabs;
-use crate::sets::space_time_set::{end_of, since};
+use crate::turn::{Turn, least_while_turning};
 use searoom_geometry::frame::{Pose, Side, cross, direction};
 use searoom_geometry::tolerance;
 use searoom_geometry::{ConvexSet, outer_enclosing_ellipse};

@@ -3,9 +3,9 @@
 use super::{Evaluation, Request, Safety, Violation, land_distance, least_of, meetings};
 use crate::cost::counted::counted_error_of_cubics;
 use crate::cost::quadrature::smooth;
-use crate::distance::piece::Piece;
 use crate::distance::waypoints::waypoint_distances;
 use crate::motion::Report;
+use crate::piece::Piece;
 use searoom_geometry::frame::{Vector, wrap};
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::{Cubic, DesiredTrajectory, ForceNode, Steered};

@@ -1,7 +1,7 @@
 //! Interval over which the space-time error is counted. It makes any two motions comparable: one
 //! that ends at the last waypoint, one that stays there, one that is early, and one that passes by.
 
-use crate::distance::piece::Piece;
+use crate::piece::Piece;
 use crate::{cost, steered};
 use searoom_geometry::frame::Vector;
 use searoom_geometry::tolerance;

@@ -1,8 +1,8 @@
 //! Distances in continuous time between own ship, a rectangle or a point, and a moving set.
 
-use crate::distance::least::{Least, Probe};
-use crate::distance::piece::Piece;
-use crate::sets::space_time_set::{Face, MovingSet};
+use crate::least::{Least, Probe};
+use crate::moving_set::{Face, MovingSet};
+use crate::piece::Piece;
 use searoom_geometry::frame::{Pose, Vector, to_port};
 use searoom_geometry::tolerance;
 use searoom_geometry::{Between, shortest_between};

@@ -1,6 +1,6 @@
 //! Distances at which a motion passes the waypoints between the first and the last.
 
-use super::piece::Piece;
+use crate::piece::Piece;
 use searoom_geometry::frame::Vector;
 use searoom_model::trajectory::DesiredTrajectory;
 

@@ -1,8 +1,8 @@
 //! Moving ellipse of the checker, represented by its support function alone.
 
-use crate::distance::least::{Least, Probe};
-use crate::distance::piece::Piece;
-use crate::sets::space_time_set::{MovingDisc, MovingVertex};
+use crate::least::{Least, Probe};
+use crate::moving_set::{MovingDisc, MovingVertex};
+use crate::piece::Piece;
 use searoom_geometry::Ellipse;
 use searoom_geometry::frame::{Vector, cross, direction};
 use searoom_geometry::tolerance;

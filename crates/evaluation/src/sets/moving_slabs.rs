@@ -1,10 +1,10 @@
 //! Sequence of velocity sets in the checker: one moving set per time interval (slab).
 
 use crate::distance::clearance::{Body, least_distance_below};
-use crate::distance::least::Least;
-use crate::distance::piece::Piece;
+use crate::least::Least;
+use crate::moving_set::{MovingDisc, MovingSet};
+use crate::piece::Piece;
 use crate::sets::moving_ellipse::MovingEllipse;
-use crate::sets::space_time_set::{MovingDisc, MovingSet};
 use searoom_geometry::ConvexPolygon;
 use searoom_geometry::tolerance::{self, ELLIPSE_SIDES};
 use searoom_model::target::{TimedVelocitySet, Uncertainty};

@@ -1,7 +1,7 @@
 //! Turns on the spot: own hull sweeps every heading between two courses at one instant.
 
 use crate::distance::clearance::{Body, least_distance};
-use crate::distance::least::Least;
+use crate::least::Least;
 use crate::sets::moving_slabs::MovingSlabs;
 use searoom_geometry::frame::wrap;
 use searoom_geometry::tolerance;

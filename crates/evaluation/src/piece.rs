@@ -34,6 +34,25 @@ pub(crate) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
     pieces.last().map(lying).into_iter().collect()
 }
 
+/// Latest end of some pieces, seconds; 0 without any, infinite for a NaN.
+pub(crate) fn end_of<P: Piece>(pieces: &[P]) -> f64 {
+    let ends = pieces.iter().map(Piece::end_time);
+    ends.fold(0.0, |latest, end| match end.is_nan() {
+        true => f64::INFINITY,
+        false => end.max(latest),
+    })
+}
+
+/// Returns the parts of a chain of pieces after `from`, with time measured from `zero`. If `from`
+/// is NaN, returns all pieces.
+pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
+    // Negated on purpose: a NaN removes no piece.
+    let later = pieces.iter().filter(|piece| !(piece.end_time() <= from));
+    later
+        .map(|piece| piece.part(piece.start_time().max(from), piece.end_time(), zero))
+        .collect()
+}
+
 impl Piece for Segment {
     fn start_time(&self) -> f64 {
         self.start_time
