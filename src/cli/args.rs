@@ -20,8 +20,8 @@ use searoom::scenario::{Compliance, Fault, Scenario};
 use super::campaign::CampaignArgs;
 use super::input::rows;
 use super::output::products::Wanted;
-use super::output::status::ExitStatus;
 use super::shell::schema_kinds;
+use super::status::ExitStatus;
 
 /// The text below the options of a command.
 macro_rules! example {

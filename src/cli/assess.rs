@@ -14,8 +14,8 @@ use super::input::rows;
 use super::input::scenes::open_one;
 use super::output::Output;
 use super::output::products::prepare_figure;
-use super::output::status::ExitStatus;
 use super::runner::guarded;
+use super::status::ExitStatus;
 
 pub fn assess(args: &AssessArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     // before any computation

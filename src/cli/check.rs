@@ -4,10 +4,10 @@ use searoom::document::{CheckDocument, CheckedDocument, FaultDocument};
 use searoom::study::lint::findings;
 
 use super::args::CheckArgs;
-use super::input::files::Refused;
+use super::found::Refused;
 use super::input::scenes;
-use super::output::status::ExitStatus;
 use super::output::{Noted, Output};
+use super::status::ExitStatus;
 
 /// Prints one line per valid scenario, every fault of the others, and then the assumptions.
 pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {

@@ -14,12 +14,12 @@ use searoom::study::compare::{
 };
 
 use super::args::CompareArgs;
-use super::input::files::{Refused, shown};
+use super::found::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
-use super::output::status::ExitStatus;
 use super::output::{Output, csv};
 use super::runner::{guarded, guarded_on};
+use super::status::ExitStatus;
 
 struct Compared {
     file: PathBuf,

@@ -3,11 +3,11 @@
 use searoom::report::write_atomically;
 
 use super::args::{ImportArgs, InitArgs};
-use super::input::files::refuse_clashes;
+use super::found::refuse_clashes;
 use super::input::scenes::{self, Scene};
 use super::output::Output;
 use super::output::products::make_folder;
-use super::output::status::ExitStatus;
+use super::status::ExitStatus;
 
 /// Two ships in sight, every line explained.
 const TEMPLATE: &str = include_str!("../../scenarios/template.toml");

@@ -13,9 +13,9 @@ use searoom::report::{
 use serde_json::Value;
 
 use super::args::InspectArgs;
-use super::output::status::ExitStatus;
 use super::output::{Output, csv};
 use super::runner::guarded;
+use super::status::ExitStatus;
 use super::verify::RecordedPlans;
 
 /// Maximum number of similar entity names suggested for a missing one.

@@ -5,11 +5,11 @@ use searoom::report::lint_text;
 use searoom::study::lint::lint;
 
 use super::args::SuiteArgs;
-use super::input::files::Refused;
+use super::found::Refused;
 use super::input::scenes::Scene;
 use super::output::Output;
-use super::output::status::ExitStatus;
 use super::runner::guarded_on;
+use super::status::ExitStatus;
 
 /// Checks every scene; good unless one is unreadable.
 pub fn suite(scenes: Vec<Result<Scene, Refused>>, args: &SuiteArgs, output: &Output) -> ExitStatus {

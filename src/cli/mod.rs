@@ -5,6 +5,7 @@ mod assess;
 mod campaign;
 mod check;
 mod compare;
+mod found;
 mod import;
 mod input;
 #[cfg(feature = "recording")]
@@ -15,6 +16,7 @@ mod plan;
 mod runner;
 mod shell;
 mod simulate;
+mod status;
 mod suite;
 mod verify;
 

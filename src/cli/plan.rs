@@ -15,12 +15,12 @@ use searoom::study::bound::lower_bound;
 use searoom::study::lint::{findings, met_at_rest};
 
 use super::args::PlanArgs;
-use super::input::files::{Found, shown};
+use super::found::{Found, shown};
 use super::input::scenes;
 use super::output::Output;
 use super::output::products::{Failure, Products, make_parent};
-use super::output::status::ExitStatus;
 use super::runner::{Previous, attempt};
+use super::status::ExitStatus;
 
 /// The note on an RTZ file without times.
 const NO_DATE: &str =

@@ -15,7 +15,8 @@ use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
 
 use super::args::Shared;
-use super::input::files::{self, Refused};
+use super::found::Refused;
+use super::input::files;
 use super::input::scenes::Scene;
 
 thread_local! {

@@ -8,7 +8,7 @@ use searoom::scenario::{self, thresholds_schema};
 
 use super::args::{Arguments, CompletionsArgs, SchemaArgs};
 use super::output::Output;
-use super::output::status::ExitStatus;
+use super::status::ExitStatus;
 
 /// The kinds of schema that are of files, not of documents.
 const SCENARIO: &str = "scenario";

@@ -15,12 +15,12 @@ use searoom::simulation::Simulation;
 use searoom::study::lint::met_at_rest;
 
 use super::args::SimulateArgs;
-use super::input::files::{Refused, shown};
+use super::found::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::output::products::{Products, Wanted, report_failure};
-use super::output::status::ExitStatus;
 use super::output::{Output, beyond_verify, json};
 use super::runner::guarded_on;
+use super::status::ExitStatus;
 
 /// Sails every file, one after another; a broken one does not stop the others.
 pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStatus> {

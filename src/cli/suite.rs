@@ -5,13 +5,13 @@ use searoom::report::page::HtmlReport;
 use searoom::report::{counted, printable, suite_table};
 
 use super::args::SuiteArgs;
-use super::input::files::{Refused, shown};
+use super::found::{Refused, shown};
 use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
 use super::output::products::{Products, Wanted, report_failure};
-use super::output::status::ExitStatus;
 use super::runner::attempt;
+use super::status::ExitStatus;
 
 /// Document entries and messages so far, in the order of the files.
 #[derive(Default)]

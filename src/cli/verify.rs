@@ -15,8 +15,8 @@ use searoom::verification::{
 use super::args::VerifyArgs;
 use super::input::files;
 use super::output::Output;
-use super::output::status::ExitStatus;
 use super::runner::guarded_within;
+use super::status::ExitStatus;
 
 /// Checks every file; an unreadable one does not stop the others. Results of other commands are left
 /// out where they lie in a folder.

@@ -16,12 +16,12 @@ use searoom::report::page::HtmlReport;
 use searoom::report::{campaign_text, rare_contacts_text, simulation_text, write_atomically};
 use searoom::simulation::Simulation;
 
-use super::input::files::Found;
+use super::found::Found;
 use super::output::products::{Products, Wanted, make_parent};
-use super::output::status::ExitStatus;
 use super::output::{Output, json};
 use super::runner::guarded;
 use super::simulate::catch_interrupt;
+use super::status::ExitStatus;
 
 /// Fraction of trajectories that go on to the next level: near the best, a fifth, for many levels.
 const FRACTION: f64 = 0.2;

@@ -1,16 +1,14 @@
 //! Files at the paths of a command, and the names of their results.
 
 use std::collections::BTreeSet;
-use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
-use searoom::document::{INTERNAL_FAULT, UNREADABLE};
+use anyhow::Context;
 use searoom::input::{Fault, InputError, read_from, read_text};
 
+use super::super::found::{Found, Refused};
 use super::super::output::Output;
-use super::super::output::status::ExitStatus;
 
 /// Path that means standard input.
 const STDIN: &str = "-";
@@ -49,70 +47,6 @@ pub fn text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputErro
 
 /// Replacement of "/" in output names.
 pub const SEPARATOR: &str = "__";
-
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
-    pub file: PathBuf,
-    /// Name of its outputs without extension: the path relative to the argument with "/" as "__".
-    pub stem: String,
-    /// True if the argument was a folder, not this file.
-    pub in_folder: bool,
-}
-
-/// File, a part of it, or a folder without a result.
-#[derive(Debug)]
-pub struct Refused {
-    pub file: PathBuf,
-    /// Title of a valid scenario that is not supported as requested.
-    pub title: Option<String>,
-    /// Word of the outcome in documents.
-    pub outcome: &'static str,
-    /// Error that includes the file name.
-    pub error: String,
-    /// The faults of the file, where it could be read.
-    pub faults: Vec<Fault>,
-}
-
-impl Refused {
-    pub fn new(file: &Path, outcome: &'static str, error: impl Display) -> Self {
-        Self {
-            file: file.to_owned(),
-            title: None,
-            outcome,
-            error: error.to_string(),
-            faults: Vec::new(),
-        }
-    }
-
-    pub fn unreadable(file: &Path, error: impl Display) -> Self {
-        Self::new(file, UNREADABLE, error)
-    }
-
-    /// A file that cannot be read, or is wrong.
-    pub fn input(file: &Path, error: InputError) -> Self {
-        Self {
-            error: error.to_string(),
-            faults: match error {
-                InputError::Faults { faults, .. } => faults,
-                InputError::Read { .. } => Vec::new(),
-            },
-            ..Self::unreadable(file, "")
-        }
-    }
-
-    /// An internal fault, whose text does not include the file name.
-    pub fn fault(file: &Path, fault: &str) -> Self {
-        let error = format_args!("{}: {fault}", file.display());
-        Self::new(file, INTERNAL_FAULT, error)
-    }
-
-    pub fn status(&self) -> ExitStatus {
-        match self.outcome {
-            INTERNAL_FAULT => ExitStatus::InternalFault,
-            _ => ExitStatus::BadInput,
-        }
-    }
-}
 
 /// The kind of file that is looked for in a folder.
 pub struct FileKind {
@@ -192,20 +126,6 @@ fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Refused>> {
     all
 }
 
-/// Name of a file on a page: as given, but an absolute path is shortened to the part below the
-/// current folder, or to the file name.
-pub fn shown(file: &Path) -> String {
-    if !file.is_absolute() {
-        return file.display().to_string();
-    }
-    let here = std::env::current_dir().ok();
-    let below = here
-        .as_deref()
-        .and_then(|here| file.strip_prefix(here).ok());
-    let name = below.or(file.file_name().map(Path::new));
-    name.unwrap_or(file).display().to_string()
-}
-
 fn stem(relative: &Path) -> String {
     let parts: Vec<_> = relative
         .with_extension("")
@@ -232,22 +152,6 @@ fn walk(folder: &Path, kind: &FileKind, files: &mut Vec<PathBuf>) -> anyhow::Res
             walk(&path, kind, files)?;
         } else if kind.holds(&path) && !path.is_dir() {
             files.push(path);
-        }
-    }
-    Ok(())
-}
-
-/// Fails if two scenarios would have the same output name.
-pub fn refuse_clashes(found: &[Found]) -> anyhow::Result<()> {
-    for (index, later) in found.iter().enumerate() {
-        if let Some(earlier) = found[..index].iter().find(|f| f.stem == later.stem) {
-            bail!(
-                "{} and {} would both be written as '{}'; \
-                 give the folder above them, or one of them",
-                earlier.file.display(),
-                later.file.display(),
-                later.stem
-            );
         }
     }
     Ok(())

@@ -7,8 +7,9 @@ use searoom::scenario::import::{Assumed, Contents, Declared, Imported, Situation
 use searoom::scenario::{FILE_MEBIBYTES, Scenario};
 
 use super::super::args::AssumedArgs;
+use super::super::found::{Found, Refused};
 use super::super::output::Output;
-use super::files::{self, Found, Refused, SEPARATOR};
+use super::files::{self, SEPARATOR};
 
 const KIND: &str = "a scenario file";
 

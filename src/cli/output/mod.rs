@@ -1,7 +1,6 @@
 //! Output of the program: results to standard output, everything else to standard error.
 
 pub mod products;
-pub mod status;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,9 +16,9 @@ use searoom::report::{Display, broken, printable_lines};
 use serde::Serialize;
 use textwrap::core::display_width;
 
-use super::input::files::Refused;
+use super::found::Refused;
+use super::status::ExitStatus;
 use products::Failure;
-use status::ExitStatus;
 
 /// Escape codes of red, green, yellow, and their ends, as used in tables.
 const COLOURS: [&str; 5] = [

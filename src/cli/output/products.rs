@@ -17,9 +17,9 @@ use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
-use super::super::input::files::{Found, Refused, refuse_clashes, shown};
+use super::super::found::{Found, Refused, refuse_clashes, shown};
 use super::super::runner::guarded;
-use super::status::ExitStatus;
+use super::super::status::ExitStatus;
 use super::{Output, json};
 
 /// The viewer of recordings, of the version of the library that writes them or a later one.
