@@ -13,7 +13,7 @@ use encounter_generator::{EncounterKind, Placement, random_encounter, random_tra
 
 #[path = "../tests/campaigns/encounter_generator.rs"]
 mod encounter_generator;
-#[path = "../examples/shared/new_york.rs"]
+#[path = "shared/new_york.rs"]
 mod new_york;
 
 /// Random encounters of each kind, random traffic of each size, and runs of each scene.

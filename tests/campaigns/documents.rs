@@ -12,10 +12,15 @@ use searoom::target::{Motion, Representation};
 use searoom::verification::{Verification, verify};
 use serde_json::Value;
 
+/// The folder with `maps`, `scenarios` and `tests`: that of the package, or the one above.
+pub fn repository() -> &'static Path {
+    let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let found = folders.find(|folder| folder.join("maps").is_dir());
+    found.expect("a folder with maps")
+}
+
 pub fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenarios")
-        .join(path)
+    repository().join("scenarios").join(path)
 }
 
 pub fn scenario(path: &str) -> Scenario {
@@ -41,7 +46,7 @@ pub fn unhurried(mut scenario: Scenario) -> Scenario {
 
 /// A file of `tests/faults`.
 pub fn fault(name: &str) -> String {
-    let path = format!("{}/tests/faults/{name}", env!("CARGO_MANIFEST_DIR"));
+    let path = repository().join("tests/faults").join(name);
     std::fs::read_to_string(path).expect("a fault")
 }
 

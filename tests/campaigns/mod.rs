@@ -1,6 +1,6 @@
 //! Large runs over random scenes: scenes, judges, tables and bounds.
 //!
-//! The tests run each with few scenes; `examples/campaign.rs` with as many as asked for.
+//! The tests run each with few scenes; `cargo campaign` with as many as asked for.
 #![allow(dead_code, reason = "the tests and the program use a part each")]
 
 pub mod behaviour;

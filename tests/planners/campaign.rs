@@ -1,4 +1,4 @@
-//! Each campaign with few scenes; `examples/campaign.rs` runs more.
+//! Each campaign with few scenes; `cargo campaign` runs more.
 
 use crate::campaigns::closed_loop::replanning::{self, Behaviour, How};
 use crate::campaigns::encounter_generator::Meeting;

@@ -1,6 +1,5 @@
 //! Random traffic in the harbour of Trondheim: every plan stays clear of land and targets.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
@@ -17,6 +16,7 @@ use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
 use crate::campaigns::closed_loop::simulation::{How, Seen, Ship, Truth, sail};
+use crate::campaigns::documents::repository;
 use crate::campaigns::encounter_generator::{Placement, random_traffic};
 use crate::campaigns::statistics::spread;
 use crate::campaigns::{Report, Seeds};
@@ -30,7 +30,7 @@ const NEAR_LAND: f64 = 0.8;
 pub fn harbour() -> Arc<Map> {
     let origin = Geographic::new(63.444, 10.39);
     let earth = Georeference::new(origin).expect("valid");
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/trondheim-harbour.geojson");
+    let file = repository().join("maps/trondheim-harbour.geojson");
     Arc::new(Map::read(&file, &earth, None).expect("a map"))
 }
 

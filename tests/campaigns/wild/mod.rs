@@ -16,7 +16,7 @@ use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::verification::verify;
 
-use super::Report;
+use super::{Report, documents};
 pub use anything::{PLANNERS, anything};
 
 /// Faults in the order of the summary.
@@ -54,7 +54,8 @@ struct Found {
 /// Runs `count` accepted scenes from the seed `first` on, of one planner or of all. Writes scenes
 /// with a fault to the folder `keep`.
 pub fn run(first: u64, count: u64, planner: Option<&str>, keep: Option<&Path>) -> Report {
-    let maps = concat!(env!("CARGO_MANIFEST_DIR"), "/maps");
+    let maps = documents::repository().join("maps");
+    let maps = maps.display().to_string();
     let mut report = Report::default();
     let mut outcomes: BTreeMap<(&str, String), u64> = BTreeMap::new();
     let (mut counts, mut slowest) = ([0_u64; FAULTS.len()], [(0.0, 0); 3]);
@@ -65,7 +66,7 @@ pub fn run(first: u64, count: u64, planner: Option<&str>, keep: Option<&Path>) -
         });
     }
     while scenes < count {
-        let text = anything(seed, planner, maps);
+        let text = anything(seed, planner, &maps);
         if let Some(found) = best_of_tries(&text) {
             scenes += 1;
             let kind = |p: &&&str| text.contains(&format!("kind = \"{p}\""));

@@ -1,12 +1,12 @@
 //! Runs a campaign over random scenes, prints its table, and checks its bounds.
 //!
 //! ```text
-//! cargo run --release --no-default-features --example campaign -- encounters --count 10000 --seed 0
+//! cargo campaign encounters --count 10000 --seed 0
 //! ```
 //!
 //! The exit status is 1 if a bound is missed. Scenes have the seeds `--seed`, `--seed` + 1, ….
 
-#[path = "../tests/campaigns/mod.rs"]
+#[path = "../../../tests/campaigns/mod.rs"]
 mod campaigns;
 
 use std::panic::catch_unwind;

@@ -1,16 +1,15 @@
 //! Prints docs/benchmarks.md: the space-time planner on imported and random encounters.
 //!
 //! ```text
-//! cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
+//! cargo leaderboard > docs/benchmarks.md
 //! ```
 //!
 //! Only the times depend on the machine. `--quick` plans few random encounters, once each.
 
-#[path = "../tests/campaigns/encounter_generator.rs"]
+#[path = "../../../../tests/campaigns/encounter_generator.rs"]
 mod encounter_generator;
-#[path = "shared/growth.rs"]
 mod growth;
-#[path = "shared/new_york.rs"]
+#[path = "../../../../benches/shared/new_york.rs"]
 mod new_york;
 
 use std::error::Error;
@@ -75,7 +74,7 @@ encounters. Targets of imported files have spreads of ±0.5 m/s and ±5°. This 
 page; `--quick` runs a small sample:
 
 ```text
-cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
+cargo leaderboard > docs/benchmarks.md
 ```
 
 | column | meaning |
@@ -116,9 +115,8 @@ random encounters, and what is sailed.
 
 /// Scenarios of a folder below `scenarios/`, in order of file names.
 fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenarios")
-        .join(folder);
+    let scenarios = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios"));
+    let folder = scenarios.join(folder);
     let entries = std::fs::read_dir(folder)?.map(|entry| entry.map(|e| e.path()));
     let mut files: Vec<PathBuf> = entries.collect::<Result<_, _>>()?;
     files.retain(|f| f.extension().is_some_and(|e| e == "json" || e == "xml"));

@@ -11,6 +11,9 @@ use searoom::vessel::{Hull, OwnShip};
 
 use super::encounter_generator::{EncounterKind, Placement, random_encounter};
 
+/// The vessels of one moment; benches/data/README.md has their source.
+const TRAFFIC: &str = include_str!("../data/new-york-2022-01-03.csv");
+
 /// Speed in knots below which a vessel is at rest.
 const AT_REST_KN: f64 = 1.0;
 /// Default length in metres, and default ratio of length to beam.
@@ -33,14 +36,10 @@ const FAR_AWAY_M: f64 = 100_000.0;
 
 /// Builds one scene per vessel under way.
 pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/benches/data/new-york-2022-01-03.csv"
-    );
     let origin = Geographic::new(40.65, -74.05);
     let georeference = Georeference::new(origin).ok_or("no origin")?;
     let mut ships = Vec::new();
-    for row in csv::Reader::from_path(file)?.deserialize() {
+    for row in csv::Reader::from_reader(TRAFFIC.as_bytes()).deserialize() {
         let (lat_deg, lon_deg, speed_kn, course, length, beam): Row = row?;
         let at_rest = speed_kn < AT_REST_KN || course >= 360.0;
         let length = length.unwrap_or(LENGTH_M);

@@ -1,7 +1,7 @@
 //! Draws the images of docs/gallery.md into a folder.
 //!
 //! ```text
-//! cargo run --release --no-default-features --example gallery [FOLDER]
+//! cargo gallery [FOLDER]
 //! ```
 
 use std::path::Path;
@@ -15,6 +15,9 @@ use searoom::study::compare::compare;
 
 /// Output folder.
 const FOLDER: &str = "docs/gallery";
+
+/// Folder of the scenarios.
+const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios");
 
 /// Scenario files below `scenarios/` whose plans are drawn.
 const PLANS: [&str; 5] = [
@@ -36,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
     let read = |name: &str| {
-        let file = format!("{}/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let file = format!("{SCENARIOS}/{name}.toml");
         Scenario::read(Path::new(&file))
     };
     let picture = |name: &str, end: &str| {
