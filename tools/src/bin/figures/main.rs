@@ -12,8 +12,10 @@ use std::path::PathBuf;
 
 use searoom::report::figure::Figure;
 
+type Draw = fn() -> Result<Figure, Box<dyn Error>>;
+
 /// Name of each figure, which is also the stem of its file, and what draws it.
-const FIGURES: [(&str, fn() -> Result<Figure, Box<dyn Error>>); 9] = [
+const FIGURES: [(&str, Draw); 9] = [
     ("figure1", sets::polytope),
     ("figure2", sets::ellipsoid),
     ("figure3", sets::risk),
