@@ -285,8 +285,9 @@ fn all_sources() -> Vec<(String, String)> {
     let mut files = Vec::new();
     sources(&root.join("src"), &mut files);
     sources(&root.join("crates"), &mut files);
-    // the build script is a program of its own
+    // the build script and the examples are programs of their own
     files.retain(|file| *file != root.join("src/build.rs"));
+    files.retain(|file| !below(root, file).contains("/examples/"));
     assert!(files.len() > 20, "{files:?}");
     let read = |file: &PathBuf| (below(root, file), text_of(file));
     files.iter().map(read).collect()
@@ -430,6 +431,24 @@ fn no_directories_import_each_other_in_a_circle() {
     };
     let why: Vec<_> = imports.iter().filter(|(key, _)| in_circles(key)).collect();
     assert_eq!(circles, left, "{why:#?}");
+}
+
+/// Each library has a program that shows its use. `parallel` serves the others.
+#[test]
+fn a_library_has_an_example() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    sources(&root.join("crates"), &mut files);
+    let paths: Vec<String> = files.iter().map(|file| below(root, file)).collect();
+    let parts = |path: &String| {
+        let (library, file) = path.strip_prefix("crates/")?.split_once('/')?;
+        Some((library.to_owned(), file.starts_with("examples/")))
+    };
+    let all: BTreeSet<(String, bool)> = paths.iter().filter_map(parts).collect();
+    let without = (all.iter())
+        .filter(|(library, is_example)| !is_example && !all.contains(&(library.clone(), true)))
+        .map(|(library, _)| library.as_str());
+    assert_eq!(without.collect::<Vec<_>>(), ["parallel"]);
 }
 
 /// Path of a file below a folder, with forward slashes.
