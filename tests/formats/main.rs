@@ -1,6 +1,7 @@
 //! Tests of imported formats: real files, mutated files, and plans of real encounters.
 
 mod common_ocean;
+mod corpus;
 #[path = "../campaigns/encounter_generator.rs"]
 mod encounter_generator;
 mod routes;
