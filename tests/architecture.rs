@@ -366,7 +366,9 @@ fn imports(sources: &[(String, String)]) -> BTreeMap<(String, String, String), S
             };
             let known = |m: &[String]| directories.contains(&(root.clone(), m.to_vec()));
             if known(own) && known(other) {
-                let parent = [&[root.clone()], &own[..common]].concat().join("/");
+                let parent = [std::slice::from_ref(&root), &own[..common]]
+                    .concat()
+                    .join("/");
                 let key = (parent, own[common].clone(), other[common].clone());
                 found.entry(key).or_insert(format!("{path}: {used}"));
             }

@@ -388,7 +388,7 @@ fn rows_and_sentences_are_known() {
     let file = folder.write("g.toml", HEAD_ON.replacen("title", "title, a, b", 1));
     let said = stderr(&run(&format!("check {file}")).code(2));
     assert!(said.contains("line 2: ") && !said.contains("CSV"), "{said}");
-    let file = folder.write("o.json", "{\"own_ship\": {},\n\"cases\": [}\n".to_owned());
+    let file = folder.write("o.json", "{\"own_ship\": {},\n\"cases\": [}\n");
     let said = stderr(&run(&format!("check {file}")).code(2));
     assert!(
         said.contains("line 2: ") && !said.contains("rows"),
