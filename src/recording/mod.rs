@@ -4,6 +4,7 @@
 //! - `views`: one file per view, which logs its entities
 //! - `layout`: how the viewer arranges the views
 //! - `write`: a run, a comparison or a simulation → one file
+//! - `recorder`: collects what is logged
 //! - `read`: one file → entities, tables, documents
 //! - `checksum`: how a cut or damaged file is detected
 //!
@@ -18,6 +19,7 @@ mod canvas;
 mod checksum;
 mod layout;
 mod read;
+mod recorder;
 mod views;
 mod write;
 

@@ -6,7 +6,7 @@ use super::{Canvas, flat, labelled, style};
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::labels::{Drawn, Label, Needed};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, path};
 
 /// Pixels of the viewer's labels: width of a letter on average, height of a line, margins around

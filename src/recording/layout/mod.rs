@@ -21,13 +21,13 @@ use panes::{Pane, Panes};
 
 use crate::frame::{Vector, to_starboard};
 use crate::recording::canvas::{Canvas, ClosedLoop, ViewModel, style};
+use crate::recording::recorder::Recorder;
 use crate::recording::views::closed_loop::{OFF_PLAN, PLANNING};
 use crate::recording::views::curves::{
     self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
 };
 use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::velocities;
-use crate::recording::write::Recorder;
 use crate::recording::{
     CHART, EARTH, EVENTS, EXPLORED, LEGS, Logged, ROLES, SUMMARY, TIMELINE, TRAILS, VELOCITIES,
     VOLUME, path,

@@ -10,7 +10,7 @@ use rerun::external::re_sdk_types::{View, datatypes};
 use rerun::{AsComponents, EntityPath, TimeColumn};
 
 use crate::recording::Logged;
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 
 /// The timeline of a layout: changes by the user come later on it.
 const TIMELINE: &str = "blueprint";

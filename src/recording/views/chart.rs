@@ -11,7 +11,7 @@ use crate::recording::canvas::{
     Canvas, Labels, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
     round_down_time,
 };
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, path};
 use crate::target::Target;
 use crate::text::clock;

@@ -10,7 +10,7 @@ use super::rules::{self, Judged};
 use super::ships::{self, Sighted, outline};
 use crate::geometry::ConvexPolygon;
 use crate::recording::canvas::{AssumedTarget, ClosedLoop, Labels, flat, labelled, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::text::{clock, tenths};
 

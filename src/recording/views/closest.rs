@@ -7,7 +7,7 @@ use super::ships::Sighted;
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::recording::canvas::{Canvas, Labels, Lines, ViewModel, flat, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, path};
 use crate::text::{clock, tenths};
 use crate::tolerance;

@@ -11,7 +11,7 @@ use crate::frame::{clockwise_deg_per_s, course_deg_from_heading, heading_of, kno
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, TIMELINE, path};
 use crate::target::Target;
 use crate::tolerance;

@@ -10,7 +10,7 @@ use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::recording::Logged;
 use crate::recording::canvas::{Canvas, flat, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::text::clock;
 use crate::tolerance;
 use crate::trajectory::Segment;

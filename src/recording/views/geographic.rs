@@ -6,7 +6,7 @@ use rerun::{Color, EntityPath, GeoLineStrings, GeoPoints};
 use super::chart::planned_strips;
 use crate::frame::{Georeference, Vector};
 use crate::recording::canvas::{Canvas, ViewModel, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{EARTH, Logged, path};
 
 /// By how much the dark edge of the plan is wider than the plan: tiles of maps are bright.

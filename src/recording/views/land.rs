@@ -8,7 +8,7 @@ use super::chart::shown_window;
 use crate::frame::Vector;
 use crate::geometry::{Polygon, Window};
 use crate::recording::canvas::{Canvas, flat, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, VOLUME, path};
 use crate::tolerance;
 

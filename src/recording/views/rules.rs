@@ -10,7 +10,7 @@ use crate::document::{
 use crate::frame::Vector;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{Canvas, Labels, flat};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, ROLES, TIMELINE, VOLUME, path};
 use crate::text::clock;
 

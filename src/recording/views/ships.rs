@@ -14,7 +14,7 @@ use crate::recording::canvas::{
     Canvas, Labels, Lines, ShownMotion, ViewModel, flat, labelled, leader_style, round_down_time,
     style,
 };
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::target::{ShipTrack, Target};
 use crate::vessel::Hull;

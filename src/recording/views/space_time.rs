@@ -10,7 +10,7 @@ use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Canvas, Lines, ViewModel, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, VOLUME, path};
 use crate::text::clock;
 

@@ -7,7 +7,7 @@ use super::ships::{HARD_RADIUS, log_outlines, outline, set_style};
 use crate::frame::{Vector, direction};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Lines, ViewModel, flat, labelled, style};
-use crate::recording::write::Recorder;
+use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, PLANE, path};
 
 /// Longest time ahead that is looked at, seconds.

@@ -6,10 +6,11 @@ use std::path::Path;
 use rerun::components::InterpolationMode::{Linear, StepAfter};
 use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
 
-use super::{Recorder, RecordingError, put};
+use super::{RecordingError, put};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
 use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
+use crate::recording::recorder::Recorder;
 use crate::recording::views::chart;
 use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;

@@ -5,9 +5,9 @@ use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreId,
 use rerun::log::{Chunk, ChunkResult};
 
 use super::Failure;
-use super::recorder::Recorder;
 use crate::recording::APPLICATION;
 use crate::recording::checksum::{checksum, opening, seal, unsealed};
+use crate::recording::recorder::Recorder;
 
 /// Encodes both stores with Rerun's encoder and writes the checksum. O(bytes).
 pub fn encode(recording: Recorder, layout: Recorder) -> Result<Vec<u8>, Failure> {

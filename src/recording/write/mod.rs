@@ -2,11 +2,9 @@
 
 mod comparison;
 mod encoding;
-mod recorder;
 mod simulation;
 
 pub use comparison::{Compared, write_comparison};
-pub use recorder::Recorder;
 pub use simulation::{Simulated, write_simulation};
 
 use std::path::{Path, PathBuf};
@@ -24,6 +22,7 @@ use crate::document::{self, PlanDocument, breaks};
 use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
 use crate::recording::Logged;
+use crate::recording::recorder::Recorder;
 
 /// Why there is no recording.
 #[derive(Debug, thiserror::Error)]

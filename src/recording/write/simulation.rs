@@ -4,9 +4,10 @@ use std::path::Path;
 
 use rerun::{TextLog, TextLogLevel, TimeColumn};
 
-use super::{Recorder, RecordingError, encoding_error, put};
+use super::{RecordingError, encoding_error, put};
 use crate::document::{PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
+use crate::recording::recorder::Recorder;
 use crate::recording::views::{chart, closed_loop, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
