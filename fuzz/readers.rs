@@ -18,8 +18,11 @@ use searoom::scenario::Scenario;
 use searoom::scenario::import::{Assumed, Contents};
 use searoom::verification::{is_simulation, verify, verify_simulations};
 
+/// Gives bytes to one reader, and panics if it breaks its promise.
+pub type Reader = fn(&[u8]);
+
 /// Each reader by the name of its fuzz target.
-pub const READERS: &[(&str, fn(&[u8]))] = &[
+pub const READERS: &[(&str, Reader)] = &[
     ("commonocean", imported),
     ("dnv", imported),
     ("map", map),
