@@ -69,6 +69,7 @@ impl Products {
                  build it with its default features, `cargo build`"
             );
         }
+        figures.map(refuse_undrawn).transpose()?;
         if [recordings, figures, plans, report]
             .iter()
             .any(Option::is_some)
@@ -266,6 +267,15 @@ fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
 /// Endings of figures.
 const FIGURES: &str = ".svg, .png or .pdf";
 
+/// Rejects a figure that this build cannot draw.
+fn refuse_undrawn(path: &Path) -> anyhow::Result<()> {
+    let is_pdf = FigureFormat::of(path) == Some(FigureFormat::Pdf);
+    if is_pdf && !cfg!(feature = "pdf") {
+        bail!("--figure: {}: {}", path.display(), FigureError::NoPdf);
+    }
+    Ok(())
+}
+
 /// Rejects a name that is an ending and nothing else.
 fn refuse_ending(option: &str, path: &Path, endings: &str) -> anyhow::Result<()> {
     let name = path.file_name().map(|name| name.to_string_lossy());
@@ -288,6 +298,7 @@ pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
         let file = path.to_owned();
         bail!("--figure: {}", FigureError::Format { file });
     }
+    refuse_undrawn(path)?;
     refuse_folder("--figure", path, "name a file")?;
     make_parent(path)
 }

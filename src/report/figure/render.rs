@@ -5,6 +5,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use kurbo::{BezPath, PathEl, Shape};
+#[cfg(feature = "pdf")]
 use kuva::backend::pdf::{PageSize, PdfBackend};
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
@@ -22,6 +23,7 @@ use crate::text::broken;
 /// Dots per inch: of a PNG unless asked otherwise, of SVG pixels, of PDF points.
 const PNG_DPI: f64 = 192.0;
 const SVG_DPI: f64 = 96.0;
+#[cfg(feature = "pdf")]
 const PDF_DPI: f64 = 72.0;
 
 /// Most millions of pixels of a PNG; each pixel takes four bytes of memory.
@@ -90,6 +92,9 @@ pub enum FigureError {
         /// File path.
         file: PathBuf,
     },
+    /// A PDF from a build without the feature `pdf`.
+    #[error("this build has no PDF: name a .svg or .png, or build with `--features pdf`")]
+    NoPdf,
     /// A marked time outside the motion.
     #[error("--times: found {found} s; allowed: from 0 to {end} s, where the motion ends")]
     Time {
@@ -396,7 +401,14 @@ impl Figure {
         (raster.written(dpi)).map_err(|e| FigureError::Draw(e.to_string()))
     }
 
+    /// Renders PDF bytes: one page as large as the figure. Without the feature `pdf` it is an error.
+    #[cfg(not(feature = "pdf"))]
+    pub fn pdf(self) -> Result<Vec<u8>, FigureError> {
+        Err(FigureError::NoPdf)
+    }
+
     /// Renders PDF bytes: one page as large as the figure.
+    #[cfg(feature = "pdf")]
     pub fn pdf(self) -> Result<Vec<u8>, FigureError> {
         let scene = self.scene();
         let [width, height] = [scene.width, scene.height].map(|px| px * PDF_DPI / SVG_DPI);
