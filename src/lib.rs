@@ -72,7 +72,7 @@
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
 //! | [`replanning`] | what a plan leaves to the next one |
 //! | [`simulation`] | scenarios sailed in the closed loop |
-//! | [`campaign`] | many random encounters sailed, in parts that are merged and counted |
+//! | `campaign` | many random encounters sailed, in parts that are merged and counted (feature `campaign`, on by default) |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
 //! | [`document`] | published documents: the single description of a result |
 //! | [`report`] | tables, HTML pages and figures |
@@ -127,8 +127,14 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// without them, what figures, campaigns and the program share is not used
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+#![cfg_attr(
+    not(feature = "cli"),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "what figures, campaigns and the program share is not used without them"
+    )
+)]
 
 // the random encounters of the tests name the crate as its users do
 #[cfg(test)]

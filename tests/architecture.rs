@@ -205,6 +205,9 @@ fn base(tokens: &[TokenTree], i: usize, module: &[String]) -> Option<(Vec<String
     let colons = |i: usize| is_punct(tokens.get(i), ':') && is_punct(tokens.get(i + 1), ':');
     match word(i)?.as_str() {
         "crate" | "searoom" if colons(i + 1) => Some((Vec::new(), i + 3)),
+        library if colons(i + 1) && library.starts_with("searoom_") => {
+            Some((facade(library, word(i + 3).as_deref()), i + 3))
+        }
         "super" => {
             let (mut base, mut at) = (module.to_vec(), i);
             while word(at).is_some_and(|w| w == "super") && colons(at + 1) {
@@ -215,6 +218,17 @@ fn base(tokens: &[TokenTree], i: usize, module: &[String]) -> Option<(Vec<String
         }
         _ => None,
     }
+}
+
+/// Where the program's package has a library, whose path goes on with `next`.
+fn facade(library: &str, next: Option<&str>) -> Vec<String> {
+    let topic = match (library, next) {
+        ("searoom_geometry", Some("frame" | "tolerance" | "numerics")) => return Vec::new(),
+        ("searoom_planner", Some("search")) | ("searoom_model", _) => return Vec::new(),
+        ("searoom_sets", _) => "obstacle",
+        (other, _) => other.trim_start_matches("searoom_"),
+    };
+    vec![topic.to_owned()]
 }
 
 /// Adds `a::b::c` and the members of `a::{b, c::{d}}`.
@@ -463,6 +477,9 @@ const BROKEN: &str = r#"
 src/verification/mod.rs | use crate::recording::Recorded;
 src/verification/coverage.rs | use crate::obstacle::Obstacle;
 src/verification/motion.rs | use crate::planner::PLANNERS;
+src/verification/coverage.rs | use searoom_sets::Obstacle;
+src/verification/coverage.rs | use searoom_planner::PLANNERS;
+src/scenario/mod.rs | use searoom_planner::space_time::plan;
 src/scenario/mod.rs | use crate::planner::{SearchKind, space_time};
 src/scenario/thresholds.rs | use super::super::simulation::Simulation;
 src/pipeline.rs | use crate::report::table;

@@ -42,9 +42,11 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             // the text has them below the verdict
             let cautions = &run.scenario.remarks.cautions;
             notes.retain(|note| args.shared.written.json || !cautions.contains(note));
-            // the verdict says it for the arrival of the plan
-            let of_mission = met_at_rest(&run.scenario);
-            notes.retain(|note| !of_mission.contains(note));
+            // the verdict says it for the arrival of the plan, where there is one
+            if run.planned.outcome.plan().is_some() {
+                let of_mission = met_at_rest(&run.scenario);
+                notes.retain(|note| !of_mission.contains(note));
+            }
             output.notes(None, &[(String::new(), notes)]);
             let no_return = args.no_return.then(|| run.no_return()).flatten();
             if args.no_return && no_return.is_none() {

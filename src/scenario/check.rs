@@ -504,8 +504,8 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
     } else {
         desired
     };
-    let is_cut = part.as_ref().is_some_and(|part| part.is_cut);
-    if let (true, Some(horizon)) = (is_cut, reading.horizon) {
+    let is_beyond_reach = part.as_ref().is_some_and(|part| part.is_beyond_reach);
+    if let (true, Some(horizon)) = (is_beyond_reach, reading.horizon) {
         let room = ROOM_AFTER_TURN * reading.turning_radius;
         desired = until(desired, horizon / HORIZON_MISSIONS, room, remarks);
     }
@@ -567,7 +567,7 @@ struct Part {
     waits: Vec<f64>,
     departs: Option<DateTime<Utc>>,
     /// True where the route is not wholly within reach.
-    is_cut: bool,
+    is_beyond_reach: bool,
 }
 
 impl Part {
@@ -729,7 +729,7 @@ fn route(
         legs,
         waits,
         departs,
-        is_cut: is_cut || !is_whole,
+        is_beyond_reach: is_cut || !is_whole,
     })
 }
 

@@ -18,7 +18,7 @@ pub(crate) fn until(motion: &[Segment], time: f64) -> Vec<Segment> {
     part(motion, f64::NEG_INFINITY, time)
 }
 
-/// Pose at a time, extrapolated beyond the end; `None` for an empty motion.
+/// Pose at a time, extrapolated before the start and beyond the end; `None` for an empty motion.
 pub(crate) fn pose_at(motion: &[Segment], time: f64) -> Option<Pose> {
     let found = motion.iter().find(|s| s.end_time() >= time);
     found.or(motion.last()).map(|s| s.pose_at(time))

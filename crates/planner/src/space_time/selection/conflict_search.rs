@@ -159,7 +159,8 @@ fn beside(
     let offset = conflict.offset(side);
     let speeds = ManoeuvreSpeeds::of(context.problem);
     let at = |time: f64| {
-        let pose = pose_at(&node.motion, time)?;
+        let begins = node.motion.first().map_or(time, |s| s.start_time);
+        let pose = pose_at(&node.motion, time.max(begins))?;
         let beam = to_port(pose.ahead()) * side.turn_sign();
         Some(Corner {
             time,
