@@ -488,7 +488,8 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
             let allowed = format_args!("{now} s, the present, to {last} s, the end of horizon_s");
             return field.reject(until, allowed);
         }
-        Some(until - now)
+        // a rounding must not end it after the horizon
+        Some((until - now).min(horizon?))
     });
     table.finish();
     let stay = match stays {

@@ -124,10 +124,6 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
 /// mission says and before the horizon. The verdict of a plan says so for the arrival of the plan.
 pub fn met_at_rest(scenario: &Scenario) -> Vec<String> {
     let desired = &scenario.desired;
-    // a plan keeps clear until the stay ends
-    if scenario.stay.is_some() {
-        return Vec::new();
-    }
     let last = desired
         .legs()
         .iter()
@@ -137,7 +133,9 @@ pub fn met_at_rest(scenario: &Scenario) -> Vec<String> {
         desired.end(),
         last.unwrap_or(scenario.own_ship.pose.heading),
     );
-    let time = [desired.duration(), scenario.horizon];
+    // a plan keeps clear until the stay ends
+    let ends = desired.duration().max(scenario.stay.unwrap_or(0.0));
+    let time = [ends, scenario.horizon];
     let met = scenario.targets.iter().filter_map(|target| {
         let met = target.first_meets(&scenario.own_ship.hull, &lies, time)?;
         let name = &target.name;

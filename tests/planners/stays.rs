@@ -254,3 +254,29 @@ fn a_ship_that_lies_where_her_round_trip_ends_has_not_arrived() {
         assert_eq!(run.arrives(), sailed > 0.9 * trip, "sailed {sailed} m");
     }
 }
+
+/// The seconds from the present to the end of a stay round to more than the horizon.
+#[test]
+fn a_stay_may_end_with_the_horizon() {
+    let text = include_str!("../faults/stay-to-the-end-of-the-horizon.toml");
+    let run = planned(unhurried(Scenario::parse(text).expect("a scenario")));
+    assert!(run.safe() && run.arrives(), "{}", run.word());
+    assert!(
+        run.scenario
+            .stay
+            .is_some_and(|stay| stay <= run.scenario.horizon)
+    );
+}
+
+/// Legs lie on each other: what is left is said alike by planner and checker, whose numbers round
+/// differently.
+#[test]
+fn on_legs_that_lie_on_each_other_the_rest_of_the_way_is_one_number() {
+    for text in [
+        include_str!("../faults/legs-on-each-other.toml"),
+        include_str!("../faults/two-laps.toml"),
+    ] {
+        let run = planned(unhurried(Scenario::parse(text).expect("a scenario")));
+        assert!(!run.arrives(), "{}", run.word());
+    }
+}

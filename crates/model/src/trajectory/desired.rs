@@ -184,23 +184,23 @@ impl DesiredTrajectory {
     }
 
     /// Metres from a place to the nearest point of the path, and from there along it to its end; none
-    /// within [`tolerance::ARRIVAL_M`] of the end. Own ship that has not `sailed` is at the first of
-    /// the points that are as near: on a round trip at its start.
+    /// within [`tolerance::ARRIVAL_M`] of the end. `sailed` is the length of the motion that ends at
+    /// the place, metres. Where the path comes by it more than once, as a round trip does, it tells
+    /// which of the points that are as near (to that tolerance) own ship has come to.
     pub fn left_from(&self, place: Vector, sailed: f64) -> f64 {
         let at_end = (self.end() - place).norm() <= tolerance::ARRIVAL_M;
-        let has_sailed = sailed > tolerance::ARRIVAL_M;
-        if at_end && (has_sailed || !self.comes_by(place)) {
+        if at_end && (sailed > tolerance::ARRIVAL_M || !self.comes_by(place)) {
             return 0.0;
         }
-        let nearest = self.nearest(place, 0.0, 0.0);
-        let off = nearest.error.sqrt();
-        let first = self.legs.iter().find_map(|leg| {
+        let off = self.nearest(place, 0.0, 0.0).error.sqrt();
+        let near = self.legs.iter().filter_map(|leg| {
             let (error, along) = leg.nearest(place, 0.0, 0.0);
             let is_near = error.sqrt() <= off + tolerance::ARRIVAL_M;
             is_near.then_some(leg.start_distance + along)
         });
-        let on = first.filter(|_| !has_sailed).unwrap_or(nearest.distance);
-        self.length() - on + off
+        let away = |along: &f64| (along - sailed).abs();
+        let on = near.min_by(|a, b| away(a).total_cmp(&away(b)));
+        self.length() - on.unwrap_or(0.0) + off
     }
 
     /// This motion without its last `length` metres; `None` where nothing is left.
@@ -376,6 +376,9 @@ mod tests {
         assert_eq!(left(0.0, 0.0, 0.0), 600.0);
         assert_eq!(left(100.0, 7.0, 0.0), 507.0);
         assert_eq!(left(300.0, 0.0, 0.0), 300.0);
+        assert_eq!(left(100.0, 7.0, 480.0), 107.0);
+        assert_eq!(left(100.0, 0.0, 505.0), 100.0);
+        assert_eq!(left(100.0, 0.0, 103.0), 500.0);
         // a triangle ends where it starts, by rounding a little nearer to the one or the other
         let corners = [(0.0, 0.0), (500.0, 500.0), (400.0, 0.0), (1e-8, 1e-8)];
         let triangle = desired(&corners, &[5.0; 3]);
