@@ -14,10 +14,11 @@ pub(crate) struct Probe {
     pub lower: f64,
 }
 
-/// Least value found so far.
+/// Least value found so far of a distance or a depth, metres. A NaN counts as a collision, and a value
+/// that is not certified is no lower bound.
 #[derive(Debug, Clone, Copy)]
 pub struct Least {
-    /// NaN if any value was NaN.
+    /// Metres. NaN if any value was NaN.
     pub value: f64,
     /// Time of the least value, seconds.
     pub time: f64,

@@ -32,6 +32,8 @@ pub use distance::clearance::Body;
 pub use distance::turned_hull::TurnedHull;
 pub use distance::waypoints::ACCURACY_M as WAYPOINT_ACCURACY_M;
 use distance::waypoints::waypoint_distances;
+pub use least::Least;
+pub use piece::Piece;
 pub use request::{Freedom, Request};
 pub use safety::Safety;
 pub use sets::moving_ellipse::shape_rounding;
@@ -42,9 +44,7 @@ pub use words::{NOT_BY_THE_RULES, facts, outcome_word, skipped_waypoints, withou
 pub use words::{risk_figure, said_risk};
 
 use land::LandBodies;
-use least::Least;
 use met::passage;
-use piece::Piece;
 use safety::{Claim, collision, grounding};
 use turn::{Turn, turns};
 
