@@ -45,7 +45,7 @@ impl Probe {
 
 impl Least {
     /// Initial state without any value.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             value: f64::INFINITY,
             time: 0.0,
