@@ -96,6 +96,7 @@ pub struct SteadyShip {
 
 impl SteadyShip {
     /// A ship at a pose with a speed, m/s.
+    #[inline]
     pub const fn new(pose: Pose, speed: f64) -> Self {
         Self { pose, speed }
     }
@@ -107,12 +108,14 @@ impl SteadyShip {
     }
 
     /// The ship `time` seconds later, on the same course at the same speed.
+    #[inline]
     pub fn moved(&self, time: f64) -> Self {
         let place = self.pose.position + self.velocity() * time;
         Self::new(Pose::new(place, self.pose.heading), self.speed)
     }
 
     /// m/s.
+    #[inline]
     pub fn velocity(&self) -> Vector {
         self.pose.ahead() * self.speed
     }

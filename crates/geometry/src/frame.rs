@@ -28,16 +28,19 @@ pub struct Pose {
 
 impl Pose {
     /// A pose from its position in metres and its heading in radians counter-clockwise from east.
+    #[inline]
     pub fn new(position: Vector, heading: f64) -> Self {
         Self { position, heading }
     }
 
     /// The unit vector ahead.
+    #[inline]
     pub fn ahead(&self) -> Vector {
         direction(self.heading)
     }
 
     /// `(ahead, to port)` coordinates of a point in this ship's frame, metres.
+    #[inline]
     pub fn body_coordinates(&self, point: Vector) -> Vector {
         let d = point - self.position;
         let ahead = self.ahead();
@@ -68,6 +71,7 @@ impl Side {
     pub const BOTH: [Self; 2] = [Self::Starboard, Self::Port];
 
     /// The other side.
+    #[inline]
     pub fn opposite(self) -> Self {
         match self {
             Self::Port => Self::Starboard,
@@ -76,6 +80,7 @@ impl Side {
     }
 
     /// Sign of a turn to this side in the program's frame (counter-clockwise positive).
+    #[inline]
     pub fn turn_sign(self) -> f64 {
         match self {
             Self::Port => 1.0,
@@ -103,17 +108,20 @@ impl std::fmt::Display for Side {
 }
 
 /// The unit vector of a heading.
+#[inline]
 pub fn direction(heading: f64) -> Vector {
     let (sin, cos) = heading.sin_cos();
     Vector::new(cos, sin)
 }
 
 /// The heading of a displacement, in `(-pi, pi]`.
+#[inline]
 pub fn heading_of(v: Vector) -> f64 {
     v.y.atan2(v.x)
 }
 
 /// The vector rotated a quarter turn to port.
+#[inline]
 pub fn to_port(v: Vector) -> Vector {
     Vector::new(-v.y, v.x)
 }
@@ -124,11 +132,13 @@ pub fn to_starboard(v: Vector) -> Vector {
 }
 
 /// The scalar cross product `a x b`: positive when `b` lies to port of `a`.
+#[inline]
 pub fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
 /// The equivalent angle in `(-pi, pi]`.
+#[inline]
 pub fn wrap(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
@@ -223,6 +233,7 @@ pub struct Geographic {
 
 impl Geographic {
     /// A position by its latitude and longitude, degrees.
+    #[inline]
     pub const fn new(lat_deg: f64, lon_deg: f64) -> Self {
         Self { lat_deg, lon_deg }
     }
@@ -282,6 +293,7 @@ pub struct Georeference {
 impl Georeference {
     /// A georeference about an origin; `None` when it is not on the earth or beyond
     /// [`LARGEST_ORIGIN_LAT_DEG`].
+    #[inline]
     pub fn new(origin: Geographic) -> Option<Self> {
         let sound = origin.lat_deg.abs() <= LARGEST_ORIGIN_LAT_DEG && origin.is_on_earth();
         sound.then(|| {

@@ -22,6 +22,7 @@ pub struct Segment {
 
 impl Segment {
     /// A line, an arc or a wait, by its fields in their order.
+    #[inline]
     pub fn new(start: Pose, start_time: f64, duration: f64, speed: f64, turn_rate: f64) -> Self {
         Self {
             start,
@@ -33,11 +34,13 @@ impl Segment {
     }
 
     /// A straight line at constant speed, or a wait at speed 0.
+    #[inline]
     pub fn straight(start: Pose, start_time: f64, duration: f64, speed: f64) -> Self {
         Self::new(start, start_time, duration, speed, 0.0)
     }
 
     /// True when every number is finite and neither duration nor speed is negative.
+    #[inline]
     pub fn is_valid(&self) -> bool {
         let Pose { position, heading } = self.start;
         [
@@ -56,16 +59,19 @@ impl Segment {
     }
 
     /// End time, seconds.
+    #[inline]
     pub fn end_time(&self) -> f64 {
         self.start_time + self.duration
     }
 
     /// Pose at the end.
+    #[inline]
     pub fn end(&self) -> Pose {
         self.pose_after(self.duration)
     }
 
     /// Pose at an absolute time in seconds, extrapolated beyond the segment's ends.
+    #[inline]
     pub fn pose_at(&self, time: f64) -> Pose {
         self.pose_after(time - self.start_time)
     }
@@ -90,16 +96,19 @@ impl Segment {
     }
 
     /// Length, metres.
+    #[inline]
     pub fn length(&self) -> f64 {
         self.speed * self.duration
     }
 
     /// Velocity at an absolute time, m/s.
+    #[inline]
     pub fn velocity_at(&self, time: f64) -> Vector {
         direction(self.start.heading + self.turn_rate * (time - self.start_time)) * self.speed
     }
 
     /// True when the turn rate is not zero.
+    #[inline]
     pub fn is_arc(&self) -> bool {
         self.turn_rate != 0.0 && self.speed > 0.0
     }
@@ -122,6 +131,7 @@ impl Segment {
     ///
     /// A part that reaches the end keeps the segment's end exactly, independent of the rounding of
     /// its end time.
+    #[inline]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let elapsed = |time: f64| {
             if time >= self.end_time() {
@@ -170,6 +180,7 @@ pub struct Mover {
 
 impl Mover {
     /// Prepares a segment.
+    #[inline]
     pub fn new(segment: &Segment) -> Self {
         let velocity = segment.start.ahead() * segment.speed;
         let bent = segment.is_arc();
@@ -203,6 +214,7 @@ impl Mover {
     }
 
     /// Velocity at an absolute time in seconds, m/s.
+    #[inline]
     pub fn velocity_at(&self, time: f64) -> Vector {
         if self.turn_rate == 0.0 {
             return self.velocity;
