@@ -28,7 +28,7 @@ const STAY: f64 = 40.0;
 /// Sides of a position in eighths of a circle from east, in order of preference.
 const SIDES: [usize; 8] = [2, 6, 0, 4, 1, 3, 7, 5];
 
-/// What a drawing shows already.
+/// Areas of a drawing that labels keep clear of.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Drawn {
     /// Boxes of texts and ships.

@@ -13,7 +13,7 @@ pub enum PlanMethod {
     Rules,
     /// A* on the space-time graph, and the refinement of its plan and of standard manoeuvres.
     AStar,
-    /// As A*, by Dijkstra's algorithm.
+    /// Dijkstra's algorithm on the space-time graph, and the refinement that follows A*.
     Dijkstra,
     /// The best of many searches among several targets.
     Thorough,

@@ -1,5 +1,4 @@
-//! What a space-time obstacle is asked, answered for polytopes: distance, contact, risk, closest
-//! approach, velocity obstacle.
+//! Queries of a polytope: distance, contact, risk, closest approach, velocity obstacle.
 
 use crate::closest_approach::{ClosestApproach, from_edge, polytope_approach, usable_horizon};
 use crate::contact::{self, Line};

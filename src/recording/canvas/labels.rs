@@ -159,7 +159,7 @@ impl Labels {
     }
 }
 
-/// What a label below a point covers.
+/// Area that a label below a point covers.
 #[cfg(test)]
 pub fn covered(canvas: &Canvas, anchor: Vector, text: &str) -> Window {
     let half = half_size(text);

@@ -105,7 +105,7 @@ impl Sighted {
         [self.place, self.tip].map(flat).to_vec()
     }
 
-    /// What a label has to leave free.
+    /// Areas that a label has to leave free.
     pub fn covers(&self) -> Window {
         let corners = self.symbol.iter().flatten();
         let corners = corners.map(|&[east, north]| Vector::new(east.into(), north.into()));

@@ -126,7 +126,7 @@ pub struct Panel {
     pub(super) plots: Vec<Plot>,
     legend: Vec<Key>,
     notes: Vec<TextAnnotation>,
-    /// What texts keep clear of.
+    /// Areas that texts keep clear of.
     drawn: Drawn,
 }
 

@@ -70,7 +70,7 @@ const STRATA: &str = "strata";
 const READ: &str = "a scenario file (TOML), DNV's traffic situations or Imazu's cases (JSON), or \
                     CommonOcean's scenarios (XML); what AIS reports of a ship goes into [[targets]]";
 
-/// What separates the values of a row, and the name of such rows.
+/// Separators of the values of a row, and the name of such rows.
 const SEPARATORS: [(char, &str); 3] = [(';', "CSV with semicolons"), ('\t', "TSV"), (',', "CSV")];
 
 /// The kind of a text of rows, which is no TOML: sentences of a receiver, separated values, or values

@@ -8,7 +8,7 @@ use crate::target::Uncertainty;
 use crate::trajectory::GroundSegment;
 use crate::vessel::Hull;
 
-/// What own ship may not touch.
+/// Outline that own ship may not touch.
 #[derive(Debug, Clone)]
 pub(super) enum Shape {
     Hull(Hull),

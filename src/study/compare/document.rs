@@ -121,7 +121,7 @@ fn velocity(entry: &Entry) -> Option<HeldVelocityDocument> {
     })
 }
 
-/// What own ship's hull meets first: a ship that keeps to its expected motion, or land.
+/// The first contact of own ship's hull: with a ship that keeps to its expected motion, or with land.
 fn collision(scenario: &Scenario, entry: &Entry) -> Option<CollisionDocument> {
     let motion = entry.motion.as_ref()?;
     if motion.safety != Safety::Collides {

@@ -69,7 +69,7 @@ impl Steered {
         Ok(Self { nodes })
     }
 
-    /// The same motion by a clock that starts `time` seconds later.
+    /// This motion by a clock that starts `time` seconds later.
     pub fn after(&self, time: f64) -> Self {
         let nodes = self.nodes.iter().map(|node| ForceNode {
             time: node.time - time,

@@ -5,7 +5,7 @@ use super::task::{Profile, Task, force, state};
 use searoom_model::trajectory::Steered;
 use searoom_model::vessel::{Manoeuvring, StateVector};
 
-/// What a plan goes on from: own ship's state, and the plan that it follows.
+/// Start of the next plan: own ship's state, and the plan that it follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WarmStart {
     /// Own ship's state at t = 0.

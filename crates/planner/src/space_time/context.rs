@@ -1,4 +1,4 @@
-//! What stays fixed while one problem is planned.
+//! Data of one problem that no search changes.
 
 use crate::Problem;
 use crate::space_time::land;

@@ -9,8 +9,8 @@
 //! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
 //! test wins. The graph's own best plan is one of the candidates.
 //!
-//! What the steps share is in `manoeuvre`. Of the directories, each uses only earlier ones of
-//! `manoeuvre`, `graph` and `grid`, `refinement`, `selection`, `fallback`.
+//! All steps share `manoeuvre`. Each directory uses only those before it in the order `manoeuvre`,
+//! `graph` and `grid`, `refinement`, `selection`, `fallback`.
 //!
 //! Where own ship has a duty by the collision regulations, `rules` plans instead of the graph and
 //! the refinement.

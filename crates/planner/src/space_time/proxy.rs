@@ -162,7 +162,7 @@ impl<'a> Proxy<'a> {
         self.bound_about(segment, segment.middle().position)
     }
 
-    /// Of the enclosing disc: along a line the least distance, along an arc from its midpoint.
+    /// Least distance from the enclosing disc, metres: along a line, or from the midpoint of an arc.
     #[inline]
     fn bound_about(&self, segment: &Segment, middle: Vector) -> f64 {
         let half = 0.5 * segment.duration;

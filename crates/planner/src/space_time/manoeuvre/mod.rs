@@ -1,5 +1,5 @@
-//! What manoeuvres are made of, for all searches: parts of motions, the speeds, the ways to end,
-//! the conflicts that they resolve, and turns and lines in closed form.
+//! Parts of manoeuvres, shared by all searches: parts of motions, speeds, ways to end, the conflicts
+//! that a manoeuvre resolves, and turns and lines in closed form.
 
 pub(crate) mod chain;
 pub(crate) mod conflict;

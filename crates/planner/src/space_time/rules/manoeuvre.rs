@@ -1,4 +1,4 @@
-//! What a manoeuvre is: one bold alteration in ample time, kept until every other ship is past and
+//! Manoeuvres by the rules: one bold alteration in ample time, kept until every other ship is past and
 //! clear, then back to the route, as a navigator would order it (Rules 8 and 13 to 17).
 //!
 //! ```text
