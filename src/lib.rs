@@ -150,7 +150,6 @@ mod ship_fixtures;
 #[cfg(feature = "campaign")]
 pub mod campaign;
 pub mod document;
-pub mod input;
 mod labels;
 pub mod map;
 mod output;
@@ -163,7 +162,6 @@ pub mod report;
 pub mod scenario;
 pub mod simulation;
 pub mod study;
-mod text;
 pub mod verification;
 
 // the libraries, by the names of their topics
@@ -171,10 +169,12 @@ pub use searoom_colregs as colregs;
 pub use searoom_evaluation as evaluation;
 pub use searoom_geometry as geometry;
 pub use searoom_geometry::{frame, tolerance};
+pub use searoom_input as input;
 pub use searoom_model::{target, trajectory, vessel};
 pub use searoom_planner as planner;
 pub use searoom_planner::search;
 pub use searoom_sets as obstacle;
 
 use searoom_geometry::numerics;
+use searoom_input::text;
 use searoom_parallel as parallel;

@@ -15,8 +15,6 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAY_USE: &str = "
 labels: frame geometry
 output:
-text: frame
-input: frame text
 map: frame geometry tolerance input text
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
 scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
@@ -32,17 +30,19 @@ recording: labels frame tolerance geometry trajectory vessel target colregs obst
 ";
 
 /// The libraries by their names in the program's package.
-const LIBRARIES: [&str; 13] = [
+const LIBRARIES: [&str; 15] = [
     "colregs",
     "evaluation",
     "frame",
     "geometry",
+    "input",
     "numerics",
     "obstacle",
     "parallel",
     "planner",
     "search",
     "target",
+    "text",
     "tolerance",
     "trajectory",
     "vessel",
@@ -71,8 +71,9 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("geojson", &["src/map/", "src/report/route.rs"]),
     (
         "chrono",
-        &["src/input/", "src/scenario/", "src/report/route.rs"],
+        &["crates/input/src/field.rs", "src/scenario/", "src/report/route.rs"],
     ),
+    ("toml", &["crates/input/src/value.rs"]),
     ("spade", &["crates/geometry/src/polygon/decomposition.rs"]),
     ("robust", &["crates/geometry/src/"]),
     ("roxmltree", &["src/scenario/import/"]),
@@ -87,7 +88,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
         &[
             "src/cli/output/mod.rs",
             "src/report/table.rs",
-            "src/text.rs",
+            "crates/input/src/text.rs",
         ],
     ),
     ("to_degrees", &["crates/geometry/src/frame.rs"]),
@@ -224,7 +225,9 @@ fn base(tokens: &[TokenTree], i: usize, module: &[String]) -> Option<(Vec<String
 fn facade(library: &str, next: Option<&str>) -> Vec<String> {
     let topic = match (library, next) {
         ("searoom_geometry", Some("frame" | "tolerance" | "numerics")) => return Vec::new(),
-        ("searoom_planner", Some("search")) | ("searoom_model", _) => return Vec::new(),
+        ("searoom_planner", Some("search"))
+        | ("searoom_model", _)
+        | ("searoom_input", Some("text")) => return Vec::new(),
         ("searoom_sets", _) => "obstacle",
         (other, _) => other.trim_start_matches("searoom_"),
     };
@@ -485,7 +488,7 @@ src/scenario/thresholds.rs | use super::super::simulation::Simulation;
 src/pipeline.rs | use crate::report::table;
 src/pipeline/mod.rs | use crate::planner::path_time::PathTimePlanner;
 src/report/table.rs | use crate::recording::Recording;
-src/input/table.rs | use crate::{frame::Pose, evaluation::Evaluation};
+src/labels.rs | use crate::{frame::Pose, evaluation::Evaluation};
 src/map/mod.rs | use crate::cli::output;
 crates/model/src/target.rs | use rerun::RecordingStream;
 src/report/table.rs | use kuva::plot::LinePlot;
@@ -512,10 +515,10 @@ fn every_border_can_be_broken() {
 
 /// Paths with a line that breaks no border.
 const ALLOWED: &str = r#"
-src/input/table.rs | use crate::frame::Vector; // crate::vessel, println!, rerun
-src/input/table.rs | #[cfg(test)] mod tests { use crate::vessel::Hull; }
-src/input/table.rs | #[cfg(test)] pub(crate) mod tests;
-src/input/table.rs | const A: &str = "use crate::vessel";
+src/labels.rs | use crate::frame::Vector; // crate::vessel, println!, rerun
+src/labels.rs | #[cfg(test)] mod tests { use crate::vessel::Hull; }
+src/labels.rs | #[cfg(test)] pub(crate) mod tests;
+src/labels.rs | const A: &str = "use crate::vessel";
 crates/planner/src/space_time/graph/mod.rs | use super::super::{Problem, cost}; use super::route;
 crates/geometry/src/parry.rs | use parry2d_f64::math::Point;
 src/scenario/mod.rs | use crate::planner::SearchKind;
@@ -576,6 +579,7 @@ fn a_library_links_what_it_needs() {
     for (package, most, never) in [
         ("searoom-parallel", 0, &["searoom-geometry"][..]),
         ("searoom-geometry", 45, &["searoom-model"]),
+        ("searoom-input", 60, &["searoom-model", "searoom-colregs"]),
         ("searoom-model", 45, &["searoom-sets", "searoom-colregs"]),
         ("searoom-sets", 45, &["searoom-colregs", "searoom-planner"]),
         ("searoom-colregs", 45, &["searoom-sets", "searoom-planner"]),

@@ -586,7 +586,7 @@ fn in_mps(element: &Xml, attribute: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::rows;
+    use crate::scenario::tests::rows;
 
     /// A route of a navigation system. Changes are `old => new`, and what the fault names.
     const ROUTE: &str = r#"<?xml version="1.0" encoding="UTF-8"?>

@@ -7,7 +7,6 @@ use crate::frame::{Pose, heading_of, mps_from_knots};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::planner::ControlSettings;
 use crate::target::{DomainKind, Motion, Representation, Uncertainty};
-use crate::text::rows;
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 const SCENARIO: &str = r#"
@@ -37,6 +36,16 @@ beam_m = 12
 fn paths(text: &str) -> Vec<String> {
     let faults = Scenario::parse(text).expect_err("faulty");
     faults.into_iter().map(|fault| fault.path).collect()
+}
+
+/// Rows of a test's table with `|` between the cells, without empty rows and comments.
+pub(super) fn rows<const N: usize>(table: &'static str) -> impl Iterator<Item = [&'static str; N]> {
+    let rows = table.lines().map(str::trim);
+    let rows = rows.filter(|row| !row.is_empty() && !row.starts_with("//"));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        cells.try_into().expect(row)
+    })
 }
 
 #[test]

@@ -1,17 +1,16 @@
-//! Reading of input files: bounded text, values with their places, and the faults found in them.
-//!
-//! A derived deserializer stops at its first error. Here reading goes on, so that one run names
-//! everything that is wrong with a file: its place, the field, what was found, what is allowed.
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
 
 mod field;
 mod table;
+pub mod text;
 mod value;
 
-pub use field::abbreviated;
-pub(crate) use field::{DATE_TIME, Field, Range, date_time, every};
+pub use field::{DATE_TIME, Field, Range, abbreviated, date_time, every};
 use table::Key;
-pub(crate) use table::Table;
-pub(crate) use value::{Node, from_json, from_toml};
+pub use table::Table;
+pub use value::{Node, from_json, from_toml};
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -21,7 +20,7 @@ use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use crate::text::{LINE_CHARS, counted, printable};
+use text::{LINE_CHARS, counted, printable};
 
 /// One thing wrong in a file: its place, what was found, what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -104,7 +103,7 @@ const ALIKE: f64 = 0.85;
 
 impl InputError {
     /// A file that cannot be read. Where there is none, a similar name is looked for.
-    pub(crate) fn unread(file: &Path, source: Error) -> Self {
+    pub fn unread(file: &Path, source: Error) -> Self {
         let near = (source.kind() == ErrorKind::NotFound).then(|| near(file));
         Self::Read {
             file: file.to_owned(),
@@ -169,7 +168,7 @@ fn listed(faults: &[Fault]) -> String {
 
 /// Collects faults while a file is read.
 #[derive(Debug, Default)]
-pub(crate) struct Faults {
+pub struct Faults {
     noted: RefCell<Vec<Fault>>,
     /// The tables that were read: where each is, and its known keys.
     tables: RefCell<Vec<(Rc<str>, Vec<Key>)>>,
@@ -179,7 +178,7 @@ pub(crate) struct Faults {
 
 impl Faults {
     /// Adds a fault; without effect where there are too many already.
-    pub(crate) fn note(&self, fault: Fault) {
+    pub fn note(&self, fault: Fault) {
         if !self.is_full() {
             self.noted.borrow_mut().push(fault);
         }
@@ -206,12 +205,13 @@ impl Faults {
         self.noted.borrow().len() + self.unknown.borrow().len() > COUNTED
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    /// True where no fault was noted since the last [`Self::take`].
+    pub fn is_empty(&self) -> bool {
         self.noted.borrow().is_empty() && self.unknown.borrow().is_empty()
     }
 
     /// The faults noted so far, in order of lines; afterwards there is none.
-    pub(crate) fn take(&self) -> Vec<Fault> {
+    pub fn take(&self) -> Vec<Fault> {
         let mut faults = self.noted.take();
         let tables = self.tables.take();
         faults.extend(self.unknown.take().into_iter().map(|(mut fault, key)| {
@@ -260,12 +260,13 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    pub(crate) fn note(&mut self, subject: impl Display, statement: impl Display) {
+    /// Adds a note.
+    pub fn note(&mut self, subject: impl Display, statement: impl Display) {
         self.notes.push(format!("{subject}: {statement}"));
     }
 
     /// Adds a caution, as one line that a scenario file may have.
-    pub(crate) fn caution(&mut self, subject: impl Display, statement: impl Display) {
+    pub fn caution(&mut self, subject: impl Display, statement: impl Display) {
         let whole = printable(&format!("{subject}: {statement}"));
         let mut text: String = whole.chars().take(LINE_CHARS).collect();
         if text.len() < whole.len() {
@@ -277,7 +278,8 @@ impl Remarks {
         }
     }
 
-    pub(crate) fn extend(&mut self, more: &Self) {
+    /// Adds all notes and cautions of others.
+    pub fn extend(&mut self, more: &Self) {
         self.notes.extend_from_slice(&more.notes);
         self.cautions.extend_from_slice(&more.cautions);
     }

@@ -11,7 +11,7 @@ use super::{Fault, Faults, abbreviated};
 
 /// A value and the line where it begins; JSON values have no line.
 #[derive(Debug, Clone)]
-pub(crate) struct Node {
+pub struct Node {
     pub(super) value: Value,
     pub(super) line: Option<usize>,
 }
@@ -33,7 +33,7 @@ const FEW_KEYS: usize = 16;
 
 impl Node {
     /// The value at a key of a table, if it is there and not null.
-    pub(crate) fn get(&self, key: &str) -> Option<&Self> {
+    pub fn get(&self, key: &str) -> Option<&Self> {
         self.entry(key).map(|(_, node)| node)
     }
 
@@ -60,7 +60,8 @@ impl Node {
         (!matches!(node.value, Value::Null)).then_some((key.as_str(), node))
     }
 
-    pub(crate) fn as_text(&self) -> Option<&str> {
+    /// The text here; `None` for a value of another kind.
+    pub fn as_text(&self) -> Option<&str> {
         match &self.value {
             Value::Text(text) => Some(text),
             _ => None,
@@ -68,7 +69,7 @@ impl Node {
     }
 
     /// The line of the value at a path like `a.b[2]`, or of the innermost table on the way to it.
-    pub(crate) fn line_at(&self, path: &str) -> Option<usize> {
+    pub fn line_at(&self, path: &str) -> Option<usize> {
         let mut node = self;
         let mut line = None;
         for part in path.split('.') {
@@ -92,7 +93,7 @@ impl Node {
     }
 
     /// The path of a quantity by the key of the unit in which it is given.
-    pub(crate) fn path_in_unit(&self, path: &str) -> Option<String> {
+    pub fn path_in_unit(&self, path: &str) -> Option<String> {
         let (table, key) = path.rsplit_once('.')?;
         let mut node = self;
         for part in table.split('.') {
@@ -133,7 +134,7 @@ fn shown(number: f64) -> String {
 }
 
 /// Parses TOML. Notes the first error of the grammar alone: those after it mostly follow from it.
-pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
+pub fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
     let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
     let line = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
     let (document, errors) = DeTable::parse_recoverable(text);
@@ -202,7 +203,7 @@ fn node_of(value: &Spanned<DeValue>, line: &impl Fn(usize) -> usize) -> Node {
 }
 
 /// Parses JSON. A key that appears twice in an object is an error: one of the two would be lost.
-pub(crate) fn from_json(text: &str) -> Result<Node, Fault> {
+pub fn from_json(text: &str) -> Result<Node, Fault> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = JsonNode.deserialize(&mut reader);
     value

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use super::{Field, Range};
-use crate::frame::NAUTICAL_MILE_M;
+use searoom_geometry::frame::NAUTICAL_MILE_M;
 
 /// A known key this similar to an unknown one (Jaro-Winkler) was meant.
 const SIMILAR: f64 = 0.8;
@@ -44,7 +44,7 @@ pub(super) fn units_like(unit: &str) -> &'static [Unit] {
 
 /// A key that a table may have: a stem, and a unit behind it where there is one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Key {
+pub struct Key {
     stem: &'static str,
     unit: &'static str,
 }
@@ -82,7 +82,7 @@ impl Display for Key {
 
 /// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
 #[derive(Debug)]
-pub(crate) struct Table<'a> {
+pub struct Table<'a> {
     field: Field<'a>,
     /// With repetitions.
     known: Vec<Key>,
@@ -102,11 +102,12 @@ impl<'a> Table<'a> {
     }
 
     /// True if the key is there. The key counts as known.
-    pub(crate) fn has(&mut self, key: &'static str) -> bool {
+    pub fn has(&mut self, key: &'static str) -> bool {
         self.take(key).is_some()
     }
 
-    pub(crate) fn take(&mut self, key: &'static str) -> Option<Field<'a>> {
+    /// The value of a key, if it is there and not null. The key counts as known.
+    pub fn take(&mut self, key: &'static str) -> Option<Field<'a>> {
         self.known.push(Key {
             stem: key,
             unit: "",
@@ -125,11 +126,8 @@ impl<'a> Table<'a> {
         found
     }
 
-    pub(crate) fn require(
-        &mut self,
-        key: &'static str,
-        allowed: impl Display,
-    ) -> Option<Field<'a>> {
+    /// The value of a key that must be there; [`Self::finish`] notes its absence.
+    pub fn require(&mut self, key: &'static str, allowed: impl Display) -> Option<Field<'a>> {
         let field = self.take(key);
         if field.is_none() {
             self.missing
@@ -139,29 +137,28 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key without which the others cannot be read: it is a fault at once.
-    pub(crate) fn require_first(
-        &mut self,
-        key: &'static str,
-        allowed: impl Display,
-    ) -> Option<Field<'a>> {
+    pub fn require_first(&mut self, key: &'static str, allowed: impl Display) -> Option<Field<'a>> {
         self.has(key);
         self.field.require(key, allowed)
     }
 
-    pub(crate) fn required_table(&mut self, key: &'static str) -> Option<Table<'a>> {
+    /// The table of a key that must be there.
+    pub fn required_table(&mut self, key: &'static str) -> Option<Table<'a>> {
         self.require(key, "a table")?.table("a table")
     }
 
-    pub(crate) fn number(&mut self, key: &'static str, range: Range) -> Option<f64> {
+    /// The number of a key that may be absent; `None` for a faulty one, too.
+    pub fn number(&mut self, key: &'static str, range: Range) -> Option<f64> {
         self.take(key)?.number(range)
     }
 
-    pub(crate) fn required_number(&mut self, key: &'static str, range: Range) -> Option<f64> {
+    /// The number of a key that must be there.
+    pub fn required_number(&mut self, key: &'static str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }
 
     /// The value of a key, or `default` where the key is absent or its value is a fault.
-    pub(crate) fn read_or<T>(
+    pub fn read_or<T>(
         &mut self,
         key: &'static str,
         default: T,
@@ -172,12 +169,12 @@ impl<'a> Table<'a> {
     }
 
     /// A number, or `default` where the key is absent or its value is a fault.
-    pub(crate) fn number_or(&mut self, key: &'static str, range: Range, default: f64) -> f64 {
+    pub fn number_or(&mut self, key: &'static str, range: Range, default: f64) -> f64 {
         self.read_or(key, default, |field| field.number(range))
     }
 
     /// The meaning of one of these words; the key may be absent.
-    pub(crate) fn choice<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Option<T> {
+    pub fn choice<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Option<T> {
         self.take(key)?.choice(words)
     }
 
@@ -201,7 +198,7 @@ impl<'a> Table<'a> {
     }
 
     /// A distance in metres from `<stem>_m`, `<stem>_nmi` or `<stem>_cbl`; the range is in metres.
-    pub(crate) fn distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
+    pub fn distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         let (field, unit) = self.field_in(stem, &DISTANCE_UNITS)?;
         let distance = field.number(range.in_units_of(unit))?;
         // 2.1 cables are 388.92 m: the unit has a decimal, and no more digits than these
@@ -212,7 +209,7 @@ impl<'a> Table<'a> {
     }
 
     /// A distance that must be there in one of the units.
-    pub(crate) fn required_distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
+    pub fn required_distance(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         self.require_in(stem, &DISTANCE_UNITS, range);
         self.distance(stem, range)
     }
@@ -234,29 +231,29 @@ impl<'a> Table<'a> {
     }
 
     /// True if the speed is given in either unit.
-    pub(crate) fn has_speed(&mut self, stem: &'static str) -> bool {
+    pub fn has_speed(&mut self, stem: &'static str) -> bool {
         self.has_in(stem, &SPEED_UNITS)
     }
 
     /// A speed in m/s from `<stem>_mps` or `<stem>_kn`; the range is in m/s.
-    pub(crate) fn speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
+    pub fn speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         let (field, unit) = self.field_in(stem, &SPEED_UNITS)?;
         Some(field.number(range.in_units_of(unit))? * unit)
     }
 
     /// A speed that must be there in one of the units.
-    pub(crate) fn required_speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
+    pub fn required_speed(&mut self, stem: &'static str, range: Range) -> Option<f64> {
         self.require_speed(stem, range);
         self.speed(stem, range)
     }
 
     /// Notes the speed as missing if it is given in neither unit.
-    pub(crate) fn require_speed(&mut self, stem: &'static str, allowed: impl Display) {
+    pub fn require_speed(&mut self, stem: &'static str, allowed: impl Display) {
         self.require_in(stem, &SPEED_UNITS, allowed);
     }
 
     /// Speeds in m/s from the list `<stem>_mps` or `<stem>_kn`, and the field of the list.
-    pub(crate) fn speeds(
+    pub fn speeds(
         &mut self,
         stem: &'static str,
         range: Range,
@@ -269,14 +266,14 @@ impl<'a> Table<'a> {
     }
 
     /// Refuses a key that another one rules out.
-    pub(crate) fn forbid(&mut self, key: &'static str, because: &str) {
+    pub fn forbid(&mut self, key: &'static str, because: &str) {
         if let Some(field) = self.take(key) {
             field.refuse::<()>(because);
         }
     }
 
     /// Notes every unknown key and every missing one. A required key that is misspelt is one fault.
-    pub(crate) fn finish(mut self) {
+    pub fn finish(mut self) {
         let mut missing = std::mem::take(&mut self.missing);
         let mut listed: Vec<String> = Vec::new();
         for name in self.field.keys() {

@@ -4,15 +4,15 @@ use std::borrow::Cow;
 
 use textwrap::{WordSeparator, WordSplitter};
 
-use crate::frame::knots_from_mps;
+use searoom_geometry::frame::knots_from_mps;
 
 /// Texts that [`is_line`] accepts, in words.
-pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
+pub const LINE: &str = "a text of 1 to 200 characters on one line";
 /// Characters of such a text.
-pub(crate) const LINE_CHARS: usize = 200;
+pub const LINE_CHARS: usize = 200;
 
 /// True for a text of allowed length that is not blank and has no control characters.
-pub(crate) fn is_line(text: &str) -> bool {
+pub fn is_line(text: &str) -> bool {
     !text.trim().is_empty()
         && !text.chars().any(is_unprintable)
         && text.chars().count() <= LINE_CHARS
@@ -20,7 +20,7 @@ pub(crate) fn is_line(text: &str) -> bool {
 
 /// True for control characters, for those that break a line or change its direction, and for those
 /// that XML forbids.
-pub(crate) fn is_unprintable(c: char) -> bool {
+pub fn is_unprintable(c: char) -> bool {
     let breaks_lines = matches!(c, '\u{2028}' | '\u{2029}');
     let turns_text = matches!(
         c,
@@ -62,7 +62,7 @@ fn shown(text: &str, keep: impl Fn(char) -> bool) -> Cow<'_, str> {
 const LONGEST_NUMBER: usize = 24;
 
 /// A text in which long numbers have an exponent: `1e308` instead of 309 digits.
-pub(crate) fn short_numbers(text: &str) -> String {
+pub fn short_numbers(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
@@ -91,7 +91,7 @@ pub fn counted(count: usize, word: &str) -> String {
 }
 
 /// Formats a space-time error: one decimal below 1000, more below 1.
-pub(crate) fn square_metres(value: f64) -> String {
+pub fn square_metres(value: f64) -> String {
     if value.is_nan() {
         "undefined".to_owned()
     } else if value < 1000.0 {
@@ -106,7 +106,7 @@ const DECIMALS: i32 = 4;
 
 /// Formats one decimal, and three significant digits below 1. Values that round to zero have no
 /// sign.
-pub(crate) fn tenths(value: f64) -> String {
+pub fn tenths(value: f64) -> String {
     let decimals = match value.abs() {
         small if (0.5 * 0.1_f64.powi(DECIMALS)..0.95).contains(&small) => decimals(value),
         _ => 1,
@@ -117,7 +117,7 @@ pub(crate) fn tenths(value: f64) -> String {
 }
 
 /// Formats three significant digits, or all before the decimal point.
-pub(crate) fn significant(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     match value.abs() < 0.95 {
         true => tenths(value),
         false => short_numbers(&format!("{value:.*}", decimals(value).max(0) as usize)),
@@ -160,7 +160,7 @@ pub fn broken(line: &str, width: usize, indent: &str) -> String {
 }
 
 /// A time as minutes and seconds, such as `12:05`.
-pub(crate) fn clock(seconds: f64) -> String {
+pub fn clock(seconds: f64) -> String {
     let sign = if seconds <= -0.5 { "-" } else { "" };
     let whole = seconds.abs().round() as u64;
     format!("{sign}{}:{:02}", whole / 60, whole % 60)
@@ -168,12 +168,10 @@ pub(crate) fn clock(seconds: f64) -> String {
 
 /// How a text writes times: in seconds, or as charts do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(
-    not(feature = "recording"),
-    allow(dead_code, reason = "recordings have clocks")
-)]
-pub(crate) enum Times {
+pub enum Times {
+    /// In seconds, as `725 s`.
     Seconds,
+    /// In minutes and seconds, as `12:05`.
     Clock,
 }
 
@@ -194,37 +192,26 @@ impl Times {
 }
 
 /// Formats a speed, m/s, in knots with its unit.
-pub(crate) fn knots(speed: f64) -> String {
+pub fn knots(speed: f64) -> String {
     format!("{} kn", knots_figure(speed))
 }
 
 /// Formats a speed, m/s, in knots: one decimal, two below a knot.
-pub(crate) fn knots_figure(speed: f64) -> String {
+pub fn knots_figure(speed: f64) -> String {
     let knots = knots_from_mps(speed);
     let decimals = if (0.005..0.95).contains(&knots) { 2 } else { 1 };
     format!("{knots:.decimals$}")
 }
 
 /// Formats a turn, degrees positive to starboard, with its side, as in "30° to port".
-pub(crate) fn to_side(turn_deg: f64) -> String {
+pub fn to_side(turn_deg: f64) -> String {
     let side = if turn_deg > 0.0 { "starboard" } else { "port" };
     format!("{:.0}° to {side}", turn_deg.abs())
 }
 
 /// Formats one decimal with a sign; values that round to zero give `+0.0`.
-pub(crate) fn signed(value: f64) -> String {
+pub fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
-}
-
-/// Rows of a test's table with `|` between the cells, without empty rows and comments.
-#[cfg(test)]
-pub(crate) fn rows<const N: usize>(table: &'static str) -> impl Iterator<Item = [&'static str; N]> {
-    let rows = table.lines().map(str::trim);
-    let rows = rows.filter(|row| !row.is_empty() && !row.starts_with("//"));
-    rows.map(|row| {
-        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        cells.try_into().expect(row)
-    })
 }
 
 #[cfg(test)]

@@ -10,18 +10,18 @@ use chrono::{DateTime, Utc};
 use super::table::Key;
 use super::value::{Node, Value};
 use super::{Fault, Faults, InputError, Table, meant};
-use crate::frame::{Vector, mps_from_knots};
 use crate::text::{LINE, is_line, is_unprintable, printable};
+use searoom_geometry::frame::{Vector, mps_from_knots};
 
 /// Faults of another file that are listed: a map of another place has one in every feature.
 const MOST_LISTED: usize = 20;
 
 /// A date and a time of day, in words.
-pub(crate) const DATE_TIME: &str =
+pub const DATE_TIME: &str =
     "a date and a time with its offset from UTC, such as 2026-05-01T12:00:00Z";
 
 /// The date and time of a text of RFC 3339.
-pub(crate) fn date_time(text: &str) -> Option<DateTime<Utc>> {
+pub fn date_time(text: &str) -> Option<DateTime<Utc>> {
     let read = DateTime::parse_from_rfc3339(text.trim()).ok()?;
     Some(read.to_utc())
 }
@@ -31,15 +31,18 @@ const SHORT: f64 = 1e-9;
 
 /// Allowed numbers. A NaN never is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Range {
-    pub(crate) low: f64,
-    pub(crate) high: f64,
+pub struct Range {
+    /// Least allowed number.
+    pub low: f64,
+    /// Greatest allowed number.
+    pub high: f64,
     or_zero: bool,
     unit: &'static str,
 }
 
 impl Range {
-    pub(crate) const fn between(low: f64, high: f64) -> Self {
+    /// The numbers from `low` to `high`, both included.
+    pub const fn between(low: f64, high: f64) -> Self {
         Self {
             low,
             high,
@@ -48,11 +51,13 @@ impl Range {
         }
     }
 
-    pub(crate) const fn within(limit: f64) -> Self {
+    /// The numbers from `-limit` to `limit`.
+    pub const fn within(limit: f64) -> Self {
         Self::between(-limit, limit)
     }
 
-    pub(crate) const fn or_zero(self) -> Self {
+    /// This range, and zero.
+    pub const fn or_zero(self) -> Self {
         Self {
             or_zero: true,
             ..self
@@ -60,12 +65,12 @@ impl Range {
     }
 
     /// The range with its unit, for files whose keys do not name the unit.
-    pub(crate) const fn in_unit(self, unit: &'static str) -> Self {
+    pub const fn in_unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
     /// The range in units of another size: round limits, just inside its own.
-    pub(crate) fn in_units_of(self, size: f64) -> Self {
+    pub fn in_units_of(self, size: f64) -> Self {
         if size == 1.0 {
             return self;
         }
@@ -77,16 +82,17 @@ impl Range {
     }
 
     /// A range of speeds in knots from one in m/s.
-    pub(crate) fn in_knots(self) -> Self {
+    pub fn in_knots(self) -> Self {
         self.in_units_of(mps_from_knots(1.0))
     }
 
-    pub(crate) fn contains(&self, value: f64) -> bool {
+    /// True for an allowed number.
+    pub fn contains(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value) || (self.or_zero && value == 0.0)
     }
 
     /// The number in a text, if it is allowed.
-    pub(crate) fn parse(&self, text: &str) -> Option<f64> {
+    pub fn parse(&self, text: &str) -> Option<f64> {
         let number = text.parse::<f64>().ok()?;
         // +0.0 turns a negative zero into zero
         self.contains(number).then_some(number + 0.0)
@@ -113,7 +119,7 @@ impl Display for Range {
 /// A value, its place, and the faults found so far. The place is written out only for a fault: a
 /// scenario may have ten thousand targets.
 #[derive(Debug, Clone)]
-pub(crate) struct Field<'a> {
+pub struct Field<'a> {
     faults: &'a Faults,
     /// Place of the table or list that holds the value.
     base: Rc<str>,
@@ -131,7 +137,8 @@ enum Last<'a> {
 }
 
 impl<'a> Field<'a> {
-    pub(crate) fn root(node: &'a Node, faults: &'a Faults) -> Self {
+    /// The whole content of a file, whose faults are noted in `faults`.
+    pub fn root(node: &'a Node, faults: &'a Faults) -> Self {
         Self {
             faults,
             base: Rc::from(""),
@@ -141,7 +148,7 @@ impl<'a> Field<'a> {
     }
 
     /// This value with another collection of faults.
-    pub(crate) fn noting(&self, faults: &'a Faults) -> Self {
+    pub fn noting(&self, faults: &'a Faults) -> Self {
         Self {
             faults,
             ..self.clone()
@@ -149,7 +156,7 @@ impl<'a> Field<'a> {
     }
 
     /// Where the value is, as in `targets[0].speed_mps`.
-    pub(crate) fn path(&self) -> String {
+    pub fn path(&self) -> String {
         match self.last {
             Last::None => self.base.to_string(),
             Last::Key(key) => path_of(&self.base, key),
@@ -178,13 +185,14 @@ impl<'a> Field<'a> {
         }
     }
 
-    pub(crate) fn fault(&self, found: impl Display, allowed: impl Display) {
+    /// Notes a fault at this value.
+    pub fn fault(&self, found: impl Display, allowed: impl Display) {
         let fault = Fault::new(self.path(), found, allowed);
         self.faults.note(fault.at_line(self.node.line));
     }
 
     /// Notes a fault at a key of this table.
-    pub(crate) fn fault_at(&self, key: &str, found: impl Display, allowed: impl Display) {
+    pub fn fault_at(&self, key: &str, found: impl Display, allowed: impl Display) {
         self.faults.note(self.fault_of(key, found, allowed));
     }
 
@@ -214,18 +222,18 @@ impl<'a> Field<'a> {
     }
 
     /// Notes a fault here, without which there would be a value.
-    pub(crate) fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
+    pub fn reject<T>(&self, found: impl Display, allowed: impl Display) -> Option<T> {
         self.fault(found, allowed);
         None
     }
 
     /// Notes that this value is not an allowed one.
-    pub(crate) fn refuse<T>(&self, allowed: impl Display) -> Option<T> {
+    pub fn refuse<T>(&self, allowed: impl Display) -> Option<T> {
         self.reject(self.node.described(), allowed)
     }
 
     /// The value at a key; a fault if this is not a table.
-    pub(crate) fn get(&self, key: &str) -> Option<Self> {
+    pub fn get(&self, key: &str) -> Option<Self> {
         if !self.is_table() {
             return self.refuse("an object");
         }
@@ -249,7 +257,7 @@ impl<'a> Field<'a> {
     }
 
     /// The value at a key that must be there.
-    pub(crate) fn require(&self, key: &str, allowed: impl Display) -> Option<Self> {
+    pub fn require(&self, key: &str, allowed: impl Display) -> Option<Self> {
         let found = self.get(key);
         if found.is_none() && self.is_table() {
             self.fault_at(key, "nothing", format_args!("{allowed}; it is required"));
@@ -257,12 +265,13 @@ impl<'a> Field<'a> {
         found
     }
 
-    pub(crate) fn required_number(&self, key: &str, range: Range) -> Option<f64> {
+    /// The number at a key that must be there.
+    pub fn required_number(&self, key: &str, range: Range) -> Option<f64> {
         self.require(key, range)?.number(range)
     }
 
     /// The value at a key that may be absent: the outer `None` is a faulty value.
-    pub(crate) fn optional<T>(
+    pub fn optional<T>(
         &self,
         key: &str,
         read: impl FnOnce(&Self) -> Option<T>,
@@ -274,12 +283,12 @@ impl<'a> Field<'a> {
     }
 
     /// The number at a key that may be absent: the outer `None` is a faulty number.
-    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+    pub fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
         self.optional(key, |field| field.number(range))
     }
 
     /// The keys of a table, in alphabetical order.
-    pub(crate) fn keys(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+    pub fn keys(&self) -> impl Iterator<Item = &'a str> + use<'a> {
         let table = match &self.node.value {
             Value::Table(table) => Some(table),
             _ => None,
@@ -288,7 +297,7 @@ impl<'a> Field<'a> {
     }
 
     /// A number in a range; an integer is one too.
-    pub(crate) fn number(&self, range: Range) -> Option<f64> {
+    pub fn number(&self, range: Range) -> Option<f64> {
         match self.any_number() {
             // +0.0 turns a negative zero into zero
             Some(value) if range.contains(value) => Some(value + 0.0),
@@ -296,7 +305,8 @@ impl<'a> Field<'a> {
         }
     }
 
-    pub(crate) fn whole_number(&self, range: Range) -> Option<usize> {
+    /// A whole number in a range.
+    pub fn whole_number(&self, range: Range) -> Option<usize> {
         match self.any_number() {
             Some(value) if range.contains(value) && value.fract() == 0.0 => Some(value as usize),
             _ => self.refuse(format_args!(
@@ -307,7 +317,7 @@ impl<'a> Field<'a> {
     }
 
     /// The number here, if it is one, without a fault otherwise.
-    pub(crate) fn any_number(&self) -> Option<f64> {
+    pub fn any_number(&self) -> Option<f64> {
         match self.node.value {
             Value::Number(number) => Some(number),
             _ => None,
@@ -315,12 +325,12 @@ impl<'a> Field<'a> {
     }
 
     /// The text here, if it is one, without a fault otherwise.
-    pub(crate) fn any_text(&self) -> Option<&'a str> {
+    pub fn any_text(&self) -> Option<&'a str> {
         self.node.as_text()
     }
 
     /// Text on one line that may be a name or a title.
-    pub(crate) fn line_of_text(&self) -> Option<&'a str> {
+    pub fn line_of_text(&self) -> Option<&'a str> {
         match self.node.as_text() {
             Some(text) if is_line(text) => Some(text),
             _ => self.refuse(LINE),
@@ -328,7 +338,7 @@ impl<'a> Field<'a> {
     }
 
     /// The name of a file, relative to a folder.
-    pub(crate) fn file_in(&self, folder: &Path) -> Option<PathBuf> {
+    pub fn file_in(&self, folder: &Path) -> Option<PathBuf> {
         match self.node.as_text() {
             Some(name) if !name.trim().is_empty() && !name.chars().any(is_unprintable) => {
                 Some(folder.join(name))
@@ -338,12 +348,7 @@ impl<'a> Field<'a> {
     }
 
     /// The content of the file that is named here, or its faults, noted here.
-    pub(crate) fn contents<T>(
-        &self,
-        file: &Path,
-        read: Result<T, InputError>,
-        kind: &str,
-    ) -> Option<T> {
+    pub fn contents<T>(&self, file: &Path, read: Result<T, InputError>, kind: &str) -> Option<T> {
         match read {
             Ok(content) => Some(content),
             Err(InputError::Read { file, source, near }) => {
@@ -372,7 +377,7 @@ impl<'a> Field<'a> {
     }
 
     /// A date and a time of day with its offset from UTC.
-    pub(crate) fn date_time(&self) -> Option<DateTime<Utc>> {
+    pub fn date_time(&self) -> Option<DateTime<Utc>> {
         let date = match &self.node.value {
             Value::Date(date) => date_time(date),
             _ => None,
@@ -380,7 +385,8 @@ impl<'a> Field<'a> {
         date.or_else(|| self.refuse(DATE_TIME))
     }
 
-    pub(crate) fn truth(&self) -> Option<bool> {
+    /// True or false.
+    pub fn truth(&self) -> Option<bool> {
         match self.node.value {
             Value::Bool(truth) => Some(truth),
             _ => self.refuse("true, false"),
@@ -388,7 +394,7 @@ impl<'a> Field<'a> {
     }
 
     /// The meaning of one of these words.
-    pub(crate) fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let found = self.node.as_text();
         if let Some((_, meaning)) = words.iter().find(|(word, _)| Some(*word) == found) {
             return Some(*meaning);
@@ -398,7 +404,7 @@ impl<'a> Field<'a> {
     }
 
     /// The items of a list with an allowed number of them.
-    pub(crate) fn list(&self, counts: RangeInclusive<usize>, what: &str) -> Option<Vec<Self>> {
+    pub fn list(&self, counts: RangeInclusive<usize>, what: &str) -> Option<Vec<Self>> {
         let (least, most) = (counts.start(), counts.end());
         match &self.node.value {
             Value::List(items) if counts.contains(&items.len()) => {
@@ -426,13 +432,13 @@ impl<'a> Field<'a> {
     }
 
     /// A list of at least one number, each in a range.
-    pub(crate) fn numbers(&self, range: Range) -> Option<Vec<f64>> {
+    pub fn numbers(&self, range: Range) -> Option<Vec<f64>> {
         let items = self.list(1..=usize::MAX, "numbers")?;
         every(items.iter().map(|item| item.number(range)))
     }
 
     /// A list of two numbers in a range: a vector.
-    pub(crate) fn pair(&self, range: Range) -> Option<Vector> {
+    pub fn pair(&self, range: Range) -> Option<Vector> {
         match &self.node.value {
             Value::List(items) if items.len() == 2 => {
                 let numbers = self.numbers(range)?;
@@ -443,7 +449,7 @@ impl<'a> Field<'a> {
     }
 
     /// The table here, whose unknown keys are faults.
-    pub(crate) fn table(&self, shape: &str) -> Option<Table<'a>> {
+    pub fn table(&self, shape: &str) -> Option<Table<'a>> {
         if self.is_table() {
             Some(Table::new(self.as_base()))
         } else {
@@ -452,7 +458,7 @@ impl<'a> Field<'a> {
     }
 
     /// True if the value has keys of its own.
-    pub(crate) fn is_table(&self) -> bool {
+    pub fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
     }
 }
@@ -467,7 +473,7 @@ fn path_of(table: &str, key: &str) -> String {
 }
 
 /// Every value, or none where one is faulty. All are read, so that all faults are noted.
-pub(crate) fn every<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+pub fn every<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     let values: Vec<Option<T>> = read.collect();
     values.into_iter().collect()
 }
