@@ -15,9 +15,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAY_USE: &str = "
 labels: frame geometry
 output:
-map: frame geometry tolerance input text
 verification: document input frame tolerance geometry vessel target trajectory evaluation text
-scenario: frame tolerance geometry trajectory vessel map target colregs planner input text
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
@@ -30,16 +28,18 @@ recording: labels frame tolerance geometry trajectory vessel target colregs obst
 ";
 
 /// The libraries by their names in the program's package.
-const LIBRARIES: [&str; 15] = [
+const LIBRARIES: [&str; 17] = [
     "colregs",
     "evaluation",
     "frame",
     "geometry",
     "input",
+    "map",
     "numerics",
     "obstacle",
     "parallel",
     "planner",
+    "scenario",
     "search",
     "target",
     "text",
@@ -56,7 +56,8 @@ fn may_use(module: &str) -> Option<Vec<&'static str>> {
     row.map(|used| used.split_whitespace().collect())
 }
 
-/// Paths that a module may not name although it may use their top-level module.
+/// Paths that a library, or a module of the program, may not name although it may use their
+/// top-level module.
 const NEVER: &[(&str, &str)] = &[
     ("scenario", "planner::cost"),
     ("scenario", "planner::space_time"),
@@ -68,15 +69,22 @@ const NEVER: &[(&str, &str)] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["src/recording/", "src/cli/inspect"]),
     ("parry2d_f64", &["crates/geometry/src/parry"]),
-    ("geojson", &["src/map/", "src/report/route.rs"]),
+    (
+        "geojson",
+        &["crates/scenario/src/map/", "src/report/route.rs"],
+    ),
     (
         "chrono",
-        &["crates/input/src/field.rs", "src/scenario/", "src/report/route.rs"],
+        &[
+            "crates/input/src/field.rs",
+            "crates/scenario/src/",
+            "src/report/route.rs",
+        ],
     ),
     ("toml", &["crates/input/src/value.rs"]),
     ("spade", &["crates/geometry/src/polygon/decomposition.rs"]),
     ("robust", &["crates/geometry/src/"]),
-    ("roxmltree", &["src/scenario/import/"]),
+    ("roxmltree", &["crates/scenario/src/import/"]),
     ("kurbo", &["src/report/figure/render.rs"]),
     ("kuva", &["src/report/figure/"]),
     ("png", &["src/report/figure/render.rs"]),
@@ -130,13 +138,24 @@ fn faults(path: &str, text: &str) -> Vec<String> {
             faults.push(format!("{path}: names {name}, allowed only in {places:?}"));
         }
     }
-    if !path.starts_with("src/") {
+    let mut never_used = |room: &str| {
+        for path_used in &used {
+            for (_, never) in NEVER.iter().filter(|(r, _)| *r == room) {
+                if path_used == never || path_used.starts_with(&format!("{never}::")) {
+                    faults.push(format!("{path}: {room} may not use {path_used}"));
+                }
+            }
+        }
+    };
+    if let Some(library) = path.strip_prefix("crates/") {
+        never_used(library.split('/').next().unwrap_or_default());
         return faults;
     }
     // the library's root names every module to declare it
     let Some(room) = module.first().filter(|m| !BINARY.contains(&m.as_str())) else {
         return faults;
     };
+    never_used(room);
     let Some(allowed) = may_use(room) else {
         faults.push(format!("{path}: room {room} is not in the table"));
         return faults;
@@ -147,11 +166,6 @@ fn faults(path: &str, text: &str) -> Vec<String> {
             may_use(first).is_some() || LIBRARIES.contains(&first) || BINARY.contains(&first);
         if known && first != room && !allowed.contains(&first) {
             faults.push(format!("{path}: {room} may not use {path_used}"));
-        }
-        for (_, never) in NEVER.iter().filter(|(r, _)| r == room) {
-            if path_used == *never || path_used.starts_with(&format!("{never}::")) {
-                faults.push(format!("{path}: {room} may not use {path_used}"));
-            }
         }
     }
     faults
@@ -227,6 +241,7 @@ fn facade(library: &str, next: Option<&str>) -> Vec<String> {
         ("searoom_geometry", Some("frame" | "tolerance" | "numerics")) => return Vec::new(),
         ("searoom_planner", Some("search"))
         | ("searoom_model", _)
+        | ("searoom_scenario", Some("map"))
         | ("searoom_input", Some("text")) => return Vec::new(),
         ("searoom_sets", _) => "obstacle",
         (other, _) => other.trim_start_matches("searoom_"),
@@ -482,19 +497,19 @@ src/verification/coverage.rs | use crate::obstacle::Obstacle;
 src/verification/motion.rs | use crate::planner::PLANNERS;
 src/verification/coverage.rs | use searoom_sets::Obstacle;
 src/verification/coverage.rs | use searoom_planner::PLANNERS;
-src/scenario/mod.rs | use searoom_planner::space_time::plan;
-src/scenario/mod.rs | use crate::planner::{SearchKind, space_time};
-src/scenario/thresholds.rs | use super::super::simulation::Simulation;
+crates/scenario/src/lib.rs | use searoom_planner::space_time::plan;
+crates/scenario/src/check.rs | use searoom_planner::{SearchKind, space_time};
+src/report/table.rs | use super::super::simulation::Simulation;
 src/pipeline.rs | use crate::report::table;
 src/pipeline/mod.rs | use crate::planner::path_time::PathTimePlanner;
 src/report/table.rs | use crate::recording::Recording;
 src/labels.rs | use crate::{frame::Pose, evaluation::Evaluation};
-src/map/mod.rs | use crate::cli::output;
+src/report/table.rs | use crate::cli::output;
 crates/model/src/target.rs | use rerun::RecordingStream;
 src/report/table.rs | use kuva::plot::LinePlot;
 crates/model/src/trajectory/mod.rs | use parry2d_f64::math::Point;
 src/report/table.rs | #[derive(clap::ValueEnum)] enum A { B }
-src/scenario/check.rs | fn f(a: f64) -> f64 { a.to_radians() }
+crates/scenario/src/check.rs | fn f(a: f64) -> f64 { a.to_radians() }
 src/cli/plan.rs | fn f() { println!("x"); }
 crates/planner/src/lib.rs | fn f() { dbg!(1); }
 src/weather/mod.rs | fn f() {}
@@ -521,7 +536,7 @@ src/labels.rs | #[cfg(test)] pub(crate) mod tests;
 src/labels.rs | const A: &str = "use crate::vessel";
 crates/planner/src/space_time/graph/mod.rs | use super::super::{Problem, cost}; use super::route;
 crates/geometry/src/parry.rs | use parry2d_f64::math::Point;
-src/scenario/mod.rs | use crate::planner::SearchKind;
+crates/scenario/src/lib.rs | use searoom_planner::SearchKind;
 src/cli/output/mod.rs | fn f() { println!("x"); }
 src/cli/plan.rs | use searoom::recording::record; use clap::Args;
 src/recording/file.rs | use rerun::external::re_log;
@@ -584,6 +599,11 @@ fn a_library_links_what_it_needs() {
         ("searoom-sets", 45, &["searoom-colregs", "searoom-planner"]),
         ("searoom-colregs", 45, &["searoom-sets", "searoom-planner"]),
         ("searoom-planner", 55, &["searoom-evaluation", "searoom"]),
+        (
+            "searoom-scenario",
+            70,
+            &["searoom-evaluation", "searoom-document", "searoom"],
+        ),
         (
             "searoom-evaluation",
             45,
