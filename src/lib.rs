@@ -160,7 +160,6 @@ pub mod replanning;
 pub mod report;
 pub mod simulation;
 pub mod study;
-pub mod verification;
 
 // the libraries, by the names of their topics
 pub use searoom_colregs as colregs;
@@ -174,6 +173,7 @@ pub use searoom_planner::search;
 pub use searoom_scenario as scenario;
 pub use searoom_scenario::map;
 pub use searoom_sets as obstacle;
+pub use searoom_verification as verification;
 
 use searoom_geometry::numerics;
 use searoom_input::text;

@@ -1,15 +1,15 @@
 //! The plan document of a run, with what the verification finds in it.
 
-use crate::document::{PlanDocument, violations};
+use crate::document::{PlanDocument, ViolationDocument, unverified};
 use crate::evaluation::{Safety, Violation, outcome_word};
 use crate::pipeline::Run;
 use crate::verification::verify_evaluated;
 
-impl PlanDocument {
+impl From<&Run> for PlanDocument {
     /// Builds the document of a run. `verified` and `violations` are what the checks of `verify` find
     /// in this document, with the evaluation of the run. A plan that fails is not safe.
-    pub fn of(run: &Run) -> Self {
-        let mut document = Self::unverified(run);
+    fn from(run: &Run) -> Self {
+        let mut document = unverified(run);
         let (Some(evaluation), Some(safety)) = (&run.evaluation, run.safety()) else {
             return document;
         };
@@ -23,7 +23,7 @@ impl PlanDocument {
             document.verdict = outcome_word(&document.outcome, Some(safety), risk);
             document.safe = Some(false);
         }
-        document.violations = violations(&found);
+        document.violations = ViolationDocument::all(&found);
         document
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
 use crate::colregs::{Risk, Situation, SteadyShip, TargetMemory, Thresholds};
-use crate::document::{MemoryDocument, PlanDocument, segment, steady};
+use crate::document::{MemoryDocument, PlanDocument, SegmentDocument, planned_manoeuvre};
 use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
@@ -142,7 +142,9 @@ fn remaining_plan(
         .trajectory
         .as_ref()
         .and_then(|t| t.segments.as_ref());
-    let planned: Vec<Segment> = (documents.into_iter().flatten()).map(segment).collect();
+    let planned: Vec<Segment> = (documents.into_iter().flatten())
+        .map(SegmentDocument::segment)
+        .collect();
     let (Some(last), true) = (planned.last(), planned.iter().all(Segment::is_valid)) else {
         return Err(Fault::new(
             "trajectory.segments",
@@ -196,7 +198,7 @@ fn shifted(s: Segment, elapsed: f64) -> Segment {
 
 /// True where all that is remembered lies before the plan, in order of time.
 fn is_past(memory: &MemoryDocument) -> bool {
-    let sailed: Vec<Segment> = memory.sailed.iter().map(segment).collect();
+    let sailed: Vec<Segment> = memory.sailed.iter().map(SegmentDocument::segment).collect();
     let times = sailed.iter().flat_map(|s| [s.start_time, s.end_time()]);
     let in_order = |times: &[f64]| {
         let before = |time: &f64| *time <= tolerance::TIME_S && time.is_finite();
@@ -230,7 +232,7 @@ fn memory_after(
         ));
     }
     let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
-    let mut sailed: Vec<Segment> = before.map(|s| shifted(segment(s), elapsed)).collect();
+    let mut sailed: Vec<Segment> = before.map(|s| shifted(s.segment(), elapsed)).collect();
     for s in planned.iter().filter(|s| s.start_time < elapsed) {
         let s = shifted(s.between(s.start_time, elapsed), elapsed);
         match sailed.last_mut().filter(|last| last.is_continued_by(&s)) {
@@ -306,7 +308,7 @@ fn memory_after(
 fn manoeuvres(previous: &PlanDocument, elapsed: f64) -> Vec<PlannedManoeuvre> {
     let manoeuvres = previous.manoeuvres.iter();
     manoeuvres
-        .map(|m| PlannedManoeuvre::from(m).after(elapsed))
+        .map(|m| planned_manoeuvre(m).after(elapsed))
         .filter(|m| m.joins > 0.0)
         .collect()
 }
@@ -392,7 +394,7 @@ fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMem
         memory.role = before.role.as_ref().and_then(|known| known.risk(elapsed));
         memory.passed = before.passed;
         memory.track = (before.track.iter())
-            .map(|state| steady(state, elapsed))
+            .map(|state| state.steady(elapsed))
             .collect();
     }
     if let Some(ship) = ship_then(previous, name).map(|ship| SteadyShip::on_track(&ship, 0.0)) {

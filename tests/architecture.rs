@@ -15,7 +15,6 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAY_USE: &str = "
 labels: frame geometry
 output:
-verification: document input frame tolerance geometry vessel target trajectory evaluation text
 pipeline: parallel frame tolerance numerics geometry trajectory vessel target colregs obstacle planner evaluation scenario
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
@@ -28,7 +27,7 @@ recording: labels frame tolerance geometry trajectory vessel target colregs obst
 ";
 
 /// The libraries by their names in the program's package.
-const LIBRARIES: [&str; 17] = [
+const LIBRARIES: [&str; 18] = [
     "colregs",
     "evaluation",
     "frame",
@@ -45,6 +44,7 @@ const LIBRARIES: [&str; 17] = [
     "text",
     "tolerance",
     "trajectory",
+    "verification",
     "vessel",
 ];
 
@@ -492,11 +492,11 @@ fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str
 
 /// Paths with a line that each breaks one border.
 const BROKEN: &str = r#"
-src/verification/mod.rs | use crate::recording::Recorded;
-src/verification/coverage.rs | use crate::obstacle::Obstacle;
-src/verification/motion.rs | use crate::planner::PLANNERS;
-src/verification/coverage.rs | use searoom_sets::Obstacle;
-src/verification/coverage.rs | use searoom_planner::PLANNERS;
+src/study/mod.rs | use crate::recording::Recorded;
+src/pipeline/mod.rs | use crate::verification::verify;
+src/pipeline/mod.rs | use searoom_verification::verify;
+src/pipeline/mod.rs | use searoom_document::PlanDocument;
+src/document/plan/legs.rs | use searoom_verification::verify;
 crates/scenario/src/lib.rs | use searoom_planner::space_time::plan;
 crates/scenario/src/check.rs | use searoom_planner::{SearchKind, space_time};
 src/report/table.rs | use super::super::simulation::Simulation;
@@ -587,8 +587,8 @@ fn linked(package: &str) -> (BTreeSet<String>, BTreeSet<String>) {
     (outside, own)
 }
 
-/// The evaluation links no planner and none of the planners' sets, and whoever takes one library
-/// takes few others.
+/// The evaluation and the verification of documents link no planner and none of the planners' sets,
+/// and whoever takes one library takes few others.
 #[test]
 fn a_library_links_what_it_needs() {
     for (package, most, never) in [
@@ -599,6 +599,27 @@ fn a_library_links_what_it_needs() {
         ("searoom-sets", 45, &["searoom-colregs", "searoom-planner"]),
         ("searoom-colregs", 45, &["searoom-sets", "searoom-planner"]),
         ("searoom-planner", 55, &["searoom-evaluation", "searoom"]),
+        (
+            "searoom-document",
+            65,
+            &[
+                "searoom-planner",
+                "searoom-sets",
+                "searoom-scenario",
+                "searoom-verification",
+                "searoom",
+            ],
+        ),
+        (
+            "searoom-verification",
+            65,
+            &[
+                "searoom-planner",
+                "searoom-sets",
+                "searoom-scenario",
+                "searoom",
+            ],
+        ),
         (
             "searoom-scenario",
             70,

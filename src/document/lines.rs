@@ -3,13 +3,15 @@
 
 use std::collections::BTreeSet;
 
-use super::parts::{ImprovementDocument, PlanMethod, SearchStatsDocument, TimingDocument};
-use super::plan::stay::Stay;
-use super::{
-    ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument, MONITORS,
-    ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument, RelaxationDocument, breaks,
-    breaks_in_words, conduct_breaks, has_role, rules_in_words,
+use searoom_document::{
+    ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
+    ImprovementDocument, ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument,
+    PlanMethod, RelaxationDocument, SearchStatsDocument, TimingDocument, breaks, conduct_breaks,
 };
+
+use super::encounter::{MONITORS, breaks_in_words, has_role, rules_in_words};
+use super::plan::legs::planned_legs;
+use super::plan::stay::{Stay, stay};
 use crate::colregs::Thresholds;
 use crate::evaluation::{facts, skipped_waypoints};
 use crate::frame::deg_from_radians;
@@ -518,7 +520,7 @@ fn conduct_lines(plan: &PlanDocument, conduct: &ConductDocument, times: Times, a
 
 /// The targets for which the plan alters course or speed.
 fn altered_for(plan: &PlanDocument) -> BTreeSet<String> {
-    let legs = plan.legs().into_iter();
+    let legs = planned_legs(plan).into_iter();
     legs.filter_map(|leg| leg.because_of).collect()
 }
 
@@ -591,7 +593,7 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
         .map(|departure| departure.words(times));
     add("manoeuvre", departure.unwrap_or_else(none));
     let error = square_metres(cost.space_time_error_m2);
-    let stay = plan.stay();
+    let stay = stay(plan);
     let begins = stay.as_ref().is_some_and(Stay::begins);
     match cost.space_time_error_arc_length_m2 {
         _ if begins => add("J", format!("{error} m² until the stay begins")),

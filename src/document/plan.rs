@@ -1,200 +1,129 @@
-//! Plan document, see docs/documents.md.
+//! The plan document of a run.
 
-pub(super) mod control;
-pub(super) mod departure;
+mod control;
 pub(super) mod legs;
 pub(super) mod path_time;
-pub(super) mod phases;
 mod reasons;
 pub(super) mod stay;
 
-use control::{ControlDocument, control};
-use path_time::{PathTimeDocument, path_time_document};
-use phases::PhaseDocument;
+use control::control;
+use path_time::path_time_document;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::encounter::{EncounterDocument, encounters};
-use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
-use super::out_of_reach::OutOfReachDocument;
-use super::parts::{
-    CostDocument, EscapeDocument, ImprovementDocument, LowerBoundDocument, MissionDocument,
-    NodeDocument, ObstacleDocument, OwnShipDocument, PlanMethod, RelaxationDocument,
-    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
-    TrajectoryDocument, ViolationDocument, position,
+use searoom_document::{
+    CostDocument, DistantRow, EscapeDocument, ImprovementDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OutOfReachDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument,
+    PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
+    StartDocument, TargetDocument, TimingDocument, TrajectoryDocument, finite, vertices,
 };
-use super::targets::sets::vertices;
-use super::targets::{TargetDocument, target};
-use crate::evaluation::{Evaluation, Violation};
+
+use super::encounter::encounters;
+use super::memory::{memory, planned_manoeuvre_document};
+use crate::evaluation::Evaluation;
 use crate::frame::{Pose, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
-use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
-use crate::scenario::Scenario;
+use crate::planner::{Minimises, Objective, Plan, SearchStats};
+use crate::scenario::{DistantTarget, Scenario};
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
-use departure::Departure;
-
-/// Format name of the plan document.
-pub const PLAN_FORMAT: &str = "searoom-plan/1";
-
-/// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
-pub const PLAN_MEBIBYTES: u64 = 64;
 
 /// Time step of a sampled trajectory in seconds, and the maximum number of samples besides its
 /// joints.
 const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
-/// Self-contained plan: everything needed to verify it again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PlanDocument {
-    pub format: String,
-    pub scenario: String,
-    pub planner: String,
-    pub search: String,
-    /// Method that made the plan; null without one, absent in an old document.
-    #[serde(default)]
-    pub method: Option<PlanMethod>,
-    pub compliance: String,
-    #[serde(default)]
-    pub thresholds: String,
-    pub objective: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub risk_weight_m: Option<f64>,
-    pub time_weight_m2_per_s2: f64,
-    pub max_risk: f64,
-    /// The present on the clock of the scenario file. All other times count from it.
-    #[serde(default, skip_serializing_if = "super::is_zero")]
-    pub time_s: f64,
-    pub horizon_s: f64,
-    pub own_ship: OwnShipDocument,
-    pub mission: MissionDocument,
-    pub land: Vec<Vec<[f64; 2]>>,
-    /// Number of the map's pieces that `land` holds, where it is an outer approximation of them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub land_outer_of: Option<usize>,
-    pub outcome: String,
-    /// Empty in an old document.
-    #[serde(default)]
-    pub verdict: String,
-    pub reason: Option<String>,
-    pub relaxations: Vec<RelaxationDocument>,
-    pub verified: bool,
-    /// `None` in a document that does not say so, which `verify` rejects.
-    #[serde(default)]
-    pub safe: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time_of_no_return_s: Option<Option<f64>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lower_bound: Option<LowerBoundDocument>,
-    pub violations: Vec<ViolationDocument>,
-    /// Input that the plan ignores and that bears on safety.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub cautions: Vec<String>,
-    /// Other input of the scenario's files that the plan ignores.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    pub cost: Option<CostDocument>,
-    pub search_stats: SearchStatsDocument,
-    pub timing: TimingDocument,
-    pub trajectory: Option<TrajectoryDocument>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub escape: Option<EscapeDocument>,
-    #[serde(default)]
-    pub departure: Option<Departure>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub manoeuvres: Vec<PlannedManoeuvreDocument>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub phases: Vec<PhaseDocument>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub memory: Option<MemoryDocument>,
-    pub targets: Vec<TargetDocument>,
-    pub obstacles: Vec<ObstacleDocument>,
-    pub encounters: Vec<EncounterDocument>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub out_of_reach: Option<OutOfReachDocument>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub path_time: Option<PathTimeDocument>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub optimal_control: Option<ControlDocument>,
+/// The document of a run before its verification: nothing is verified, and `violations` is empty.
+pub(crate) fn unverified(run: &Run) -> PlanDocument {
+    let scenario = &run.scenario;
+    let verdict = Verdict::of(run);
+    let mut document = PlanDocument {
+        format: PLAN_FORMAT.to_owned(),
+        scenario: scenario.title.clone(),
+        planner: scenario.planner.facts().name.to_owned(),
+        search: scenario.search.word().to_owned(),
+        method: run.planned.method(),
+        compliance: scenario.compliance.word().to_owned(),
+        thresholds: scenario.judged_by().name.to_string(),
+        objective: objective(scenario).to_owned(),
+        risk_weight_m: match scenario.objective {
+            Objective::LengthRisk { weight } => Some(weight),
+            _ => None,
+        },
+        time_weight_m2_per_s2: scenario.time_weight,
+        max_risk: run.max_risk,
+        time_s: scenario.time,
+        horizon_s: scenario.horizon,
+        own_ship: own_ship(run),
+        mission: mission(run),
+        land: run.land.pieces.iter().map(vertices).collect(),
+        land_outer_of: run.land.simplified,
+        outcome: verdict.word().to_owned(),
+        verdict: run.word(),
+        reason: run.reason(),
+        relaxations: run.relaxations.iter().map(relaxation).collect(),
+        verified: false,
+        safe: Some(run.safe()),
+        time_of_no_return_s: None,
+        lower_bound: None,
+        violations: Vec::new(),
+        cautions: scenario.cautions(plan(run).map(|plan| &plan.trajectory)),
+        notes: scenario.remarks.notes.clone(),
+        cost: cost(run),
+        search_stats: search_stats(run.planned.stats),
+        timing: timing(run),
+        trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
+        escape: escape(run),
+        departure: None,
+        manoeuvres: (run.planned.manoeuvres.iter())
+            .map(planned_manoeuvre_document)
+            .collect(),
+        phases: Vec::new(),
+        memory: memory(run),
+        targets: scenario.targets.iter().map(TargetDocument::of).collect(),
+        obstacles: (run.targets.iter())
+            .flat_map(|target| {
+                let from = target.released.unwrap_or(0.0);
+                obstacles(&target.obstacle, from, scenario.horizon)
+            })
+            .collect(),
+        encounters: encounters(run),
+        out_of_reach: out_of_reach(scenario),
+        path_time: (run.planned.path_time.as_deref())
+            .map(|diagram| path_time_document(run, diagram)),
+        optimal_control: control(run),
+    };
+    document.departure = document.departure_of_motion();
+    document.phases = document.phases_of_motion();
+    document
 }
 
-impl PlanDocument {
-    /// True where the document says that no hard set, hull or land is entered.
-    pub fn is_safe(&self) -> bool {
-        self.safe == Some(true)
+/// Statistics of the search that made a plan; null where no graph was searched for it.
+pub(crate) fn search_stats(stats: Option<SearchStats>) -> SearchStatsDocument {
+    SearchStatsDocument {
+        expanded: stats.map(|s| s.expanded),
+        generated: stats.map(|s| s.generated),
+        edges_checked: stats.map(|s| s.edges_checked),
+        heuristic_weight: stats.map(|s| s.heuristic_weight),
     }
+}
 
-    /// Number of the scenario's targets, with those out of reach.
-    pub fn all_targets(&self) -> usize {
-        let listed = self.out_of_reach.as_ref();
-        self.targets.len() + listed.map_or(0, |listed| listed.rows.len())
+/// Targets that the plan does not consider; `None` where every target is planned for.
+fn out_of_reach(scenario: &Scenario) -> Option<OutOfReachDocument> {
+    let found = &scenario.out_of_reach;
+    if found.targets.is_empty() {
+        return None;
     }
-
-    /// The document of a run before its verification: nothing is verified, and `violations` is empty.
-    pub(crate) fn unverified(run: &Run) -> Self {
-        let scenario = &run.scenario;
-        let verdict = Verdict::of(run);
-        let mut document = Self {
-            format: PLAN_FORMAT.to_owned(),
-            scenario: scenario.title.clone(),
-            planner: scenario.planner.facts().name.to_owned(),
-            search: scenario.search.word().to_owned(),
-            method: run.planned.method(),
-            compliance: scenario.compliance.word().to_owned(),
-            thresholds: scenario.judged_by().name.to_string(),
-            objective: objective(scenario).to_owned(),
-            risk_weight_m: match scenario.objective {
-                Objective::LengthRisk { weight } => Some(weight),
-                _ => None,
-            },
-            time_weight_m2_per_s2: scenario.time_weight,
-            max_risk: run.max_risk,
-            time_s: scenario.time,
-            horizon_s: scenario.horizon,
-            own_ship: own_ship(run),
-            mission: mission(run),
-            land: run.land.pieces.iter().map(vertices).collect(),
-            land_outer_of: run.land.simplified,
-            outcome: verdict.word().to_owned(),
-            verdict: run.word(),
-            reason: run.reason(),
-            relaxations: run.relaxations.iter().map(relaxation).collect(),
-            verified: false,
-            safe: Some(run.safe()),
-            time_of_no_return_s: None,
-            lower_bound: None,
-            violations: Vec::new(),
-            cautions: scenario.cautions(plan(run).map(|plan| &plan.trajectory)),
-            notes: scenario.remarks.notes.clone(),
-            cost: cost(run),
-            search_stats: SearchStatsDocument::of(run.planned.stats),
-            timing: timing(run),
-            trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
-            escape: escape(run),
-            departure: None,
-            manoeuvres: run.planned.manoeuvres.iter().map(Into::into).collect(),
-            phases: Vec::new(),
-            memory: MemoryDocument::of(run),
-            targets: scenario.targets.iter().map(target).collect(),
-            obstacles: (run.targets.iter())
-                .flat_map(|target| {
-                    let from = target.released.unwrap_or(0.0);
-                    obstacles(&target.obstacle, from, scenario.horizon)
-                })
-                .collect(),
-            encounters: encounters(run),
-            out_of_reach: OutOfReachDocument::of(scenario),
-            path_time: (run.planned.path_time.as_deref())
-                .map(|diagram| path_time_document(run, diagram)),
-            optimal_control: control(run),
-        };
-        document.departure = document.departure_of_motion();
-        document.phases = document.phases_of_motion();
-        document
-    }
+    let row = |target: &DistantTarget| {
+        let place = target.position;
+        let (speed, radius) = (target.greatest_speed, target.radius);
+        DistantRow(target.name.clone(), place.x, place.y, speed, radius)
+    };
+    Some(OutOfReachDocument {
+        of_targets: scenario.targets.len() + found.targets.len(),
+        until_s: found.until,
+        apart_m: found.apart,
+        rows: found.targets.iter().map(row).collect(),
+    })
 }
 
 /// Name of the minimised quantity.
@@ -205,26 +134,8 @@ pub(crate) fn objective(scenario: &Scenario) -> &'static str {
     }
 }
 
-/// Names that `planner` may have.
-pub(crate) fn planner_names() -> [&'static str; PLANNERS.len()] {
-    planner_words().map(|(name, _)| name)
-}
-
 fn plan(run: &Run) -> Option<&Plan> {
     run.planned.outcome.plan()
-}
-
-pub(crate) fn finite(value: f64) -> Option<f64> {
-    // adding +0.0 converts a negative zero to zero
-    value.is_finite().then_some(value + 0.0)
-}
-
-pub(crate) fn violations(found: &[Violation]) -> Vec<ViolationDocument> {
-    let document = |violation: &Violation| ViolationDocument {
-        what: violation.what.clone(),
-        t_s: finite(violation.time),
-    };
-    found.iter().map(document).collect()
 }
 
 pub(crate) fn timing(run: &Run) -> TimingDocument {
@@ -274,7 +185,7 @@ fn escape(run: &Run) -> Option<EscapeDocument> {
 fn own_ship(run: &Run) -> OwnShipDocument {
     let own = &run.scenario.own_ship;
     OwnShipDocument {
-        position: position(own.pose.position),
+        position: PositionDocument::of(own.pose.position),
         course_deg: course_deg_from_heading(own.pose.heading),
         speed_mps: own.speed,
         length_m: own.hull.length,
@@ -290,14 +201,18 @@ fn own_ship(run: &Run) -> OwnShipDocument {
 fn mission(run: &Run) -> MissionDocument {
     let desired = &run.scenario.desired;
     MissionDocument {
-        waypoints: desired.waypoints().into_iter().map(position).collect(),
+        waypoints: desired
+            .waypoints()
+            .into_iter()
+            .map(PositionDocument::of)
+            .collect(),
         leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
         duration_s: desired.duration(),
         length_m: desired.length(),
         left_out_m: 0.0,
         stay_until_s: run.scenario.stay,
         alternatives: (run.scenario.alternatives.iter())
-            .map(|path| path.iter().copied().map(position).collect())
+            .map(|path| path.iter().copied().map(PositionDocument::of).collect())
             .collect(),
     }
 }
@@ -344,26 +259,8 @@ pub(crate) fn cost_of(
     }
 }
 
-pub(super) fn start(pose: Pose, time: f64) -> StartDocument {
-    StartDocument {
-        t_s: time,
-        east_m: pose.position.x + 0.0,
-        north_m: pose.position.y + 0.0,
-        course_deg: course_deg_from_heading(pose.heading),
-    }
-}
-
-pub(crate) fn segment_document(segment: &Segment) -> SegmentDocument {
-    SegmentDocument {
-        start: start(segment.start, segment.start_time),
-        duration_s: segment.duration,
-        speed_mps: segment.speed,
-        turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
-    }
-}
-
 fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
-    let segments = trajectory.segments().iter().map(segment_document);
+    let segments = trajectory.segments().iter().map(SegmentDocument::of);
     TrajectoryDocument {
         segments: trajectory.steered().is_none().then(|| segments.collect()),
         samples: samples(trajectory),
@@ -388,7 +285,7 @@ pub(crate) fn samples(trajectory: &Trajectory) -> Vec<SampleDocument> {
 }
 
 pub(crate) fn sample(pose: Pose, time: f64, speed_mps: f64) -> SampleDocument {
-    let at = start(pose, time);
+    let at = StartDocument::of(pose, time);
     SampleDocument {
         t_s: at.t_s,
         east_m: at.east_m,
@@ -440,4 +337,38 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
             velocity_set: (&slab.obstacle().velocity()).into(),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planner::planner_words;
+
+    /// The planners' names and the verdicts, in the order in which a fault of a document lists them.
+    #[test]
+    fn the_words_of_a_document_are_those_of_the_planners_and_runs() {
+        assert_eq!(
+            searoom_document::PLANNER_NAMES,
+            planner_words().map(|(name, _)| name)
+        );
+        let verdicts: Vec<&str> = Verdict::WORDS.iter().map(|(word, _)| *word).collect();
+        assert_eq!(searoom_document::OUTCOMES, *verdicts);
+    }
+
+    /// In the headline and in the legs.
+    #[test]
+    fn a_manoeuvre_begins_when_its_departure_does() {
+        for name in ["give-way", "head-on", "overtaking", "stand-on"] {
+            let file = format!("scenarios/colregs/{name}.toml");
+            let scenario = crate::scenario::Scenario::read(file.as_ref()).expect("valid");
+            let plan = PlanDocument::of(&crate::pipeline::run(scenario));
+            let departure = plan.departure.expect("a manoeuvre");
+            let from_s = departure.begins_s();
+            let begins_s = plan.manoeuvres[0].begins_s;
+            assert!(
+                (from_s - begins_s).abs() < 1e-3,
+                "{name}: {from_s} {begins_s}"
+            );
+        }
+    }
 }

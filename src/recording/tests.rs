@@ -12,7 +12,7 @@ use super::canvas::{Canvas, ViewModel, covered};
 use super::views::closest::ENCOUNTER;
 use super::views::{curves, ships};
 use super::*;
-use crate::document::{EntityContents, PlanDocument};
+use crate::document::{EntityContents, PlanDocument, planned_legs};
 use crate::evaluation::Violation;
 use crate::frame::Vector;
 use crate::geometry::Window;
@@ -187,7 +187,7 @@ fn the_legs_are_those_of_the_plan() {
     let mut rows: Vec<Vec<String>> = text.lines().skip(2).map(cells).collect();
     let events: Vec<String> = rows.iter().map(|row| row[7].clone()).collect();
     rows.retain(|row| !row[1].is_empty());
-    let legs = PlanDocument::of(&run).legs();
+    let legs = planned_legs(&PlanDocument::of(&run));
     assert_eq!(rows.len(), legs.len());
     for (row, leg) in rows.iter().zip(&legs) {
         assert_eq!(row[3], format!("{:03.0}", leg.course_deg().round() % 360.0));

@@ -8,8 +8,8 @@ use super::table::{
 };
 use crate::document::{
     Departure, EncounterDocument, MONITORS, PlanDocument, PlannedLeg, SuiteRunDocument,
-    TimingDocument, breaks, in_brackets, longest, met, passing, plan_lines, rules_in_words,
-    verdict_parts,
+    TimingDocument, breaks, in_brackets, longest, met, passing, plan_lines, planned_legs,
+    rules_in_words, verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -199,7 +199,7 @@ pub fn legs_text(plan: &PlanDocument, display: Display) -> String {
 }
 
 pub(super) fn legs_grid(plan: &PlanDocument) -> Grid {
-    let legs = plan.legs();
+    let legs = planned_legs(plan);
     let longest = longest(&legs);
     let row = |(index, leg): (usize, PlannedLeg)| {
         let motion = &leg.motion;

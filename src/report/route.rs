@@ -7,7 +7,7 @@ use std::path::Path;
 use chrono::{DateTime, SecondsFormat, Utc};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
-use crate::document::{CLOSEST, PlanDocument, PlannedLeg};
+use crate::document::{CLOSEST, PlanDocument, PlannedLeg, planned_legs};
 use crate::frame::{
     GEOREFERENCE_REACH_M, Geographic, Georeference, NAUTICAL_MILE_M, Vector, knots_from_mps,
 };
@@ -92,7 +92,7 @@ impl RouteFormat {
         if !plan.is_safe() {
             return Err(RouteError::NotSafe);
         }
-        let legs = plan.legs();
+        let legs = planned_legs(plan);
         if legs.is_empty() {
             return Err(RouteError::NoLegs);
         }
@@ -482,7 +482,7 @@ mod tests {
         let elements = read.descendants();
         let elements = elements.filter(|node| node.has_tag_name("scheduleElement"));
         let mut last = 0.0;
-        let waypoints = waypoints(&plan.legs());
+        let waypoints = waypoints(&planned_legs(&plan));
         for (index, (element, waypoint)) in elements.zip(&waypoints).enumerate() {
             let [eta, etd] = ["eta", "etd"].map(|name| element.attribute(name));
             assert_eq!([eta.is_some(), etd.is_some()], [index > 0, index == 0]);
@@ -514,7 +514,7 @@ mod tests {
     #[test]
     fn rows_and_lines_are_the_legs() {
         let (plan, earth) = give_way();
-        let legs = plan.legs();
+        let legs = planned_legs(&plan);
         let text = RouteFormat::Csv
             .write(&plan, Some(&earth), None)
             .expect("a route");
@@ -555,7 +555,7 @@ mod tests {
             let file = format!("scenarios/{name}.toml");
             let scenario = Scenario::read(file.as_ref()).expect("valid");
             let plan = PlanDocument::of(&pipeline::run(scenario));
-            let legs = plan.legs();
+            let legs = planned_legs(&plan);
             let mut way = legs[0].motion.start.position;
             for leg in &legs {
                 assert!((leg.motion.start.position - way).norm() < 1e-3, "{leg:?}");

@@ -12,6 +12,9 @@ mod geometry_fixtures;
 #[cfg(test)]
 mod ship_fixtures;
 
+mod method;
 pub mod target;
 pub mod trajectory;
 pub mod vessel;
+
+pub use method::PlanMethod;

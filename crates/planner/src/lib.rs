@@ -15,7 +15,6 @@ pub mod cost;
 mod explored;
 mod interface;
 mod line_error;
-mod method;
 mod no_plan;
 pub mod optimal_control;
 pub mod path_time;
@@ -27,9 +26,9 @@ pub use control_settings::ControlSettings;
 pub use cost::whole_space_time_error;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
-pub use method::PlanMethod;
 pub use no_plan::NoPlan;
 pub use optimal_control::WarmStart;
+pub use searoom_model::PlanMethod;
 
 use std::time::Duration;
 
@@ -125,6 +124,15 @@ impl SearchKind {
             Self::AStar => "A*",
             Self::Dijkstra => "Dijkstra",
             Self::Thorough => "thorough",
+        }
+    }
+
+    /// The method of a plan that this search finds on the space-time graph.
+    pub(crate) fn method(self) -> PlanMethod {
+        match self {
+            Self::AStar => PlanMethod::AStar,
+            Self::Dijkstra => PlanMethod::Dijkstra,
+            Self::Thorough => PlanMethod::Thorough,
         }
     }
 }

@@ -1,71 +1,13 @@
 //! Record of the optimal-control solution.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use searoom_document::{
+    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
+    StartVelocityDocument,
+};
 
-use crate::frame::{clockwise_deg_per_s, radians_from_deg};
+use crate::frame::clockwise_deg_per_s;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Run;
-
-/// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ControlDocument {
-    pub vessel: String,
-    pub force_limits: ForceLimitsDocument,
-    pub state_weights: [f64; 6],
-    pub control_weights: [f64; 3],
-    /// Null for a start ahead at own ship's speed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<StartVelocityDocument>,
-    pub start_intervals: usize,
-    pub intervals: usize,
-    pub defect: Option<f64>,
-    pub enclosed_targets: Vec<String>,
-    pub starts: Vec<StartAttemptDocument>,
-    pub homotopy_classes: Vec<HomotopyClassDocument>,
-}
-
-/// Force limits, symmetric about zero.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ForceLimitsDocument {
-    pub surge_n: f64,
-    pub sway_n: f64,
-    pub yaw_nm: f64,
-}
-
-/// Own ship's velocity at the start; starboard and clockwise are positive.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StartVelocityDocument {
-    pub surge_mps: f64,
-    pub sway_mps: f64,
-    pub yaw_rate_deg_per_s: f64,
-}
-
-impl StartVelocityDocument {
-    /// Surge, sway to port and yaw rate to port: m/s, m/s, rad/s.
-    pub(crate) fn velocity(self) -> [f64; 3] {
-        let yaw_rate = radians_from_deg(-self.yaw_rate_deg_per_s);
-        [self.surge_mps, -self.sway_mps, yaw_rate]
-    }
-}
-
-/// Result of one initial guess.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StartAttemptDocument {
-    pub start: String,
-    pub status: String,
-    pub feasible: bool,
-    pub objective: Option<f64>,
-    pub iterations: usize,
-}
-
-/// Plans that pass every set on the same side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct HomotopyClassDocument {
-    pub sides: Vec<Option<String>>,
-    pub objective: f64,
-    pub starts: usize,
-}
 
 /// Builds the record; `None` for other planners.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {

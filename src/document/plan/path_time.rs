@@ -1,45 +1,13 @@
-//! Diagram of a path-time plan, see docs/documents.md.
+//! Diagram of a path-time plan.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use searoom_document::{
+    PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument,
+};
 
 use crate::frame::clockwise_deg;
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::path_time::PathTimeDiagram;
-
-/// Path-time diagram; points are `[s_m, t_s]`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PathTimeDocument {
-    pub path: String,
-    pub legs: Vec<PathLegDocument>,
-    pub obstacles: Vec<PathObstacleDocument>,
-    pub corners: Vec<PathCornerDocument>,
-    pub profile: Vec<[f64; 2]>,
-}
-
-/// Leg of the planned path.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PathLegDocument {
-    pub start_m: f64,
-    pub end_m: f64,
-    pub path: String,
-}
-
-/// Obstacle on a leg, clipped to the leg and the horizon.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PathObstacleDocument {
-    pub target: String,
-    pub leg: usize,
-    pub vertices: Vec<[f64; 2]>,
-}
-
-/// Corner of the path, exempt from the turning radius. The hull covers both headings there.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PathCornerDocument {
-    pub s_m: f64,
-    pub turn_deg: f64,
-}
 
 pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTimeDocument {
     // adding +0.0 converts a negative zero to zero

@@ -1,9 +1,10 @@
 //! Why own ship alters course or speed: the set that it would enter if it held on.
 
-use super::legs::PlannedLeg;
-use super::{PlanDocument, departure};
+use searoom_document::{
+    LEAST_DEPARTURE_DEG, ObstacleDocument, PlanDocument, PlannedLeg, PositionDocument,
+};
+
 use crate::document::encounter::has_role;
-use crate::document::parts::{ObstacleDocument, PositionDocument};
 use crate::frame::{Pose, Vector, deg_from_radians, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{LAND, LandObstacle, Obstacle, SpaceTimeObstacle};
@@ -38,195 +39,201 @@ pub(super) struct Before {
     pub speed: f64,
 }
 
-impl PlanDocument {
-    /// The reason why a leg alters course or speed: the target whose set own ship would enter first if
-    /// it went on as `before`, or [`LAND`]. `legs` begins with this leg.
-    ///
-    /// `None` where the leg alters nothing, or comes back to the mission's course or speed, or
-    /// where nothing would be entered. Along a path own ship would keep to the path, and to the mission
-    /// where it is on it. The sets are those that the plan keeps out of. O(sets × legs).
-    pub(super) fn reason(&self, before: &Before, legs: &[PlannedLeg]) -> Option<&str> {
-        let leg = &legs[0].motion;
-        let (course, speed) = self.desired_at(leg.start.position)?;
-        let off = |heading: f64| wrap(heading - course).abs();
-        let turns = off(leg.end().heading) > off(before.heading) + COURSE_RAD;
-        let differs = |a: f64, b: f64| (a - b).abs() > SPEED * a.max(b);
-        let changes_speed = differs(leg.speed, before.speed)
-            && (leg.speed - speed).abs() > (before.speed - speed).abs();
-        let is_along_path = self.path_time.is_some();
-        if !(before.speed > 0.0 && (changes_speed || turns && !is_along_path)) {
-            return None;
-        }
-        let held: Vec<Segment> = if is_along_path {
-            at_one_speed(legs, before.speed)
-        } else {
-            self.going_on(leg, before)
-        };
-        self.entered(&held)
+/// The reason why a leg alters course or speed: the target whose set own ship would enter first if
+/// it went on as `before`, or [`LAND`]. `legs` begins with this leg.
+///
+/// `None` where the leg alters nothing, or comes back to the mission's course or speed, or
+/// where nothing would be entered. Along a path own ship would keep to the path, and to the mission
+/// where it is on it. The sets are those that the plan keeps out of. O(sets × legs).
+pub(super) fn reason<'a>(
+    plan: &'a PlanDocument,
+    before: &Before,
+    legs: &[PlannedLeg],
+) -> Option<&'a str> {
+    let leg = &legs[0].motion;
+    let (course, speed) = desired_at(plan, leg.start.position)?;
+    let off = |heading: f64| wrap(heading - course).abs();
+    let turns = off(leg.end().heading) > off(before.heading) + COURSE_RAD;
+    let differs = |a: f64, b: f64| (a - b).abs() > SPEED * a.max(b);
+    let changes_speed = differs(leg.speed, before.speed)
+        && (leg.speed - speed).abs() > (before.speed - speed).abs();
+    let is_along_path = plan.path_time.is_some();
+    if !(before.speed > 0.0 && (changes_speed || turns && !is_along_path)) {
+        return None;
     }
+    let held: Vec<Segment> = if is_along_path {
+        at_one_speed(legs, before.speed)
+    } else {
+        going_on(plan, leg, before)
+    };
+    entered(plan, &held)
+}
 
-    /// True for a turn of the mission itself: own ship is on the mission before it, and on a later leg
-    /// after it.
-    pub(super) fn follows_mission(&self, before: &Before, leg: &Segment) -> bool {
-        let on = |place: Vector, heading: f64| {
-            let near = self.nearest_leg(place)?;
-            let turned = deg_from_radians(wrap(heading - heading_of(near.along)).abs());
-            let is_on = turned < departure::LEAST_DEG && near.off <= self.own_ship.length_m;
-            is_on.then_some(near.index)
-        };
-        let end = leg.end();
-        let [from, to] = [
-            on(leg.start.position, before.heading),
-            on(end.position, end.heading),
-        ];
-        leg.is_arc() && from.is_some() && to > from
-    }
+/// True for a turn of the mission itself: own ship is on the mission before it, and on a later leg
+/// after it.
+pub(super) fn follows_mission(plan: &PlanDocument, before: &Before, leg: &Segment) -> bool {
+    let on = |place: Vector, heading: f64| {
+        let near = nearest_leg(plan, place)?;
+        let turned = deg_from_radians(wrap(heading - heading_of(near.along)).abs());
+        let is_on = turned < LEAST_DEPARTURE_DEG && near.off <= plan.own_ship.length_m;
+        is_on.then_some(near.index)
+    };
+    let end = leg.end();
+    let [from, to] = [
+        on(leg.start.position, before.heading),
+        on(end.position, end.heading),
+    ];
+    leg.is_arc() && from.is_some() && to > from
+}
 
-    /// Own ship's motion if it did not alter at the start of a leg: along the mission to its end
-    /// where it is on it, else straight on until the horizon.
-    fn going_on(&self, leg: &Segment, before: &Before) -> Vec<Segment> {
-        let mut at = Pose::new(leg.start.position, before.heading);
-        let mut time = leg.start_time;
-        let straight = |at, time| {
-            let left = self.horizon_s - time;
-            vec![Segment::straight(at, time, left, before.speed)]
-        };
-        let Some(near) = self.nearest_leg(at.position) else {
-            return straight(at, time);
-        };
-        let turned = wrap(before.heading - heading_of(near.along)).abs();
-        if turned > COURSE_RAD || near.off > self.own_ship.length_m {
-            return straight(at, time);
-        }
-        let ahead = self.mission.waypoints.iter().skip(near.index + 1);
-        let segment = |to: &PositionDocument| {
-            let way = to.point() - at.position;
-            let start = Pose::new(at.position, heading_of(way));
-            let duration = way.norm() / before.speed;
-            let segment = Segment::straight(start, time, duration, before.speed);
-            (at, time) = (segment.end(), segment.end_time());
-            segment
-        };
-        ahead.map(segment).filter(|s| s.duration > 0.0).collect()
+/// Own ship's motion if it did not alter at the start of a leg: along the mission to its end
+/// where it is on it, else straight on until the horizon.
+fn going_on(plan: &PlanDocument, leg: &Segment, before: &Before) -> Vec<Segment> {
+    let mut at = Pose::new(leg.start.position, before.heading);
+    let mut time = leg.start_time;
+    let straight = |at, time| {
+        let left = plan.horizon_s - time;
+        vec![Segment::straight(at, time, left, before.speed)]
+    };
+    let Some(near) = nearest_leg(plan, at.position) else {
+        return straight(at, time);
+    };
+    let turned = wrap(before.heading - heading_of(near.along)).abs();
+    if turned > COURSE_RAD || near.off > plan.own_ship.length_m {
+        return straight(at, time);
     }
+    let ahead = plan.mission.waypoints.iter().skip(near.index + 1);
+    let segment = |to: &PositionDocument| {
+        let way = to.point() - at.position;
+        let start = Pose::new(at.position, heading_of(way));
+        let duration = way.norm() / before.speed;
+        let segment = Segment::straight(start, time, duration, before.speed);
+        (at, time) = (segment.end(), segment.end_time());
+        segment
+    };
+    ahead.map(segment).filter(|s| s.duration > 0.0).collect()
+}
 
-    /// The target that own ship lets pass before leg `index` comes back to the mission's course or
-    /// speed, or [`LAND`]: its set would be entered first if the rest of the plan began at the start
-    /// of the straight leg, or of the wait, before. O(sets × legs).
-    pub(super) fn waited_for(&self, legs: &[PlannedLeg], index: usize) -> Option<&str> {
-        let rest = &legs[index..];
-        let (last, leg) = (&legs[index.checked_sub(1)?].motion, &rest[0].motion);
-        let (course, speed) = self.desired_at(leg.start.position)?;
-        let off = |heading: f64| wrap(heading - course).abs();
-        let is_along_path = self.path_time.is_some();
-        let turns_back = off(leg.end().heading) < off(last.end().heading) - COURSE_RAD;
-        let resumes =
-            (leg.speed - speed).abs() < (last.speed - speed).abs() - SPEED * leg.speed.max(speed);
-        if last.is_arc() || !(resumes || turns_back && !is_along_path) {
-            return None;
-        }
-        // along a path own ship comes back where it does, but with the speed after it so far
-        let (mut held, way) = match is_along_path {
-            true => (
-                at_one_speed(&legs[index - 1..index], leg.speed),
-                Vector::zeros(),
-            ),
-            false => (Vec::new(), last.start.position - leg.start.position),
-        };
-        let begins = held.last().map_or(last.start_time, Segment::end_time);
-        let moved = |rest: &PlannedLeg| {
-            let mut motion = rest.motion;
-            motion.start.position += way;
-            motion.start_time += begins - leg.start_time;
-            motion
-        };
-        held.extend(rest.iter().map(moved));
-        self.entered(&held)
+/// The target that own ship lets pass before leg `index` comes back to the mission's course or
+/// speed, or [`LAND`]: its set would be entered first if the rest of the plan began at the start
+/// of the straight leg, or of the wait, before. O(sets × legs).
+pub(super) fn waited_for<'a>(
+    plan: &'a PlanDocument,
+    legs: &[PlannedLeg],
+    index: usize,
+) -> Option<&'a str> {
+    let rest = &legs[index..];
+    let (last, leg) = (&legs[index.checked_sub(1)?].motion, &rest[0].motion);
+    let (course, speed) = desired_at(plan, leg.start.position)?;
+    let off = |heading: f64| wrap(heading - course).abs();
+    let is_along_path = plan.path_time.is_some();
+    let turns_back = off(leg.end().heading) < off(last.end().heading) - COURSE_RAD;
+    let resumes =
+        (leg.speed - speed).abs() < (last.speed - speed).abs() - SPEED * leg.speed.max(speed);
+    if last.is_arc() || !(resumes || turns_back && !is_along_path) {
+        return None;
     }
+    // along a path own ship comes back where it does, but with the speed after it so far
+    let (mut held, way) = match is_along_path {
+        true => (
+            at_one_speed(&legs[index - 1..index], leg.speed),
+            Vector::zeros(),
+        ),
+        false => (Vec::new(), last.start.position - leg.start.position),
+    };
+    let begins = held.last().map_or(last.start_time, Segment::end_time);
+    let moved = |rest: &PlannedLeg| {
+        let mut motion = rest.motion;
+        motion.start.position += way;
+        motion.start_time += begins - leg.start_time;
+        motion
+    };
+    held.extend(rest.iter().map(moved));
+    entered(plan, &held)
+}
 
-    /// Why a large turn of a manoeuvre by the rules is no smaller: the turns, in whole 5° from
-    /// [`LEAST_TURN_DEG`] on, after which own ship would enter a set on its new course before the
-    /// manoeuvre is over. `None` for other turns, and where most smaller ones are clear: then the
-    /// mission was cheaper to reach after the large one.
-    pub(super) fn lesser_turns(&self, leg: &PlannedLeg) -> Option<String> {
-        let (whole, start) = (leg.turn_deg().abs(), leg.motion.start_time);
-        let begins = |begins: f64| (begins - start).abs() < tolerance::TIME_S;
-        let manoeuvre = self.manoeuvres.iter().find(|m| begins(m.begins_s))?;
-        if whole < LARGE_TURN_DEG {
-            return None;
-        }
-        let met = |turn: f64| {
-            let until = start + leg.motion.duration * turn / whole;
-            let arc = leg.motion.between(start, until);
-            let left = manoeuvre.returns_s - until;
-            let on = Segment::straight(arc.end(), until, left, arc.speed);
-            Some((turn, self.entered(&[arc, on])?))
-        };
-        let turns = (0..).map(|k| LEAST_TURN_DEG + 5.0 * f64::from(k));
-        let turns = turns.take_while(|turn| *turn < whole);
-        let met: Vec<(f64, &str)> = turns.map_while(met).collect();
-        let (most, name) = *met.last()?;
-        let is_one = met.iter().all(|(_, other)| *other == name);
-        let what = match name {
-            LAND if is_one => "land".to_owned(),
-            _ if is_one => format!("the set of '{name}'"),
-            _ if met.iter().any(|(_, other)| *other == LAND) => "a set or land".to_owned(),
-            _ => "a set".to_owned(),
-        };
-        (most >= 0.5 * whole)
-            .then(|| format!("a turn of {LEAST_TURN_DEG} to {most}° would enter {what}"))
+/// Why a large turn of a manoeuvre by the rules is no smaller: the turns, in whole 5° from
+/// [`LEAST_TURN_DEG`] on, after which own ship would enter a set on its new course before the
+/// manoeuvre is over. `None` for other turns, and where most smaller ones are clear: then the
+/// mission was cheaper to reach after the large one.
+pub(super) fn lesser_turns(plan: &PlanDocument, leg: &PlannedLeg) -> Option<String> {
+    let (whole, start) = (leg.turn_deg().abs(), leg.motion.start_time);
+    let begins = |begins: f64| (begins - start).abs() < tolerance::TIME_S;
+    let manoeuvre = plan.manoeuvres.iter().find(|m| begins(m.begins_s))?;
+    if whole < LARGE_TURN_DEG {
+        return None;
     }
+    let met = |turn: f64| {
+        let until = start + leg.motion.duration * turn / whole;
+        let arc = leg.motion.between(start, until);
+        let left = manoeuvre.returns_s - until;
+        let on = Segment::straight(arc.end(), until, left, arc.speed);
+        Some((turn, entered(plan, &[arc, on])?))
+    };
+    let turns = (0..).map(|k| LEAST_TURN_DEG + 5.0 * f64::from(k));
+    let turns = turns.take_while(|turn| *turn < whole);
+    let met: Vec<(f64, &str)> = turns.map_while(met).collect();
+    let (most, name) = *met.last()?;
+    let is_one = met.iter().all(|(_, other)| *other == name);
+    let what = match name {
+        LAND if is_one => "land".to_owned(),
+        _ if is_one => format!("the set of '{name}'"),
+        _ if met.iter().any(|(_, other)| *other == LAND) => "a set or land".to_owned(),
+        _ => "a set".to_owned(),
+    };
+    (most >= 0.5 * whole)
+        .then(|| format!("a turn of {LEAST_TURN_DEG} to {most}° would enter {what}"))
+}
 
-    /// Direction and speed of the mission's nearest leg.
-    fn desired_at(&self, place: Vector) -> Option<(f64, f64)> {
-        let near = self.nearest_leg(place)?;
-        let speed = self.mission.leg_speeds_mps.get(near.index)?;
-        Some((heading_of(near.along), *speed))
-    }
+/// Direction and speed of the mission's nearest leg.
+fn desired_at(plan: &PlanDocument, place: Vector) -> Option<(f64, f64)> {
+    let near = nearest_leg(plan, place)?;
+    let speed = plan.mission.leg_speeds_mps.get(near.index)?;
+    Some((heading_of(near.along), *speed))
+}
 
-    fn nearest_leg(&self, place: Vector) -> Option<NearestLeg> {
-        let points = self.mission.waypoints.iter().map(PositionDocument::point);
-        let points: Vec<Vector> = points.collect();
-        let near = points.windows(2).enumerate().map(|(index, ends)| {
-            let along = ends[1] - ends[0];
-            let part = ((place - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-            let off = (ends[0] + along * part - place).norm();
-            NearestLeg { index, along, off }
-        });
-        near.min_by(|a, b| a.off.total_cmp(&b.off))
-    }
+fn nearest_leg(plan: &PlanDocument, place: Vector) -> Option<NearestLeg> {
+    let points = plan.mission.waypoints.iter().map(PositionDocument::point);
+    let points: Vec<Vector> = points.collect();
+    let near = points.windows(2).enumerate().map(|(index, ends)| {
+        let along = ends[1] - ends[0];
+        let part = ((place - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        let off = (ends[0] + along * part - place).norm();
+        NearestLeg { index, along, off }
+    });
+    near.min_by(|a, b| a.off.total_cmp(&b.off))
+}
 
-    /// The target whose set a motion enters first, or [`LAND`]. In a manoeuvre by the rules, which is
-    /// for the ships with a role, those without one come last.
-    fn entered(&self, held: &[Segment]) -> Option<&str> {
-        let begins = held.first()?.start_time;
-        let is_by_rules = (self.manoeuvres.iter())
-            .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
-        let is_last = |set: &&ObstacleDocument| {
-            let mut encounters = self.encounters.iter();
-            is_by_rules && encounters.any(|e| e.target == set.name && !has_role(&e.role))
-        };
-        let (last, first): (Vec<_>, Vec<_>) = self.obstacles.iter().partition(is_last);
-        let ashore = self.ashore(held).map(|time| (time, LAND));
-        let first = first_entered(held, first).into_iter().chain(ashore);
-        let first = first.min_by(|a, b| a.0.total_cmp(&b.0));
-        Some(first.or_else(|| first_entered(held, last))?.1)
-    }
+/// The target whose set a motion enters first, or [`LAND`]. In a manoeuvre by the rules, which is
+/// for the ships with a role, those without one come last.
+fn entered<'a>(plan: &'a PlanDocument, held: &[Segment]) -> Option<&'a str> {
+    let begins = held.first()?.start_time;
+    let is_by_rules = (plan.manoeuvres.iter())
+        .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
+    let is_last = |set: &&ObstacleDocument| {
+        let mut encounters = plan.encounters.iter();
+        is_by_rules && encounters.any(|e| e.target == set.name && !has_role(&e.role))
+    };
+    let (last, first): (Vec<_>, Vec<_>) = plan.obstacles.iter().partition(is_last);
+    let ashore = ashore(plan, held).map(|time| (time, LAND));
+    let first = first_entered(held, first).into_iter().chain(ashore);
+    let first = first.min_by(|a, b| a.0.total_cmp(&b.0));
+    Some(first.or_else(|| first_entered(held, last))?.1)
+}
 
-    /// When a motion first comes too near to land.
-    fn ashore(&self, held: &[Segment]) -> Option<f64> {
-        let own = &self.own_ship;
-        let radius = Hull::new(own.length_m, own.beam_m).half_diagonal() + own.land_margin_m;
-        let swept = swept(held)?;
-        let pieces = self.land.iter().filter_map(|piece| {
-            let vertices: Vec<Vector> = piece.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
-            let near = Window::around(&vertices)?.grown(radius).meets(&swept);
-            near.then(|| ConvexPolygon::hull(&vertices).ok())?
-        });
-        let pieces: Vec<ConvexPolygon> = pieces.collect();
-        let land = LandObstacle::around(&pieces, radius);
-        held.iter().find_map(|s| land.first_contact(s, DEPTH_M))
-    }
+/// When a motion first comes too near to land.
+fn ashore(plan: &PlanDocument, held: &[Segment]) -> Option<f64> {
+    let own = &plan.own_ship;
+    let radius = Hull::new(own.length_m, own.beam_m).half_diagonal() + own.land_margin_m;
+    let swept = swept(held)?;
+    let pieces = plan.land.iter().filter_map(|piece| {
+        let vertices: Vec<Vector> = piece.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+        let near = Window::around(&vertices)?.grown(radius).meets(&swept);
+        near.then(|| ConvexPolygon::hull(&vertices).ok())?
+    });
+    let pieces: Vec<ConvexPolygon> = pieces.collect();
+    let land = LandObstacle::around(&pieces, radius);
+    held.iter().find_map(|s| land.first_contact(s, DEPTH_M))
 }
 
 /// The first of these sets that a motion enters, and when. Only what is before a contact is tested
@@ -310,6 +317,7 @@ fn at_one_speed(legs: &[PlannedLeg], speed: f64) -> Vec<Segment> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::planned_legs;
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -363,7 +371,7 @@ mod tests {
                 let start = Pose::new(leg.motion.start.position, before.heading);
                 let left = plan.horizon_s - leg.motion.start_time;
                 let held = Segment::straight(start, leg.motion.start_time, left, before.speed);
-                match plan.reason(&before, &legs[index..]) {
+                match reason(&plan, &before, &legs[index..]) {
                     Some(target) => {
                         found += 1;
                         assert_eq!(Some(target), scanned(&plan, &held).as_deref(), "{name}");
@@ -382,7 +390,7 @@ mod tests {
     #[test]
     fn the_first_alteration_has_its_target_and_the_return_has_none() {
         let plan = planned("colregs/head-on");
-        let legs = plan.legs();
+        let legs = planned_legs(&plan);
         let because: Vec<Option<&str>> = legs.iter().map(|l| l.because_of.as_deref()).collect();
         assert_eq!(because[1], Some("target"), "{because:?}");
         assert_eq!(because.iter().flatten().count(), 1, "{because:?}");
@@ -394,7 +402,7 @@ mod tests {
             .collect();
         assert!(events.contains(&"turns back after 'target'"), "{events:?}");
         // it would be free to return, but the rules ask for the other to be past
-        let legs = planned("harbour/munkholmen").legs();
+        let legs = planned_legs(&planned("harbour/munkholmen"));
         assert_eq!(legs[2].events, ["returns after 'ferry'"], "{legs:?}");
     }
 
@@ -402,7 +410,7 @@ mod tests {
     #[test]
     fn a_large_turn_says_after_which_a_set_would_be_entered() {
         let plan = planned("uncertainty/known-route");
-        let turn = &plan.legs()[1];
+        let turn = &planned_legs(&plan)[1];
         let told = "a turn of 30 to 120° would enter the set of 'ferry'";
         assert_eq!(turn.events[1], told, "{turn:?}");
         let (motion, back) = (&turn.motion, plan.manoeuvres[0].returns_s);
@@ -414,14 +422,14 @@ mod tests {
         };
         assert!((30..=120).all(|degrees| enters(f64::from(degrees))));
         assert!(!enters(turn.turn_deg()));
-        let small = planned("colregs/give-way").legs();
+        let small = planned_legs(&planned("colregs/give-way"));
         assert_eq!(small[1].events.len(), 2, "{small:?}");
     }
 
     /// Straight on there is land, but the mission turns before it.
     #[test]
     fn who_does_not_alter_goes_on_along_the_mission() {
-        let legs = planned("closed-loop/harbour-ferries").legs();
+        let legs = planned_legs(&planned("closed-loop/harbour-ferries"));
         assert_eq!(legs[1].events[0], "turns for 'fast ferry'", "{legs:?}");
         assert_eq!(legs[3].events, ["returns after 'fast ferry'"], "{legs:?}");
     }
@@ -437,7 +445,9 @@ mod tests {
             )
             .replace("course_deg = 0.0 ", "course_deg = 270.0 ")
             .replace("horizon_s = 400.0", "horizon_s = 900.0");
-        let legs = PlanDocument::of(&pipeline::run(Scenario::parse(&text).expect("valid"))).legs();
+        let legs = planned_legs(&PlanDocument::of(&pipeline::run(
+            Scenario::parse(&text).expect("valid"),
+        )));
         let events: Vec<&str> = (legs.iter().take(4))
             .map(|leg| leg.events.first().map_or("", |event| event))
             .collect();
@@ -461,9 +471,10 @@ mod tests {
                 speed_kn = 13, length_m = 120, beam_m = 20, position_std_m = 10,
                 speed_spread_kn = 0.5, course_spread_deg = 3 }]"#;
         let plan = PlanDocument::of(&pipeline::run(Scenario::parse(text).expect("valid")));
-        let turn = &plan.legs()[1];
+        let turn = &planned_legs(&plan)[1];
         assert_eq!(turn.because_of.as_deref(), Some("slow"), "{turn:?}");
-        let held = plan.going_on(
+        let held = going_on(
+            &plan,
             &turn.motion,
             &Before {
                 heading: turn.motion.start.heading,
@@ -479,7 +490,7 @@ mod tests {
             ("harbour/ferry-crossing", "trawler"),
             ("harbour/ferry-crossing-slowest", "sailing boat"),
         ] {
-            let legs = planned(name).legs();
+            let legs = planned_legs(&planned(name));
             let because = legs.iter().filter_map(|l| l.because_of.as_deref());
             assert_eq!(because.collect::<Vec<_>>(), [target], "{legs:?}");
         }

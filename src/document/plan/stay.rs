@@ -1,7 +1,7 @@
 //! The stay at the last waypoint, in words.
 
-use super::PlanDocument;
-use crate::document::SampleDocument;
+use searoom_document::{PlanDocument, SampleDocument};
+
 use crate::frame::Vector;
 use crate::text::{Times, significant};
 use crate::tolerance;
@@ -26,42 +26,40 @@ enum Kept {
     Interrupted(f64, f64, Option<f64>),
 }
 
-impl PlanDocument {
-    /// The stay of the mission and what the motion makes of it; `None` where none is asked for.
-    pub(crate) fn stay(&self) -> Option<Stay> {
-        let until = self.mission.stay_until_s?;
-        let points: Vec<Vector> = (self.mission.waypoints.iter())
-            .map(|point| point.point())
-            .collect();
-        let place = *points.last()?;
-        let samples = &self.trajectory.as_ref()?.samples;
-        let at = |sample: &SampleDocument| Vector::new(sample.east_m, sample.north_m);
-        let off = samples.iter().map(|sample| (at(sample) - place).norm());
-        let off: Vec<f64> = off.collect();
-        let is_off = |off: &f64| *off > tolerance::ARRIVAL_M;
-        let desired = DesiredTrajectory::new(&points, &self.mission.leg_speeds_mps).ok()?;
-        // a round trip begins at its end
-        let begins = match desired.comes_by(at(samples.first()?)) {
-            true => off.iter().position(is_off).unwrap_or(off.len()),
-            false => 0,
-        };
-        let arrived = off[begins..].iter().position(|off| !is_off(off));
-        let kept = match arrived.map(|arrived| begins + arrived) {
-            None => Kept::Never,
-            Some(arrived) if samples[arrived].t_s > until => Kept::TooLate(samples[arrived].t_s),
-            Some(arrived) => match off[arrived..].iter().position(is_off) {
-                None => Kept::Always,
-                Some(leaves) => {
-                    let leaves = arrived + leaves;
-                    let last = off.iter().rposition(is_off)?;
-                    let farthest = off[leaves..].iter().copied().fold(0.0, f64::max);
-                    let back = samples.get(last + 1).map(|sample| sample.t_s);
-                    Kept::Interrupted(samples[leaves - 1].t_s, farthest, back)
-                }
-            },
-        };
-        Some(Stay { until, kept })
-    }
+/// The stay of the mission and what the motion makes of it; `None` where none is asked for.
+pub(crate) fn stay(plan: &PlanDocument) -> Option<Stay> {
+    let until = plan.mission.stay_until_s?;
+    let points: Vec<Vector> = (plan.mission.waypoints.iter())
+        .map(|point| point.point())
+        .collect();
+    let place = *points.last()?;
+    let samples = &plan.trajectory.as_ref()?.samples;
+    let at = |sample: &SampleDocument| Vector::new(sample.east_m, sample.north_m);
+    let off = samples.iter().map(|sample| (at(sample) - place).norm());
+    let off: Vec<f64> = off.collect();
+    let is_off = |off: &f64| *off > tolerance::ARRIVAL_M;
+    let desired = DesiredTrajectory::new(&points, &plan.mission.leg_speeds_mps).ok()?;
+    // a round trip begins at its end
+    let begins = match desired.comes_by(at(samples.first()?)) {
+        true => off.iter().position(is_off).unwrap_or(off.len()),
+        false => 0,
+    };
+    let arrived = off[begins..].iter().position(|off| !is_off(off));
+    let kept = match arrived.map(|arrived| begins + arrived) {
+        None => Kept::Never,
+        Some(arrived) if samples[arrived].t_s > until => Kept::TooLate(samples[arrived].t_s),
+        Some(arrived) => match off[arrived..].iter().position(is_off) {
+            None => Kept::Always,
+            Some(leaves) => {
+                let leaves = arrived + leaves;
+                let last = off.iter().rposition(is_off)?;
+                let farthest = off[leaves..].iter().copied().fold(0.0, f64::max);
+                let back = samples.get(last + 1).map(|sample| sample.t_s);
+                Kept::Interrupted(samples[leaves - 1].t_s, farthest, back)
+            }
+        },
+    };
+    Some(Stay { until, kept })
 }
 
 impl Stay {

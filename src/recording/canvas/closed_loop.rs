@@ -3,8 +3,8 @@
 use super::{Canvas, Palette, cursor_times, with_sea};
 use crate::colregs::{self, SteadyShip};
 use crate::document::{
-    self, EncounterDocument, PlanDocument, RoleDocument, SampleDocument, SimulatedTargetDocument,
-    SimulationDocument, has_role,
+    EncounterDocument, PlanDocument, RoleDocument, SampleDocument, SegmentDocument,
+    SimulatedTargetDocument, SimulationDocument, has_role,
 };
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::{ConvexPolygon, Window};
@@ -189,7 +189,7 @@ impl<'a> FollowedPlan<'a> {
     fn new(scenario: &Scenario, from: f64, plan: &'a PlanDocument) -> Self {
         let trajectory = plan.trajectory.as_ref();
         let segments = trajectory.map_or_else(Vec::new, |trajectory| match &trajectory.segments {
-            Some(segments) => segments.iter().map(document::segment).collect(),
+            Some(segments) => segments.iter().map(SegmentDocument::segment).collect(),
             None => lines(&trajectory.samples),
         });
         let ships = plan.targets.iter().filter_map(|t| t.ship.as_ref());

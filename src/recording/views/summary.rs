@@ -2,7 +2,7 @@
 
 use super::explored::DrawnGraph;
 use super::ships::vector_seconds;
-use crate::document::{PlanDocument, TIME_LINE, headline, longest, plan_lines};
+use crate::document::{PlanDocument, TIME_LINE, headline, longest, plan_lines, planned_legs};
 use crate::evaluation::Evaluation;
 use crate::recording::canvas::{ShownMotion, ViewModel};
 use crate::text::{Times, broken, clock, knots_figure, rounded, significant};
@@ -34,7 +34,7 @@ pub fn text(model: &ViewModel, plan: &PlanDocument, drawn: DrawnGraph) -> String
 
 /// The legs of the plan as a table of markdown; `None` where it has none.
 pub fn legs(plan: &PlanDocument) -> Option<String> {
-    let legs = plan.legs();
+    let legs = planned_legs(plan);
     let longest = longest(&legs);
     let rows = legs.into_iter().flat_map(|leg| {
         let motion = &leg.motion;

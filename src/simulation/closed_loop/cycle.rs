@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::colregs::SteadyShip;
 use crate::document::{
-    EstimateDocument, PlanDocument, ReplanDocument, finite, position, relaxation,
+    EstimateDocument, PlanDocument, PositionDocument, ReplanDocument, finite, relaxation,
 };
 use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -65,8 +65,8 @@ impl Simulation {
                 target: simulated.name.clone(),
                 age_s,
                 stale: simulated.is_stale,
-                true_position: position(simulated.truth.now.pose.position),
-                position: position(ship.pose.position),
+                true_position: PositionDocument::of(simulated.truth.now.pose.position),
+                position: PositionDocument::of(ship.pose.position),
                 course_deg: course_deg_from_heading(ship.pose.heading),
                 speed_mps: ship.speed,
                 length_m: ship.hull.length,

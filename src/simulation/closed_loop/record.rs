@@ -6,7 +6,7 @@ use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::document::{
     ConductDocument, CycleTimingDocument, GroundSegmentDocument, SIMULATION_FORMAT, SailedDocument,
     SailedLandDocument, SampleDocument, SimulatedTargetDocument, SimulationDocument,
-    SimulationSettingsDocument, finite, manoeuvres, sample, state_document,
+    SimulationSettingsDocument, StateDocument, finite, manoeuvres, sample,
 };
 use crate::evaluation::{counted_error_of_segments, least_land_distance};
 use crate::frame::Vector;
@@ -241,7 +241,7 @@ fn simulated(
         outside_sets: target.outside_sets,
         unknown_until_s: target.known_from.unwrap_or(simulation.time),
         track: (target.states.iter())
-            .map(|(time, ship)| state_document(*time, ship))
+            .map(|(time, ship)| StateDocument::of(*time, ship))
             .collect(),
         set_m: target.set.as_ref().map(|sets| {
             let outline = super::outline(sets);

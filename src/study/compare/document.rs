@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    CollisionDocument, EntryDocument, HeldVelocityDocument, InapplicableDocument,
-    ScenarioComparisonDocument, SearchStatsDocument, TrackPointDocument, cost_of, departure,
-    finite, minimised, objective, position, samples, timing,
+    CollisionDocument, Compared, EntryDocument, HeldVelocityDocument, InapplicableDocument,
+    PositionDocument, TrackPointDocument, cost_of, departure, finite, minimised, objective,
+    samples, search_stats, timing,
 };
 use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
 use crate::frame::course_deg_from_heading;
@@ -24,33 +24,20 @@ const MOST_STEPS: f64 = 1000.0;
 /// Why a baseline has no motion.
 const NO_VELOCITY: &str = "no constant velocity is out of every velocity obstacle";
 
-impl ScenarioComparisonDocument {
-    /// Builds the document of a compared scenario.
-    pub fn of(
-        file: String,
-        scenario: &Scenario,
-        entries: &[Entry],
-        inapplicable: &[Inapplicable],
-    ) -> Self {
-        Self {
-            file,
-            scenario: Some(scenario.title.clone()),
-            error: None,
-            entries: (entries.iter())
-                .map(|entry| EntryDocument::of(scenario, entry))
-                .collect(),
-            inapplicable: (inapplicable.iter())
-                .map(|other| InapplicableDocument {
-                    method: other.method.to_string(),
-                    reason: other.reason.clone(),
-                })
-                .collect(),
+impl Compared<Entry, Inapplicable> for Scenario {
+    fn title(&self) -> String {
+        self.title.clone()
+    }
+
+    fn inapplicable(&self, method: &Inapplicable) -> InapplicableDocument {
+        InapplicableDocument {
+            method: method.method.to_string(),
+            reason: method.reason.clone(),
         }
     }
-}
 
-impl EntryDocument {
-    fn of(scenario: &Scenario, entry: &Entry) -> Self {
+    fn entry(&self, entry: &Entry) -> EntryDocument {
+        let scenario = self;
         let (run, motion) = (entry.run.as_deref(), entry.motion.as_ref());
         let plan = run.and_then(|run| run.planned.outcome.plan());
         let verified = motion.is_some_and(|motion| motion.evaluation.verified());
@@ -72,7 +59,7 @@ impl EntryDocument {
         let conduct = entry.conduct(scenario);
         let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();
         let broken = broken.into_iter().map(str::to_owned).collect();
-        Self {
+        EntryDocument {
             method: entry.name(),
             max_risk,
             objective: run.map(|run| objective(&run.scenario).to_owned()),
@@ -104,7 +91,7 @@ impl EntryDocument {
             velocity: velocity(entry),
             breaks: (!conduct.is_empty()).then_some(broken),
             collision: collision(scenario, entry),
-            search_stats: run.map(|run| SearchStatsDocument::of(run.planned.stats)),
+            search_stats: run.map(|run| search_stats(run.planned.stats)),
             timing: run.map(timing),
             track: track(entry),
         }
@@ -180,7 +167,7 @@ fn track(entry: &Entry) -> Vec<TrackPointDocument> {
         .filter_map(|time| Some((finite(time)?, entry.position_at(time)?)))
         .map(|(t_s, at)| TrackPointDocument {
             t_s,
-            position: position(at),
+            position: PositionDocument::of(at),
         })
         .collect()
 }

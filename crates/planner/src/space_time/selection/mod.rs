@@ -8,6 +8,7 @@ pub(crate) mod initial_guess;
 mod tidy;
 pub(crate) mod warm_start;
 
+use crate::Plan;
 use crate::clock::Clock;
 use crate::space_time::context::COARSE_CHORD_RAD;
 use crate::space_time::context::Context;
@@ -21,7 +22,6 @@ use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::coarse_search::CoarseSearch;
 use crate::space_time::selection::initial_guess::{EvasiveManoeuvre, ahead, from_graph, waiting};
 use crate::space_time::selection::tidy::Prices;
-use crate::{Plan, PlanMethod};
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;
@@ -379,7 +379,7 @@ impl<'a> Selection<'a> {
     /// Cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
-        let method = PlanMethod::of(self.context.problem.search);
+        let method = self.context.problem.search.method();
         Some(Plan {
             graph_cost: self.graph_cost,
             ..Plan::measured(self.context.problem, best.motion, method)?
