@@ -35,7 +35,7 @@ pub use plan::control::*;
 pub use plan::departure::{
     Departure, LEAST_DEG as LEAST_DEPARTURE_DEG, SailedManoeuvreDocument, departure, manoeuvres,
 };
-pub use plan::motions::{PlannedLeg, STILL_MPS, are_one};
+pub use plan::motions::{PlannedLeg, STILL_MPS, is_same_motion};
 pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;

@@ -66,7 +66,7 @@ impl SimulationDocument {
     }
 
     /// The alarms, each with how often it was raised and when last: one that is raised again within
-    /// [`GOES_ON`] goes on. In order of their first times.
+    /// 1.5 times between plans goes on. In order of their first times.
     pub fn lasting_alarms(&self) -> Vec<LastingAlarm<'_>> {
         let goes_on = GOES_ON * self.settings.replan_s;
         let mut all: Vec<LastingAlarm> = Vec::new();

@@ -1,6 +1,6 @@
 //! The legs of a plan as a navigator reads them: turns and straight runs, and the events on each.
 
-use searoom_document::{EncounterDocument, PlanDocument, PlannedLeg, STILL_MPS, are_one};
+use searoom_document::{EncounterDocument, PlanDocument, PlannedLeg, STILL_MPS, is_same_motion};
 
 use super::reasons::{Before, follows_mission, lesser_turns, reason, waited_for};
 use crate::document::lines::{distance_words, is_set, passing};
@@ -193,7 +193,7 @@ fn after_text(target: &str) -> String {
 /// Two straight runs at one speed on nearly one course as the line between their ends.
 fn one_line(last: &Segment, next: &Segment) -> Option<Segment> {
     let bend = wrap(next.start.heading - last.start.heading).abs();
-    if last.is_arc() || next.is_arc() || bend > SAME_COURSE_RAD || !are_one(last, next) {
+    if last.is_arc() || next.is_arc() || bend > SAME_COURSE_RAD || !is_same_motion(last, next) {
         return None;
     }
     let way = next.end().position - last.start.position;

@@ -96,7 +96,7 @@ impl PlanDocument {
                 let corner = wrap(motion.start.heading - last.motion.end().heading);
                 if corner.abs() > CORNER_RAD {
                     corner_deg = clockwise_deg(corner);
-                } else if are_one(&last.motion, &motion) {
+                } else if is_same_motion(&last.motion, &motion) {
                     last.motion.duration += motion.duration;
                     continue;
                 }
@@ -113,7 +113,7 @@ impl PlanDocument {
 }
 
 /// True for two motions of one speed and one rate of turn.
-pub fn are_one(last: &Segment, next: &Segment) -> bool {
+pub fn is_same_motion(last: &Segment, next: &Segment) -> bool {
     let turns = last.turn_rate.abs().max(next.turn_rate.abs());
     (last.speed - next.speed).abs() <= SAME_SPEED * last.speed.max(next.speed)
         && (last.turn_rate - next.turn_rate).abs() <= SAME_SPEED * turns
