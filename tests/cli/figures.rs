@@ -161,7 +161,7 @@ fn all_ships_are_marked_at_the_times_asked_for() {
     let file = folder.at("a.svg");
     run(&format!("{GIVE_WAY} {file} --times 200,0,60,60")).success();
     let svg = fs::read_to_string(&file).expect("written");
-    for (time, count) in [(">1:00<", 1), (">3:20<", 2), (", 2:03<", 1), (">2:00<", 0)] {
+    for (time, count) in [(">1:00<", 1), (">3:20<", 2), (", 2:04<", 1), (">2:00<", 0)] {
         assert_eq!(svg.matches(time).count(), count, "{time}");
     }
     for first in [">own ship, 0:00<", ">target, 1:00<"] {
@@ -183,7 +183,7 @@ fn figures_fit_the_columns_of_papers() {
         let svg = drawn(&format!(
             "plan {GIVE_WAY_FILE} --quiet --size {size} --figure"
         ));
-        for text in ["own ship", "target", "209 m, 2:03", ">closest approach<"] {
+        for text in ["own ship", "target", "209 m, 2:04", ">closest approach<"] {
             assert!(svg.contains(text), "{size} {text}");
         }
         assert_eq!(svg.matches(">Give-way<").count(), titles, "{size}");
@@ -230,13 +230,13 @@ fn panels_show_one_time_each() {
     let folder = Folder::new();
     let file = folder.at("a.svg");
     for (options, titles, [east, north]) in [
-        ("", &["0:00", "1:00", "2:03", "3:30"][..], [2, 2]),
+        ("", &["0:00", "1:00", "2:04", "3:30"][..], [2, 2]),
         (
             "--times 0,30,60 --size 120x90",
             &["0:00", "0:30", "1:00"],
             [2, 2],
         ),
-        ("--times 123 --size 85x60", &["2:03"], [1, 1]),
+        ("--times 124 --size 85x60", &["2:04"], [1, 1]),
     ] {
         run(&format!("{GIVE_WAY} {file} --panels {options}")).success();
         let svg = fs::read_to_string(&file).expect("written");
@@ -251,7 +251,7 @@ fn panels_show_one_time_each() {
         assert_eq!(svg.matches(">North [m]<").count(), north, "{options}");
         assert_eq!(
             svg.contains(">209 m<"),
-            titles.contains(&"2:03"),
+            titles.contains(&"2:04"),
             "{options}"
         );
         // the target's set is filled in every panel, and in the legend
@@ -277,7 +277,7 @@ fn every_encounter_is_drawn_at_its_closest_approach() {
         fs::read_to_string(&file).expect("written")
     };
     let svg = draw("");
-    let times = ["8:27", "11:46", "12:26"];
+    let times = ["8:33", "11:47", "12:25"];
     for time in times {
         assert_eq!(svg.matches(&format!(" m, {time}<")).count(), 1, "{time}");
     }

@@ -261,7 +261,7 @@ fn long_lines_fit_the_terminal() {
         .env("COLUMNS", "80")
         .assert();
     let text = stdout(&shown);
-    let broken = "\n               first alteration 240 s before the closest approach on the course\n                 before it: 1 turn\n";
+    let broken = "\n               first alteration 220 s before the closest approach on the course\n                 before it: 1 turn\n";
     assert!(text.contains(broken), "{text}");
     let whole = stdout(&run("plan scenarios/harbour/munkholmen.toml"));
     assert!(

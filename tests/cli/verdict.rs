@@ -125,7 +125,7 @@ fn a_figure_says_that_a_plan_is_safe() {
     .success()
     .stdout(contains("(verified, safe)"));
     let svg = fs::read_to_string(&figure).expect("a figure");
-    says(&svg, ">solved (verified, safe): starboard 50° from 0:20<");
+    says(&svg, ">solved (verified, safe): starboard 30° from 0:20<");
 }
 
 /// A risk that is taken of the shape alone is safe, one of the hard set is not; both are told with

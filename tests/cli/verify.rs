@@ -17,7 +17,7 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
         .success()
         .stderr(is_empty())
         .stdout(contains(
-            "head-on.json: Head-on: verified, safe; space-time plan, 9 pieces until ",
+            "head-on.json: Head-on: verified, safe; space-time plan, 10 pieces until ",
         ))
         .stdout(contains("margin").not());
     searoom(&["verify", &four[1]])

@@ -31,7 +31,7 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
 
 #[test]
 fn plans_keep_to_the_rules() {
-    compliance::run(0..60, &Meeting::NEAR).assert_met();
+    compliance::run(0..60, &Meeting::NEAR, None).assert_met();
 }
 
 #[test]

@@ -263,7 +263,7 @@ fn a_ship_with_a_rudder_stays_near_its_plan_and_arrives() {
         for kind in EncounterKind::ALL {
             let sailed = sail(meeting(kind, 2, &How { ship, ..CONSTANT }));
             let off = sailed.conduct.largest_off_plan_m;
-            assert!((1e-3..20.0).contains(&off), "{ship:?} {kind:?}: {off}");
+            assert!((1e-3..25.0).contains(&off), "{ship:?} {kind:?}: {off}");
             assert!(!sailed.contact && sailed.arrived);
         }
     }

@@ -2,6 +2,7 @@
 
 use searoom::colregs::Role;
 use searoom::pipeline::{self, Run};
+use searoom::planner::{PlanMethod, SearchKind};
 use searoom::scenario::Scenario;
 
 use crate::campaigns::documents::{parsed, unhurried};
@@ -125,4 +126,41 @@ fn time_to_turn_back_makes_no_stand_on_ship_wait_for_it() {
     };
     let [short, long] = [2000.0, 4000.0].map(cost);
     assert!(long < 1.001 * short, "{long} {short}");
+}
+
+/// The bound of A* is one: the least price is that of Dijkstra's algorithm, which expands no fewer
+/// nodes. Both search the graph of manoeuvres, and say what they have seen.
+#[test]
+fn dijkstra_finds_the_same_manoeuvres_from_more_nodes() {
+    let (mut nodes, mut fewer) = ([0, 0], 0);
+    for (kind, seed) in EncounterKind::with_seeds(570..582) {
+        let scenario = meeting(kind, seed, &Meeting::NEAR);
+        let runs = [SearchKind::AStar, SearchKind::Dijkstra].map(|search| {
+            pipeline::run(Scenario {
+                search,
+                ..scenario.clone()
+            })
+        });
+        let plans = runs
+            .each_ref()
+            .map(|run| run.planned.outcome.plan().expect("a plan"));
+        if plans.iter().any(|plan| plan.method != PlanMethod::Rules) {
+            continue;
+        }
+        let [a_star, dijkstra] = plans.map(|plan| plan.cost);
+        let about = format!("{kind:?} {seed}: {a_star} {dijkstra}");
+        assert!((a_star - dijkstra).abs() <= 1e-9 * dijkstra, "{about}");
+        let expanded = runs
+            .each_ref()
+            .map(|run| run.planned.stats.expect("a search").expanded);
+        assert!(
+            expanded[0] > 0 && expanded[0] <= expanded[1],
+            "{about} {expanded:?}"
+        );
+        assert!(runs[0].planned.explored.edge_count() > 0, "{about}");
+        fewer += usize::from(expanded[0] < expanded[1]);
+        nodes = [nodes[0] + expanded[0], nodes[1] + expanded[1]];
+    }
+    println!("{nodes:?} nodes, fewer in {fewer}");
+    assert!(fewer > 30, "fewer nodes in {fewer} of 60");
 }

@@ -6,7 +6,7 @@
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum PlanMethod {
-    /// A manoeuvre by the rules of the road, without a graph.
+    /// A manoeuvre by the rules of the road: a search of the graph of such manoeuvres.
     Rules,
     /// A* on the space-time graph, and the refinement of its plan and of standard manoeuvres.
     AStar,
@@ -89,15 +89,15 @@ impl PlanMethod {
     /// of the plan may come from a search.
     pub fn has_statistics(self) -> Option<bool> {
         match self {
-            Self::Rules
-            | Self::OptimalControl
+            Self::OptimalControl
             | Self::Remainder
             | Self::Waiting
             | Self::OffStation
             | Self::Stay => Some(false),
             // the best of many plans may be one by the rules, of a stricter request
             Self::LeastHarm | Self::Thorough | Self::Other => None,
-            Self::AStar
+            Self::Rules
+            | Self::AStar
             | Self::Dijkstra
             | Self::WarmStart
             | Self::HybridAStar

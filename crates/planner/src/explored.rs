@@ -21,6 +21,8 @@ pub enum NodeKind {
     },
     /// Point reached by holding the course beyond a vertex.
     Held,
+    /// Manoeuvre by the rules: own ship is on a new course, or has passed every target.
+    Course,
     /// Path-time graph: point on the boundary of an obstacle, mostly a corner.
     Corner {
         /// Index of the obstacle.

@@ -32,8 +32,8 @@ pub use searoom_model::PlanMethod;
 
 use std::time::Duration;
 
-use searoom_colregs::{Duty, Encountered, Thresholds};
-use searoom_geometry::frame::{Side, Vector};
+use searoom_colregs::{Duty, Encountered, ON_COURSE, Thresholds};
+use searoom_geometry::frame::{Side, Vector, wrap};
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_model::vessel::{OwnShip, VesselKind};
 use searoom_sets::{LandObstacle, Obstacle};
@@ -365,6 +365,15 @@ pub struct UnderWay {
     pub aside: f64,
     /// True where own ship has begun to return to its route.
     pub is_returning: bool,
+}
+
+impl UnderWay {
+    /// True where own ship may still turn to a course parallel to its first one before the targets
+    /// are passed.
+    pub(crate) fn may_turn_back(&self) -> bool {
+        let is_parallel = wrap(self.heading - self.first_heading).abs() <= ON_COURSE;
+        !self.is_returning && self.turn != 0.0 && !is_parallel
+    }
 }
 
 /// Result of a planner. None of these is an error.

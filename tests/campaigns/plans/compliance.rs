@@ -1,10 +1,13 @@
 //! Plans under `compliance = "rules"` over random encounters, counted by both judges from the
 //! trajectories alone.
 
+use std::path::Path;
+
 use searoom::colregs::{
     Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
 };
+use searoom::frame::deg_from_radians;
 use searoom::pipeline::{self, Run};
 
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
@@ -26,6 +29,11 @@ struct Seen {
     broken: Vec<&'static str>,
     least_score: f64,
     cost: f64,
+    /// The cost, doubled where own ship slows down in place of a turn, m²: what the planner compares.
+    price: f64,
+    /// The first manoeuvre: seconds of its beginning, its return and its end, and its turn to port in
+    /// degrees.
+    manoeuvre: [f64; 4],
     milliseconds: f64,
     lead: Option<f64>,
     turns: usize,
@@ -48,6 +56,9 @@ fn seen(run: &Run) -> Seen {
     let report = ComplianceReport::judge(&meeting, Thresholds::standard());
     let manoeuvre = report.manoeuvre;
     let times = plan.trajectory.sample_times(1.0, u32::MAX);
+    let first = run.planned.manoeuvres.first();
+    let slows = first.is_some_and(|manoeuvre| manoeuvre.turn == 0.0);
+    let numbers = first.map(|m| [m.begins, m.returns, m.joins, deg_from_radians(m.turn)]);
     let off = times.into_iter().map(|time| {
         let pose = plan.trajectory.pose_at(time);
         let weightless = run.scenario.desired.nearest(pose.position, time, 0.0);
@@ -58,6 +69,8 @@ fn seen(run: &Run) -> Seen {
         broken: report.broken().collect(),
         least_score: report.scores.least(),
         cost: plan.cost,
+        price: plan.cost * if slows { 2.0 } else { 1.0 },
+        manoeuvre: numbers.unwrap_or([f64::NAN; 4]),
         milliseconds: run.plan_time.as_secs_f64() * 1e3,
         lead: manoeuvre.and_then(|m| m.lead),
         turns: manoeuvre.map_or(0, |m| m.turns),
@@ -71,9 +84,13 @@ fn seen(run: &Run) -> Seen {
     }
 }
 
-/// Encounters with one target: `seeds` of each kind.
-pub fn run(seeds: Seeds, meeting: &Meeting) -> Report {
+/// Encounters with one target: `seeds` of each kind. The plans go to `rows` too, where that is a
+/// file: a line of CSV each, by which two versions can be compared scene by scene.
+pub fn run(seeds: Seeds, meeting: &Meeting, rows: Option<&Path>) -> Report {
     let mut report = Report::default();
+    let mut lines = String::from(
+        "kind,seed,price_m2,cost_m2,milliseconds,begins_s,returns_s,joins_s,turn_deg,broken\n",
+    );
     let [soon, late] = [meeting.time.start(), meeting.time.end()];
     println!("{seeds:?} of each kind, {soon} to {late} s before the closest approach\n");
     println!(
@@ -82,17 +99,36 @@ pub fn run(seeds: Seeds, meeting: &Meeting) -> Report {
     );
     println!("|{}", " --- |".repeat(13));
     for kind in EncounterKind::ALL {
-        one_kind(kind, seeds.clone(), meeting, &mut report);
+        one_kind(kind, seeds.clone(), meeting, &mut report, &mut lines);
     }
     println!();
+    if let Some(file) = rows
+        && let Err(error) = std::fs::write(file, lines)
+    {
+        let file = file.display();
+        report.require(false, || format!("cannot write {file}: {error}"));
+    }
     report
 }
 
-fn one_kind(kind: EncounterKind, seeds: Seeds, meeting: &Meeting, report: &mut Report) {
+fn one_kind(
+    kind: EncounterKind,
+    seeds: Seeds,
+    meeting: &Meeting,
+    report: &mut Report,
+    lines: &mut String,
+) {
     let name = kind.name();
     let all = meetings(kind, seeds, meeting, |scenario, _| {
         seen(&pipeline::run(scenario))
     });
+    for (seed, s) in &all {
+        let (price, cost, ms, broken) = (s.price, s.cost, s.milliseconds, s.broken.join(" "));
+        let [begins, returns, joins, turn] = s.manoeuvre;
+        lines.push_str(&format!(
+            "{name},{seed},{price},{cost},{ms},{begins},{returns},{joins},{turn},{broken}\n"
+        ));
+    }
     let count = |holds: &dyn Fn(&Seen) -> bool| all.iter().filter(|(_, s)| holds(s)).count();
     let values = |of: &dyn Fn(&Seen) -> Option<f64>| -> Vec<f64> {
         all.iter().filter_map(|(_, s)| of(s)).collect()

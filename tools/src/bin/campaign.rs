@@ -54,6 +54,9 @@ enum Campaign {
         /// Encounters that begin 300 to 900 s before the closest approach, not 100 to 220 s
         #[arg(long)]
         far: bool,
+        /// CSV file with a line for each plan, to compare two versions scene by scene
+        #[arg(long)]
+        rows: Option<PathBuf>,
     },
     /// Encounters planned again and again, a fifth of each kind; the sailed motion is judged
     Replanning {
@@ -190,9 +193,9 @@ fn run(campaign: Campaign) -> Report {
         Campaign::DenseSearch { scenes, targets } => {
             dense_search::run_among(targets, scenes.of_each(1))
         }
-        Campaign::Compliance { scenes, far } => {
+        Campaign::Compliance { scenes, far, rows } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
-            compliance::run(scenes.of_each(5), &meeting)
+            compliance::run(scenes.of_each(5), &meeting, rows.as_deref())
         }
         Campaign::Replanning {
             scenes,

@@ -118,7 +118,7 @@ impl<'a> Heuristic<'a> {
 
 /// Integral over `[0, duration]` of the squared positive part of `start + slope tau`. A decreasing
 /// ramp may extend to infinity.
-fn squared_ramp(start: f64, slope: f64, duration: f64) -> f64 {
+pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> f64 {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
         return 0.0;
     }

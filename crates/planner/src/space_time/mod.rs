@@ -12,8 +12,8 @@
 //! All steps share `manoeuvre`. Each directory uses only those before it in the order `manoeuvre`,
 //! `graph` and `grid`, `refinement`, `selection`, `fallback`.
 //!
-//! Where own ship has a duty by the collision regulations, `rules` plans instead of the graph and
-//! the refinement.
+//! Where own ship has a duty by the collision regulations, `rules` plans instead: it searches a graph
+//! of manoeuvres by the rules.
 
 mod bound;
 mod context;
@@ -36,6 +36,8 @@ pub use fallback::escape::{after_holding, nominal_motion};
 pub(super) use fallback::harm::NominalHulls;
 pub use selection::warm_start::warm_started;
 
+use std::cell::RefCell;
+
 use super::clock::Clock;
 use super::{
     ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanMethod, PlanRequest,
@@ -54,6 +56,7 @@ use manoeuvre::conflict::Conflict;
 use piece::pieces;
 use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use route::Route;
+use rules::automaton::{Effort, Explored};
 use rules::groups;
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -274,7 +277,14 @@ fn plan_with(
     let first_conflict = first_conflict.reduce(f64::min);
     let has_duty = !problem.duty().is_none() && first_conflict.is_some();
     if has_duty || problem.under_way.is_some() {
-        if let Some(kept) = groups::by_the_rules(&context, &nominal_motion, clock) {
+        let explored = RefCell::default();
+        let effort = Effort {
+            clock,
+            explored: &explored,
+        };
+        let kept = groups::by_the_rules(&context, &nominal_motion, effort);
+        let Explored { counts, graph } = explored.into_inner();
+        if let Some(kept) = kept {
             let plan = Plan::measured(problem, kept.motion, PlanMethod::Rules);
             let outcome = match plan {
                 Some(plan) if clock.is_up() => Outcome::Deadline(Some(plan)),
@@ -284,6 +294,8 @@ fn plan_with(
             return Planned {
                 escape: kept.escape,
                 manoeuvres: kept.manoeuvres,
+                stats: Some(counts),
+                explored: graph,
                 ..Planned::of(outcome)
             };
         }

@@ -408,8 +408,8 @@ impl Space for Graph<'_> {
                 self.returns(state, out);
                 self.hold_course(state, out);
             }
-            // the last two kinds belong to path-time graphs
-            NodeKind::End | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
+            // the others belong to other graphs
+            NodeKind::End | NodeKind::Course | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
         }
     }
 

@@ -17,6 +17,9 @@ const ARC_SAMPLES: u32 = 32;
 /// the step of the samples that it is found by, and of those of the judges.
 const PASSED_S: f64 = 3.0;
 
+/// Seconds to which the closest approach on a line is found.
+const CLOSE_S: f64 = 0.25;
+
 /// Greatest time between two samples for the closest approach, seconds.
 const NEAREST_S: f64 = 1.0;
 
@@ -40,6 +43,42 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
         let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
         passes && heads && plain
     })
+}
+
+/// Seconds at which own ship on a straight course may head to any side again: [`PASSED_S`] and a sample
+/// after the closest approach of the hulls, or at once where the target is passed already.
+pub(super) fn after_nearest(
+    own: &Hull,
+    encountered: &Encountered,
+    pose: Pose,
+    speed: f64,
+    time: f64,
+) -> f64 {
+    let ship = &encountered.ship;
+    let apart = ship.moved(time).pose.position - pose.position;
+    let closing = pose.ahead() * speed - ship.velocity();
+    // the hulls are nearest about when the centres are
+    let nearest = apart.dot(&closing) / closing.norm_squared();
+    let about = (own.length + encountered.hull.length) / closing.norm();
+    // a NaN, without relative motion, is at once
+    if !(nearest + about > 0.0) {
+        return time;
+    }
+    let origin = |heading| Pose::new(Vector::zeros(), heading);
+    let hull = encountered.hull.polygon(&origin(ship.pose.heading));
+    let hulls = hull.minkowski_sum(&own.polygon(&origin(pose.heading)).negated());
+    // convex in time, so the third with the greater distance at its inner end is cut off
+    let distance = |after: f64| hulls.signed_distance(closing * after - apart);
+    let (mut from, mut to) = ((nearest - about).max(0.0), nearest + about);
+    while to - from > CLOSE_S {
+        let third = (to - from) / 3.0;
+        if distance(from + third) < distance(to - third) {
+            to -= third;
+        } else {
+            from += third;
+        }
+    }
+    time + to + PASSED_S + NEAREST_S
 }
 
 /// Number of rules that both judges find broken by a motion. O(targets × seconds).
@@ -81,13 +120,6 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
         .map(|c| c.iter().map(|s| s.turn_rate * s.duration).sum::<f64>());
     sums.filter(|turn| turn.abs() > ON_COURSE && turn.abs() < SMALL_TURN)
         .count()
-}
-
-/// True when a motion keeps off the bows of all targets. Where its beginning does not, the whole
-/// does not (up to sampling).
-pub(super) fn keeps_off_bows(problem: &Problem, motion: &[Segment]) -> bool {
-    let mut all = problem.encountered.iter();
-    all.all(|encountered| keeps_off_bow_of(encountered, motion))
 }
 
 /// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead

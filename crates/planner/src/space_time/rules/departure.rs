@@ -10,8 +10,9 @@ use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
 use searoom_sets::contact;
 
-/// Departures, as fractions of the time until the latest one.
-const LEAVE: [f64; 6] = [1.0, 0.8, 0.6, 0.4, 0.2, 0.0];
+/// Most departures, and the least time between two, seconds: in a short window they differ little.
+const MOST_DEPARTURES: f64 = 6.0;
+const APART_S: f64 = 8.0;
 
 /// Seconds within which the first alteration follows a risk that begins late. A ship that overtakes
 /// alters sooner: once it has turned, the closest approach comes early.
@@ -25,8 +26,12 @@ pub(super) const SAMPLE_S: f64 = 1.5;
 impl Manoeuvres<'_, '_> {
     /// Some times of departure until the latest one, the latest first.
     pub(super) fn departures(&self, from: f64, latest: f64) -> Vec<f64> {
-        let times = LEAVE.map(|share| self.tidy_time(from + share * (latest - from)));
-        let mut times = times.to_vec();
+        let window = latest - from;
+        let parts = (window / (APART_S * self.unit)).ceil();
+        let parts = parts.clamp(1.0, MOST_DEPARTURES - 1.0) as usize;
+        let share = |part: usize| 1.0 - part as f64 / parts as f64;
+        let times = (0..=parts).map(|part| self.tidy_time(from + share(part) * window));
+        let mut times: Vec<f64> = times.collect();
         times.dedup();
         times
     }

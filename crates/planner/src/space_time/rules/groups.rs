@@ -1,7 +1,7 @@
 //! Several targets: those that are passed in one manoeuvre, and the manoeuvres one after another.
 
-use crate::clock::Clock;
 use crate::space_time::context::Context;
+use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::can_hold_speed;
 use crate::space_time::rules::manoeuvre::{Manoeuvre, Manoeuvres};
@@ -13,6 +13,9 @@ use searoom_model::trajectory::Segment;
 /// squared: ten times the distance. One manoeuvre around ships that are met an hour apart breaks no
 /// rule, but no one would sail it.
 const MOST_COST_RATIO: f64 = 100.0;
+
+/// The same of a grouping that breaks fewer rules, but some.
+const MOST_UNLAWFUL_COST_RATIO: f64 = 2.0;
 
 /// A plan by the rules.
 pub(crate) struct RulePlan {
@@ -40,9 +43,9 @@ enum Together {
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
-    clock: Clock,
+    effort: Effort,
 ) -> Option<RulePlan> {
-    let plan = in_groups(context, nominal_motion, clock);
+    let plan = in_groups(context, nominal_motion, effort);
     let begun = context.problem.under_way;
     if plan.is_some() || !begun.is_some_and(|begun| begun.is_returning) {
         return plan;
@@ -56,31 +59,36 @@ pub(crate) fn by_the_rules(
         problem: &problem,
         ..*context
     };
-    in_groups(&context, nominal_motion, clock)
+    in_groups(&context, nominal_motion, effort)
 }
 
-fn in_groups(context: &Context, nominal_motion: &[Segment], clock: Clock) -> Option<RulePlan> {
+fn in_groups(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Option<RulePlan> {
     // a manoeuvre under way is for the present risks, also where nothing would be met
     let contact = context.first_conflict(nominal_motion).unwrap_or(0.0);
     let mut encountered = context.problem.encountered.iter();
     if encountered.all(|e| e.risk_since <= contact) {
-        return one_by_one(context, nominal_motion, Together::All, clock);
+        return one_by_one(context, nominal_motion, Together::All, effort);
     }
     let mut best: Option<(usize, f64, RulePlan)> = None;
     for together in [Together::AtContact, Together::UntilJoined, Together::All] {
-        let Some(plan) = one_by_one(context, nominal_motion, together, clock) else {
+        let plan = one_by_one(context, nominal_motion, together, effort);
+        let Some(plan) = plan else {
             continue;
         };
         let broken = broken_rules(context.problem, &plan.motion);
         let cost = context.problem.error_to_end(&plan.motion);
         let better = |(least, of, _): &(usize, f64, RulePlan)| {
-            broken < *least && cost <= MOST_COST_RATIO * of
+            let most = match broken {
+                0 => MOST_COST_RATIO,
+                _ => MOST_UNLAWFUL_COST_RATIO,
+            };
+            broken < *least && cost <= most * of
         };
         if best.as_ref().is_none_or(better) {
             best = Some((broken, cost, plan));
         }
         let is_lawful = best.as_ref().is_some_and(|(least, ..)| *least == 0);
-        if is_lawful || clock.is_up() {
+        if is_lawful || effort.clock.is_up() {
             break;
         }
     }
@@ -91,7 +99,7 @@ fn one_by_one(
     context: &Context,
     nominal_motion: &[Segment],
     together: Together,
-    clock: Clock,
+    effort: Effort,
 ) -> Option<RulePlan> {
     let encountered = context.problem.encountered;
     let mut kept = RulePlan {
@@ -123,21 +131,22 @@ fn one_by_one(
             let group: Vec<_> = begun.copied().collect();
             let all = group.len() == remaining.clone().count();
             let motion = (&kept.motion[..], from);
-            let found = resolved(context, &group, all, motion, contact, clock, under_way)?;
-            let begins = |e: &Encountered| e.risk_since > until && e.risk_since < found.joined;
+            let found = resolved(context, &group, all, motion, contact, under_way, effort)?;
+            let joined = found.whole.joined;
+            let begins = |e: &Encountered| e.risk_since > until && e.risk_since < joined;
             if together != Together::UntilJoined || !remaining.clone().any(begins) {
                 break (group, found);
             }
-            until = found.joined;
+            until = joined;
         };
         if step == 0 {
             let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
             let holds = can_hold_speed(context.problem) && found.begun.is_none();
             kept.escape = (stands_on && holds).then(|| found.escape());
         }
-        from = found.joined;
+        from = found.whole.joined;
         kept.manoeuvres.push(found.planned());
-        kept.motion = found.motion;
+        kept.motion = found.whole.motion;
     }
     None
 }
@@ -150,8 +159,8 @@ fn resolved(
     all: bool,
     motion: (&[Segment], f64),
     contact: f64,
-    clock: Clock,
     under_way: Option<UnderWay>,
+    effort: Effort,
 ) -> Option<Manoeuvre> {
     let problem = Problem {
         encountered: group,
@@ -162,13 +171,13 @@ fn resolved(
         problem: &problem,
         ..*context
     };
-    let mut manoeuvres = Manoeuvres::new(&context, motion, all, clock);
+    let mut manoeuvres = Manoeuvres::new(&context, motion, all, effort);
     if let Some(begun) = under_way {
-        let gone_on = manoeuvres.going_on();
+        let gone_on = manoeuvres.going_on(&begun);
         if begun.is_returning {
             return gone_on;
         }
-        return gone_on.or_else(|| resolved(&context, group, all, motion, contact, clock, None));
+        return gone_on.or_else(|| resolved(&context, group, all, motion, contact, None, effort));
     }
     match problem.duty().stands_on {
         true => manoeuvres.standing_on(contact),

@@ -6,28 +6,33 @@
 //! hold ─► half speed or less ───────────► passed ─► follow the route
 //! ```
 //!
-//! An [`OutwardLeg`], until passed, and an [`Ending`] are a [`Manoeuvre`] of at most five
-//! parameters. It is allowed if it is clear and by the rules.
+//! A [`Partial`] manoeuvre is built part by part: each part is the shortest one whose line is clear
+//! ([`hug`](super::hug)), so only the departure, the course, and the angle of the return are chosen.
 
-use crate::clock::Clock;
+use crate::space_time::bound::Heuristic;
 use crate::space_time::context::Context;
 use crate::space_time::land;
 use crate::space_time::manoeuvre::chain::Chain;
 use crate::space_time::manoeuvre::motion::until;
 use crate::space_time::manoeuvre::return_to_line::motion_back;
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
-use crate::space_time::proxy::{Proxy, first_met};
-use crate::space_time::rules::compliance::complies;
+use crate::space_time::proxy::Proxy;
+use crate::space_time::rules::automaton::Effort;
+use crate::space_time::rules::bodies::Passing;
+use crate::space_time::rules::compliance::{after_nearest, complies};
+use crate::space_time::rules::hug::{HeldTurn, least_clear};
 use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
-use searoom_colregs::{APPARENT_TIME, APPARENT_TURN, Encountered};
-use searoom_geometry::frame::{Pose, Vector, wrap};
-use searoom_geometry::tolerance::{self, TOUCH_M};
-use searoom_geometry::{ConvexPolygon, outer_disc};
+use searoom_colregs::APPARENT_TIME;
+use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
-use searoom_sets::{Obstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
+use searoom_sets::{Obstacle, SpaceTimeObstacle};
 
 /// Seconds in which a harbour vessel sails its turning radius.
 const NORMAL_TURN_S: f64 = 20.0;
+
+/// Largest first turn, radians: with a little more own ship would turn about.
+pub(super) const LARGEST_TURN: f64 = 3.0;
 
 /// Seconds of the least segment.
 pub(super) const LEAST_S: f64 = 3.0;
@@ -39,28 +44,13 @@ const SPEED_PRICE: f64 = 2.0;
 /// [`LEAST_S`].
 const SHORT_PRICE: f64 = 2.0;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Parameters {
-    /// Seconds at which the route is left.
-    pub leave: f64,
-    pub first: FirstAlteration,
-    pub ending: Ending,
-}
-
+/// The first alteration of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FirstAlteration {
-    /// Turn in radians to port, seconds until the parallel course, and the speed in m/s.
-    Turn { turn: f64, aside: f64, speed: f64 },
+    /// Turn in radians to port, and the speed in m/s.
+    Turn { turn: f64, speed: f64 },
     /// The speed that is kept until passed, m/s.
     Slow { speed: f64 },
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ending {
-    /// Seconds from passing to the return.
-    pub after: f64,
-    /// Angle between the return line and the route, radians.
-    pub back: f64,
 }
 
 impl FirstAlteration {
@@ -71,28 +61,84 @@ impl FirstAlteration {
             Self::Turn { .. } => 1.0,
         }
     }
+
+    pub(super) fn speed(&self) -> f64 {
+        let (Self::Turn { speed, .. } | Self::Slow { speed }) = *self;
+        speed
+    }
 }
 
-impl Parameters {
-    /// One parameter changed by a step; `None` where it has none.
-    pub(super) fn stepped(mut self, parameter: usize, step: f64, unit: f64) -> Option<Self> {
-        let (ending, seconds) = (&mut self.ending, 20.0 * unit * step);
-        match (parameter, &mut self.first) {
-            (0, FirstAlteration::Turn { turn, .. }) => {
-                let more = (turn.abs() + 0.15 * step).max(APPARENT_TURN);
-                *turn = more * turn.signum();
-            }
-            (1, FirstAlteration::Turn { aside, .. }) if aside.is_finite() => {
-                *aside = (*aside + seconds).max(LEAST_S);
-            }
-            (2, _) => ending.after = (ending.after + seconds).max(0.0),
-            (3, FirstAlteration::Turn { .. }) => {
-                ending.back = (ending.back + 0.15 * step).clamp(0.1, 1.4);
-            }
-            (4, _) => self.leave += seconds,
-            _ => return None,
+/// How own ship goes on until the targets are passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Outward {
+    /// On its new course.
+    Direct,
+    /// On a course parallel to the first one, from the least offset on at which it is clear until this
+    /// many seconds after the targets are passed. One that is just clear may have no way back.
+    Parallel { spare: f64 },
+}
+
+/// Where a partial manoeuvre ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Phase {
+    /// On the route, before any alteration.
+    Route,
+    /// At the beginning of the line after the first alteration.
+    Out,
+    /// Where every target is passed, on the line that leads there.
+    Passed,
+    /// At the end of the route.
+    End,
+}
+
+/// A manoeuvre up to a phase.
+#[derive(Debug, Clone)]
+pub(super) struct Partial {
+    pub phase: Phase,
+    /// Seconds at which the route is left.
+    pub leave: f64,
+    pub first: FirstAlteration,
+    pub outward: Outward,
+    /// Angle between the return line and the route, radians.
+    pub angle: f64,
+    /// Number of segments before the route is left.
+    before: usize,
+    /// From t = 0 on.
+    pub motion: Vec<Segment>,
+    /// Seconds at which own ship turns back or changes its speed back; known at the end.
+    returns: f64,
+    /// Seconds at which own ship is on the route again; known at the end.
+    pub joined: f64,
+    /// By which manoeuvres are compared, m²: a turn is preferred over less speed.
+    pub cost: f64,
+}
+
+impl Partial {
+    /// On the route at t = 0.
+    pub(super) fn start() -> Self {
+        Self {
+            phase: Phase::Route,
+            leave: 0.0,
+            first: FirstAlteration::Slow { speed: 0.0 },
+            outward: Outward::Direct,
+            angle: 0.0,
+            before: 0,
+            motion: Vec::new(),
+            returns: 0.0,
+            joined: 0.0,
+            cost: 0.0,
         }
-        Some(self)
+    }
+
+    /// Pose and time at its end.
+    pub(super) fn end(&self, own: Pose) -> (Pose, f64) {
+        let last = self.motion.last();
+        last.map_or((own, 0.0), |last| (last.end(), last.end_time()))
+    }
+
+    /// The part after the route is left.
+    pub(super) fn off_route(&self) -> &[Segment] {
+        &self.motion[self.before..]
     }
 }
 
@@ -101,100 +147,47 @@ impl Parameters {
 pub(super) struct Manoeuvre {
     /// The manoeuvre that it goes on with.
     pub begun: Option<UnderWay>,
-    pub parameters: Parameters,
-    pub motion: Vec<Segment>,
-    /// Seconds at which own ship turns back or changes its speed back.
-    returns: f64,
-    /// Seconds at which own ship is on the route again.
-    pub joined: f64,
-    /// By which manoeuvres are compared, m²: a turn is preferred over less speed.
-    pub cost: f64,
+    pub whole: Partial,
 }
 
 impl Manoeuvre {
     /// The manoeuvre as a plan names it.
     pub(super) fn planned(&self) -> PlannedManoeuvre {
-        let leave = self.parameters.leave;
+        let leave = self.whole.leave;
         let heading = |s: &Segment| s.pose_at(leave).heading;
         let first_heading = self.first_segment().map_or(0.0, heading);
         let begun = self.begun;
         PlannedManoeuvre {
             begins: begun.map_or(leave, |begun| begun.begins),
-            returns: self.returns,
-            joins: self.joined,
+            returns: self.whole.returns,
+            joins: self.whole.joined,
             first_heading: begun.map_or(first_heading, |begun| begun.first_heading),
             turn: begun.map_or(self.escape().turn, |begun| begun.turn),
         }
     }
 
     pub(super) fn escape(&self) -> Escape {
-        let (turn, speed) = match self.parameters.first {
+        let (turn, speed) = match self.whole.first {
             FirstAlteration::Turn { turn, .. } => (turn, None),
             FirstAlteration::Slow { speed } => (0.0, Some(speed)),
         };
         let then = || self.first_segment().map_or(0.0, |s| s.speed);
         Escape {
-            held_until: self.parameters.leave,
+            held_until: self.whole.leave,
             turn,
             speed: speed.unwrap_or_else(then),
         }
     }
 
     fn first_segment(&self) -> Option<&Segment> {
-        let leave = self.parameters.leave;
-        self.motion.iter().find(|s| s.end_time() > leave)
-    }
-}
-
-/// The motion until every target is passed.
-pub(super) struct OutwardLeg {
-    leave: f64,
-    pub first: FirstAlteration,
-    /// Number of segments before the route is left.
-    before: usize,
-    pub motion: Vec<Segment>,
-}
-
-impl OutwardLeg {
-    /// The part after the route is left.
-    pub(super) fn off_route(&self) -> &[Segment] {
-        &self.motion[self.before..]
-    }
-}
-
-/// A target that own ship must not pass nearer than a length.
-pub(super) struct Passing<'a> {
-    pub encountered: &'a Encountered,
-    /// The nominal hull, grown by own half-diagonal and the longer ship's length.
-    within_a_length: PolytopeObstacle,
-    /// The nominal hull, grown by own hull on its first course.
-    pub hulls: PolytopeObstacle,
-}
-
-impl<'a> Passing<'a> {
-    fn new(problem: &Problem, encountered: &'a Encountered) -> Self {
-        let (own, ship) = (&problem.own.hull, &encountered.ship);
-        let hull = encountered.hull.polygon(&ship.pose);
-        let around = own.half_diagonal() + own.length.max(encountered.hull.length);
-        let disc = outer_disc(around, ship.pose.heading);
-        let course = Pose::new(Vector::zeros(), encountered.own.pose.heading);
-        let moving =
-            |initial| PolytopeObstacle::new("", initial, ConvexPolygon::point(ship.velocity()));
-        Self {
-            encountered,
-            within_a_length: moving(hull.minkowski_sum(&disc)),
-            hulls: moving(hull.minkowski_sum(&own.polygon(&course).negated())),
-        }
-    }
-
-    pub(super) fn keeps_clear(&self) -> bool {
-        self.encountered.role.duties().keeps_clear
+        let leave = self.whole.leave;
+        self.whole.motion.iter().find(|s| s.end_time() > leave)
     }
 }
 
 /// The manoeuvres of one problem.
 pub(super) struct Manoeuvres<'s, 'a> {
-    context: &'s Context<'a>,
+    pub context: &'s Context<'a>,
     pub nominal_motion: &'s [Segment],
     /// Seconds from which on the nominal motion follows the route.
     pub from: f64,
@@ -202,13 +195,18 @@ pub(super) struct Manoeuvres<'s, 'a> {
     /// ship is on the route again.
     to_the_end: Vec<bool>,
     pub passing: Vec<Passing<'s>>,
-    pub clock: Clock,
     /// True for a target that is not passed nearer than a length, Rule 8(d).
     pub keeps_a_length: fn(&Passing) -> bool,
     /// True where turns are made at half speed or less.
     pub slows_to_turn: bool,
+    /// Largest first turn, radians.
+    pub most_turn: f64,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     pub unit: f64,
+    /// True where own ship may pass between bodies.
+    gaps: bool,
+    pub bound: Heuristic<'s>,
+    pub effort: Effort<'s>,
 }
 
 impl<'s, 'a> Manoeuvres<'s, 'a> {
@@ -216,7 +214,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         context: &'s Context<'a>,
         (nominal_motion, from): (&'s [Segment], f64),
         all: bool,
-        clock: Clock,
+        effort: Effort<'s>,
     ) -> Self {
         let problem = context.problem;
         let has_target = |obstacle: &Obstacle| {
@@ -232,10 +230,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             from,
             to_the_end: obstacles.map(|o| all || has_target(o)).collect(),
             passing: passing.collect(),
-            clock,
             keeps_a_length: |_| true,
             slows_to_turn: false,
+            most_turn: LARGEST_TURN,
             unit: (turn_s / NORMAL_TURN_S).max(1.0),
+            gaps: problem.obstacles.len() > 1 || !problem.land_obstacle.is_empty(),
+            bound: Heuristic::new(problem.desired, problem.time_weight, problem.own),
+            effort,
         }
     }
 
@@ -243,132 +244,310 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         self.context.problem
     }
 
-    /// A manoeuvre, if it is clear and costs less than `below`.
-    pub(super) fn manoeuvre(&self, parameters: &Parameters, below: f64) -> Option<Manoeuvre> {
-        let before = until(self.nominal_motion, parameters.leave);
-        let out = self.outward_leg(&before, parameters.leave, parameters.first)?;
-        let found = self.with_ending(&out, parameters.ending)?;
-        let cheaper = found.cost < below;
-        (cheaper && self.is_clear(out.off_route()) && self.is_allowed(&out, &found))
-            .then_some(found)
-    }
-
-    /// A motion on the route until `leave`, continued until every target is passed.
-    pub(super) fn outward_leg(
-        &self,
-        before: &[Segment],
-        leave: f64,
-        first: FirstAlteration,
-    ) -> Option<OutwardLeg> {
-        let (problem, route) = (self.problem(), self.context.route);
-        let (own, begun) = (problem.own, problem.under_way);
-        let mut motion = before.to_vec();
-        let along = self.along_at(leave);
-        match first {
-            FirstAlteration::Slow { speed } => {
-                let (on, _) = route.pose_at(along);
-                let passed = self.passed(on.position, on.ahead() * speed, leave)?;
-                let least = APPARENT_TIME + begun.map_or(0.0, |begun| begun.begins);
-                let slow = (passed - leave).max(least).max(LEAST_S);
-                let end = route.run(along, leave, slow * speed, speed, &mut motion);
-                // at the end of the route the reduction may be too short to be apparent
-                if end - along < speed * least - tolerance::LENGTH_M {
-                    return None;
-                }
-            }
-            FirstAlteration::Turn { turn, aside, speed } => {
-                let pose = before.last().map_or(own.pose, Segment::end);
-                let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
-                let (turn, back) = begun.map_or((turn, -turn), |begun| {
-                    let back = wrap(begun.first_heading - begun.heading);
-                    (wrap(begun.heading - pose.heading), back)
-                });
-                chain.arc(turn * own.turning_radius);
-                if aside.is_finite() {
-                    chain.line(speed * aside);
-                    chain.arc(back * own.turning_radius);
-                }
-                let velocity = chain.pose.ahead() * speed;
-                let passed = self.passed(chain.pose.position, velocity, chain.time)?;
-                // a straight part between two turns, also where the target is passed at once
-                chain.line(speed * (passed - chain.time).max(LEAST_S));
-                // a turn along a corner of the route is no alteration
+    /// A motion on the route until `leave`, and the first alteration there. `None` where the turn only
+    /// follows a corner of the route.
+    pub(super) fn out(&self, leave: f64, first: FirstAlteration) -> Option<Partial> {
+        let (own, begun) = (self.problem().own, self.problem().under_way);
+        let mut motion = until(self.nominal_motion, leave);
+        let before = motion.len();
+        if let FirstAlteration::Turn { turn, speed } = first {
+            let pose = motion.last().map_or(own.pose, Segment::end);
+            let mut chain = Chain::new(pose, leave, speed, own.turning_radius);
+            let turn = begun.map_or(turn, |begun| wrap(begun.heading - pose.heading));
+            chain.arc(turn * own.turning_radius);
+            // a turn along a corner of the route is no alteration
+            if begun.is_none() {
                 let arc = chain.segments.first()?;
-                if begun.is_none() && self.is_on_route(arc.end(), along + arc.length()) {
+                if self.is_on_route(arc.end(), self.along_at(leave) + arc.length()) {
                     return None;
                 }
-                motion.extend(chain.segments);
             }
+            motion.extend(chain.segments);
         }
-        let in_time = motion.last()?.end_time() <= problem.horizon;
-        let before = before.len();
-        in_time.then_some(OutwardLeg {
+        let cost = self.problem().error_of(&motion) * first.price();
+        Some(Partial {
+            phase: Phase::Out,
             leave,
             first,
             before,
             motion,
+            cost,
+            ..Partial::start()
         })
     }
 
-    /// An outward leg completed to the end of the route. Whether this is clear is not yet known.
-    pub(super) fn with_ending(&self, out: &OutwardLeg, ending: Ending) -> Option<Manoeuvre> {
-        let (problem, route) = (self.problem(), self.context.route);
-        let mut motion = out.motion.clone();
-        let returns = motion.last()?.end_time() + ending.after;
-        let joined;
-        match out.first {
-            FirstAlteration::Slow { speed } => {
-                let slow: f64 = out.off_route().iter().map(Segment::length).sum();
-                let along = self.along_at(out.leave);
-                motion.truncate(out.before);
-                let slow = slow + ending.after * speed;
-                let along = route.run(along, out.leave, slow, speed, &mut motion);
-                joined = motion.last()?.end_time();
-                motion.extend(route.follow(along, joined));
-            }
-            FirstAlteration::Turn { turn, .. } => {
-                let last = motion.last_mut()?;
-                last.duration += ending.after;
-                let (pose, time) = (last.end(), last.end_time());
-                let near = problem.desired.nearest(pose.position, time, 0.0);
-                let mut legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
-                let back = legs
-                    .find_map(|leg| motion_back(problem, route, (&pose, time), leg, ending.back))?;
-                // on to the same side it would be a circle
-                if back[0].is_arc() && back[0].turn_rate * turn > 0.0 {
-                    return None;
-                }
-                joined = self.joining_time(&back)?;
-                motion.extend(back);
-            }
+    /// A turn continued straight until every target is passed.
+    pub(super) fn direct(&self, out: &Partial) -> Option<Partial> {
+        let own = self.problem().own;
+        let (pose, time) = out.end(own.pose);
+        let speed = out.first.speed();
+        let passed = self.guard(pose, speed, time)?;
+        // a straight part between two turns, also where the target is passed at once
+        let line = Segment::straight(pose, time, (passed - time).max(LEAST_S), speed);
+        if !self.is_clear(&[line]) {
+            return None;
         }
-        // the route has segments of its own, as short as its corners are, and a turn under way is
-        // not whole
-        let off_route = motion[out.before..].iter();
-        let mut whole = off_route.skip(usize::from(problem.under_way.is_some()));
-        let tidy = whole.all(|s| s.start_time >= joined || s.duration >= LEAST_S);
-        (tidy && motion.last()?.end_time() <= problem.horizon).then(|| Manoeuvre {
-            begun: problem.under_way,
-            parameters: Parameters {
-                leave: out.leave,
-                first: out.first,
-                ending,
-            },
-            returns,
-            joined,
-            cost: self.cost(&out.first, &motion, joined),
-            motion,
+        self.passed_after(out, Outward::Direct, &[line])
+    }
+
+    /// A turn continued by the least straight part after which a parallel course is clear until every
+    /// target is passed and `spare` seconds longer. Where there is one with less to spare, it is not
+    /// nearer than that.
+    pub(super) fn parallel(
+        &self,
+        out: &Partial,
+        spare: f64,
+        close: f64,
+        wider: Option<&Partial>,
+    ) -> Option<Partial> {
+        let FirstAlteration::Turn { turn, speed } = out.first else {
+            return None;
+        };
+        let (own, begun) = (self.problem().own, self.problem().under_way);
+        let (pose, time) = out.end(own.pose);
+        let back = begun.map_or(-turn, |begun| wrap(begun.first_heading - begun.heading));
+        let held = HeldTurn {
+            pose,
+            time,
+            held_speed: speed,
+            turn: back,
+            speed,
+            radius: own.turning_radius,
+        };
+        // on a course that is sailed already there is no least time
+        let least = if begun.is_some() { 0.0 } else { LEAST_S };
+        let narrower = wider.and_then(|than| than.motion.get(out.motion.len()));
+        let narrower = narrower
+            .filter(|line| !line.is_arc())
+            .map(|line| line.duration);
+        let least = narrower.map_or(least, |hold| hold.max(least));
+        let most = self.clear_for(pose, speed, time);
+        let mut found = None;
+        let trial = |hold: f64| {
+            let line = Segment::straight(pose, time, hold, speed);
+            let mut chain = Chain::new(line.end(), time + hold, speed, own.turning_radius);
+            chain.arc(back * own.turning_radius);
+            let (pose, time) = (chain.pose, chain.time);
+            let Some(passed) = self.passed(pose.position, pose.ahead() * speed, time) else {
+                return false;
+            };
+            let on = |until: f64| Segment::straight(pose, time, (until - time).max(LEAST_S), speed);
+            if !self.is_clear(&[on(passed + spare)]) || !self.is_clear(&chain.segments) {
+                return false;
+            }
+            let Some(guard) = self.heads_freely(pose, speed, (time, passed)) else {
+                return false;
+            };
+            if guard > passed && !self.is_clear(&[on(guard + spare)]) {
+                return false;
+            }
+            let mut added = Vec::with_capacity(3);
+            added.extend((hold > 0.0).then_some(line));
+            added.extend(chain.segments);
+            added.push(on(guard));
+            found = Some(added);
+            true
+        };
+        let holds = (least, most);
+        least_clear(
+            holds,
+            self.touching(&held, least),
+            (self.unit, close, self.gaps),
+            trial,
+        )?;
+        self.passed_after(out, Outward::Parallel { spare }, &found?)
+    }
+
+    /// True where the last line stays clear for so many seconds longer.
+    pub(super) fn goes_on(&self, passed: &Partial, seconds: f64) -> bool {
+        let last = passed.motion.last();
+        last.is_some_and(|last| {
+            let longer = last.duration + seconds;
+            self.is_clear(&[Segment {
+                duration: longer,
+                ..*last
+            }])
         })
     }
 
-    fn cost(&self, first: &FirstAlteration, motion: &[Segment], joined: f64) -> f64 {
+    fn passed_after(&self, out: &Partial, outward: Outward, added: &[Segment]) -> Option<Partial> {
+        let mut partial = out.clone();
+        partial.phase = Phase::Passed;
+        partial.outward = outward;
+        partial.cost += self.problem().error_of(added) * out.first.price();
+        partial.motion.extend_from_slice(added);
+        let in_time = partial.motion.last()?.end_time() <= self.problem().horizon;
+        in_time.then_some(partial)
+    }
+
+    /// The least further hold after which a return at an angle is clear, to the end of the route.
+    pub(super) fn back(&self, passed: &Partial, angle: f64, close: f64) -> Option<Partial> {
+        let (problem, route) = (self.problem(), self.context.route);
+        let FirstAlteration::Turn { turn, speed } = passed.first else {
+            return None;
+        };
+        let (pose, time) = passed.end(problem.own.pose);
+        let near = problem.desired.nearest(pose.position, time, 0.0).leg;
+        let course = &problem.desired.legs()[near];
+        let off = cross(course.direction, pose.position - course.start);
+        let side = if off >= 0.0 {
+            Side::Port
+        } else {
+            Side::Starboard
+        };
+        let toward = heading_of(course.direction) - side.turn_sign() * angle;
+        let held = HeldTurn {
+            pose,
+            time,
+            held_speed: speed,
+            turn: wrap(toward - pose.heading),
+            speed: problem.own.max_speed(),
+            radius: problem.own.turning_radius,
+        };
+        let most = self.clear_for(pose, speed, time);
+        let restricts = self.passing.iter().any(Passing::forbids_a_heading);
+        let mut found = None;
+        let trial = |hold: f64| {
+            let line = Segment::straight(pose, time, hold, speed);
+            let (pose, time) = (line.end(), line.end_time());
+            let near = problem.desired.nearest(pose.position, time, 0.0).leg;
+            let mut legs = near..problem.desired.legs().len().min(near + 2);
+            let returned =
+                legs.find_map(|leg| motion_back(problem, route, (&pose, time), leg, angle));
+            let Some(back) = returned else {
+                return false;
+            };
+            // on to the same side it would be a circle
+            let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
+            let joined = self.joining_time(&back).filter(|_| !circles());
+            let Some(joined) = joined else {
+                return false;
+            };
+            let partial = self.ended(passed, (time, joined), hold, &back, angle);
+            // on the way back the hulls may be closest later than on the line, and the judge forbids to
+            // head to a side until then
+            let partial = partial.filter(|whole| !restricts || self.is_lawful(whole));
+            let Some(partial) = partial else {
+                return false;
+            };
+            found = Some(partial);
+            true
+        };
+        let holds = (0.0, most);
+        least_clear(
+            holds,
+            self.touching(&held, 0.0),
+            (self.unit, close, self.gaps),
+            trial,
+        )?;
+        found
+    }
+
+    /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
+    /// is tidy and clear.
+    fn ended(
+        &self,
+        passed: &Partial,
+        (returns, joined): (f64, f64),
+        hold: f64,
+        back: &[Segment],
+        angle: f64,
+    ) -> Option<Partial> {
+        let problem = self.problem();
+        // the route has segments of its own, as short as its corners are
+        let tidy = |s: &Segment| s.start_time >= joined || s.duration >= LEAST_S;
+        let in_time = back.last()?.end_time() <= problem.horizon;
+        let joins = back.partition_point(|s| s.start_time < joined);
+        let clear = in_time
+            && back.iter().all(tidy)
+            && self.is_clear(&back[..joins])
+            && self.is_clear_to_the_end(&back[joins..]);
+        if !clear {
+            return None;
+        }
+        let mut partial = passed.clone();
+        partial.motion.last_mut()?.duration += hold;
+        partial.motion.extend_from_slice(back);
+        partial.phase = Phase::End;
+        (partial.returns, partial.joined, partial.angle) = (returns, joined, angle);
+        partial.cost = self.cost(&partial);
+        Some(partial)
+    }
+
+    /// Less speed along the route for the least time after which the route is clear at the greatest
+    /// speed, to its end.
+    pub(super) fn slowed(&self, out: &Partial, close: f64) -> Option<Partial> {
+        let (problem, route) = (self.problem(), self.context.route);
+        let (leave, speed, begun) = (out.leave, out.first.speed(), problem.under_way);
+        let along = self.along_at(leave);
+        let (on, _) = route.pose_at(along);
+        let passed = self.passed(on.position, on.ahead() * speed, leave)?;
+        let least = APPARENT_TIME + begun.map_or(0.0, |begun| begun.begins);
+        let hold = (passed - leave).max(least).max(LEAST_S);
+        let held = HeldTurn {
+            pose: on,
+            time: leave,
+            held_speed: speed,
+            turn: 0.0,
+            speed: problem.own.max_speed(),
+            radius: problem.own.turning_radius,
+        };
+        let mut found = None;
+        let trial = |hold: f64| {
+            let mut motion = out.motion.clone();
+            let end = route.run(along, leave, hold * speed, speed, &mut motion);
+            // at the end of the route the reduction may be too short to be apparent
+            if end - along < speed * least - tolerance::LENGTH_M {
+                return false;
+            }
+            let Some(joined) = motion.last().map(Segment::end_time) else {
+                return false;
+            };
+            let slow = motion.len();
+            motion.extend(route.follow(end, joined));
+            let in_time = motion
+                .last()
+                .is_some_and(|s| s.end_time() <= problem.horizon);
+            let tidy = motion[out.before..slow]
+                .iter()
+                .all(|s| s.duration >= LEAST_S);
+            let clear = in_time
+                && (tidy || begun.is_some())
+                && self.is_clear(&motion[out.before..slow])
+                && self.is_clear_to_the_end(&motion[slow..]);
+            if !clear {
+                return false;
+            }
+            let mut partial = Partial {
+                phase: Phase::End,
+                motion,
+                returns: joined,
+                joined,
+                ..out.clone()
+            };
+            partial.cost = self.cost(&partial);
+            found = Some(partial);
+            true
+        };
+        let holds = (hold, problem.horizon - leave);
+        least_clear(
+            holds,
+            self.touching(&held, hold),
+            (self.unit, close, self.gaps),
+            trial,
+        )?;
+        found
+    }
+
+    fn cost(&self, whole: &Partial) -> f64 {
+        let (motion, joined) = (&whole.motion, whole.joined);
         let on_route = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
         let is_short = match &motion[on_route..] {
             [now, next, ..] => now.duration < LEAST_S && now.speed != next.speed,
             _ => false,
         };
         let short_price = if is_short { SHORT_PRICE } else { 1.0 };
-        self.problem().error_to_end(motion) * first.price() * short_price
+        self.problem().error_to_end(motion) * whole.first.price() * short_price
     }
 
     /// Time from which on a return follows the route: after an arc, a line and an arc at most.
@@ -379,6 +558,22 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             self.is_on_route(s.end(), self.context.route.length() - left)
         });
         joins.map(Segment::end_time)
+    }
+
+    /// First time at which every target is past and clear on a straight course, and after which own
+    /// ship may head to any side of its first course.
+    fn guard(&self, pose: Pose, speed: f64, time: f64) -> Option<f64> {
+        let passed = self.passed(pose.position, pose.ahead() * speed, time)?;
+        self.heads_freely(pose, speed, (time, passed))
+    }
+
+    /// First time from `passed` on after which own ship may head to any side of its first course.
+    fn heads_freely(&self, pose: Pose, speed: f64, (time, passed): (f64, f64)) -> Option<f64> {
+        let own = &self.problem().own.hull;
+        let after = self.passing.iter().filter(|p| p.forbids_a_heading());
+        let after = after.map(|p| after_nearest(own, p.encountered, pose, speed, time));
+        let after = after.fold(passed, f64::max);
+        (after <= self.problem().horizon).then_some(after)
     }
 
     /// First time at which every target is past and clear on a straight course: on its first
@@ -402,20 +597,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         while passed <= self.problem().horizon {
             let there = position + velocity * (passed - time);
-            let clear = |p: &Passing| p.within_a_length.slack(there, passed).value > 0.0;
+            let clear = |p: &Passing| p.is_a_length_off(there, passed);
             if self.kept_off().all(clear) {
                 return Some(passed);
             }
             passed += STEP_S;
         }
         None
-    }
-
-    /// True for segments that are clear of every set, of land, and of a length around every target.
-    pub(super) fn is_clear(&self, segments: &[Segment]) -> bool {
-        first_met(self.context.proxies, segments).is_none()
-            && !land::meets(self.problem().land_obstacle, segments)
-            && self.keeps_lengths(segments)
     }
 
     /// [`Self::is_clear`] of the obstacles that count to the end, and of land if all do.
@@ -428,25 +616,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             && self.keeps_lengths(segments)
     }
 
-    fn keeps_lengths(&self, segments: &[Segment]) -> bool {
-        let near =
-            |s, p: &Passing| contact::first_contact(&p.within_a_length, s, TOUCH_M).is_some();
-        !segments.iter().any(|s| self.kept_off().any(|p| near(s, p)))
-    }
-
-    /// True for a manoeuvre that is clear to its end where its outward leg is, and by the rules.
-    pub(super) fn is_allowed(&self, out: &OutwardLeg, manoeuvre: &Manoeuvre) -> bool {
-        let motion = &manoeuvre.motion;
-        let off_route = match out.first {
-            FirstAlteration::Turn { .. } => &motion[out.before..],
+    /// True for a whole manoeuvre that is by the rules.
+    pub(super) fn is_lawful(&self, whole: &Partial) -> bool {
+        let off_route = match whole.first {
+            FirstAlteration::Turn { .. } => whole.off_route(),
             FirstAlteration::Slow { .. } => &[],
         };
-        // the last segment may have become longer
-        let rest = &motion[out.motion.len() - 1..];
-        let joins = rest.partition_point(|s| s.start_time < manoeuvre.joined);
-        self.is_clear(&rest[..joins])
-            && self.is_clear_to_the_end(&rest[joins..])
-            && complies(self.problem(), self.to_judge(motion), off_route)
+        complies(self.problem(), self.to_judge(&whole.motion), off_route)
     }
 
     /// The part of a motion that the rules judge: all but an approach to the route and manoeuvres
@@ -461,7 +637,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// Distance along the route at a time at which the nominal motion follows it, metres.
-    fn along_at(&self, time: f64) -> f64 {
+    pub(super) fn along_at(&self, time: f64) -> f64 {
         let left = self.nominal_motion.iter().map(|s| {
             let duration = (s.end_time() - s.start_time.max(time)).max(0.0);
             duration * s.speed

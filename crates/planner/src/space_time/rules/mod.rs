@@ -1,8 +1,11 @@
 //! Manoeuvres by the collision regulations: what one is, when it begins, which one is taken,
 //! several one after another, and the further requirements on a motion.
 
+pub(crate) mod automaton;
+mod bodies;
 mod compliance;
 mod departure;
 pub(crate) mod groups;
+mod hug;
 mod manoeuvre;
 mod search;

@@ -1,63 +1,116 @@
-//! Which manoeuvre: the cheapest one of a coarse grid, improved by a pattern search.
+//! Which manoeuvre: the cheapest lawful path of the graph of manoeuvres, then a pattern search over the
+//! three numbers that no contact decides.
 //!
 //! ```text
-//! departures ─► first alterations ─► clear outward legs ─► endings ─► cheapest ─► pattern search
+//! departures and courses ─► A* ─► departure, turn and angle of the return, each hold by hugging
 //! ```
 //!
-//! A ship that keeps clear tries six departures, the latest first; one that stands on holds first.
-//! Each is tried with a length off all targets, then off fewer, and with turns at half speed or
-//! less where nothing else is clear. A manoeuvre under way keeps the parameters that are done.
+//! A ship that keeps clear departs in ample time; one that stands on holds until its escape is due.
+//! Each is tried with a length off all targets, then off fewer, and with turns at half speed or less
+//! where nothing else is clear.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
 use crate::UnderWay;
-use crate::space_time::manoeuvre::motion::until;
+use crate::search::{Search, Stop};
+use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
+use crate::space_time::manoeuvre::motion::{pose_at, until};
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
-use crate::space_time::rules::compliance::keeps_off_bows;
+use crate::space_time::rules::automaton::{Graph, outward};
+use crate::space_time::rules::bodies::Passing;
+use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
+use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
-    Ending, FirstAlteration, Manoeuvre, Manoeuvres, OutwardLeg, Passing,
+    FirstAlteration, LARGEST_TURN, Manoeuvre, Manoeuvres, Outward, Partial,
 };
-use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN, ON_COURSE};
+use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN};
 use searoom_geometry::frame::{Side, wrap};
 
-/// Turns, as multiples of the least readily apparent turn.
-const TURNS: [f64; 8] = [1.0, 1.35, 1.7, 2.2, 2.7, 3.5, 4.5, 6.0];
+/// Turns, as multiples of the least readily apparent turn of 30°.
+const TURNS: [f64; 6] = [1.0, 1.5, 2.2, 3.0, 4.0, 5.0];
 
-/// Seconds on the new course before a parallel course is steered; infinite for no parallel course.
-const ASIDE_S: [f64; 6] = [f64::INFINITY, 15.0, 35.0, 60.0, 100.0, 180.0];
-
-/// Seconds from passing to the return.
-const AFTER_S: [f64; 5] = [0.0, 15.0, 40.0, 90.0, 180.0];
+/// Turns from a given departure, as multiples of that turn: every 15°.
+const ALL_TURNS: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5];
 
 /// Angles between the return line and the route, radians.
-const BACK: [f64; 3] = [0.3, 0.6, 1.0];
+const ANGLES: [f64; 3] = [0.35, 0.65, 1.05];
 
-/// Rounds of the pattern search.
+/// Radians by which a turn to a tangent is clear of it.
+const CLEAR_OF_TANGENT: f64 = 1e-6;
+
+/// Tangents nearer to each other than this are one, radians.
+const SAME_TANGENT: f64 = 0.03;
+
+/// Departures whose line hugs a body, for each course.
+const HUGGING_DEPARTURES: usize = 3;
+
+/// Most goals whose rules the judges are asked for.
+const MOST_GOALS: usize = 6;
+
+/// Most expanded nodes of one search.
+const MOST_EXPANDED: usize = 4_000;
+
+/// Rounds of the pattern search, and its first steps: seconds of the departure in units of the ship,
+/// radians of the turn and of the angle of the return, and seconds by which a parallel course is wider.
 const ROUNDS: usize = 7;
+const STEPS: [f64; 4] = [10.0, 0.15, 0.2, 30.0];
 
-/// Sampled instants of the escape of a stand-on ship, bisection steps after that, and the stride
-/// through the endings.
+/// Angles of the return that the pattern search may try, radians.
+const MOST_ANGLES: RangeInclusive<f64> = 0.1..=1.4;
+
+/// Largest turn of an escape, radians: a turn about at the last moment is none.
+const LARGEST_ESCAPE: f64 = FRAC_PI_2 + 1e-9;
+
+/// Sampled instants of the escape of a stand-on ship, and bisection steps after that.
 const SAMPLES: usize = 40;
 const HALVINGS: usize = 5;
-const ENDING_STRIDE: usize = 2;
 
 /// Seconds by which a stand-on ship acts before the latest certified escape.
 const SPARE_S: f64 = 40.0;
 
-/// Ratio of the cost of a late escape to that of an earlier manoeuvre above which a stand-on ship
-/// acts earlier, where it may.
+/// Ratio of the cost of an escape to that of a manoeuvre from when own ship may act: one that is dearer
+/// is no escape.
 const LATE_PRICE: f64 = 4.0;
 
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
 
+/// The numbers of a manoeuvre that no contact decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Numbers {
+    leave: f64,
+    first: FirstAlteration,
+    outward: Outward,
+    angle: f64,
+}
+
+impl Numbers {
+    fn of(partial: &Partial) -> Self {
+        Self {
+            leave: partial.leave,
+            first: partial.first,
+            outward: partial.outward,
+            angle: partial.angle,
+        }
+    }
+}
+
 const FROM_NONE: fn(&Passing) -> bool = |_| false;
 
 impl Manoeuvres<'_, '_> {
     /// The cheapest end of the manoeuvre that is under way.
-    pub(super) fn going_on(&mut self) -> Option<Manoeuvre> {
-        self.relaxed(|search| search.best_at(0.0, f64::INFINITY))
+    pub(super) fn going_on(&mut self, begun: &UnderWay) -> Option<Manoeuvre> {
+        let first = match begun.turn == 0.0 && !begun.is_returning {
+            true => FirstAlteration::Slow { speed: begun.speed },
+            false => FirstAlteration::Turn {
+                // a return may turn to either side
+                turn: if begun.is_returning { 0.0 } else { begun.turn },
+                speed: begun.speed,
+            },
+        };
+        self.relaxed(|search| search.best_of(vec![(0.0, first)], 0.0..=0.0, f64::INFINITY))
     }
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
@@ -65,33 +118,38 @@ impl Manoeuvres<'_, '_> {
     pub(super) fn giving_way(&mut self, contact: f64) -> Option<Manoeuvre> {
         let from = self.from;
         let latest = self.ample_time().min(contact).max(from);
-        self.relaxed(|search| {
-            let mut best: Option<Manoeuvre> = None;
-            for time in search.departures(from, latest) {
-                let below = best.as_ref().map_or(f64::INFINITY, |best| best.cost);
-                let found = search.cheapest(time, below);
-                let improved = found.map(|found| search.improved(found, from..=latest));
-                best = improved.or(best);
-            }
-            best
-        })
+        self.relaxed(|search| search.best(from..=latest, f64::INFINITY))
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
-    /// there is an escape that is not far dearer than to act earlier.
+    /// there is an escape.
     pub(super) fn standing_on(&mut self, contact: f64) -> Option<Manoeuvre> {
         if self.hurries() {
             return None;
         }
         let may = self.may_act() + SAMPLE_S;
-        let mut latest = self.latest_escape(contact);
-        if latest.is_none_or(|latest| latest < may) {
-            // to hold on for as long as it must is worth more than a length
-            self.keeps_a_length = FROM_NONE;
-            latest = self.latest_escape(contact);
+        // to hold on for as long as it must is worth more than a length, and than a moderate turn
+        let lengths = self.keeps_a_length;
+        let ways = [
+            (LARGEST_ESCAPE, lengths),
+            (LARGEST_ESCAPE, FROM_NONE),
+            (LARGEST_TURN, lengths),
+            (LARGEST_TURN, FROM_NONE),
+        ];
+        let mut latest: Option<f64> = None;
+        for (most_turn, keeps_a_length) in ways {
+            self.keeps_a_length = keeps_a_length;
+            let found = self.latest_escape(contact, may, most_turn);
+            if found > latest {
+                latest = found;
+            }
+            if latest.is_some_and(|latest| latest >= may) || self.effort.clock.is_up() {
+                break;
+            }
         }
         let mut latest = latest?;
-        if latest < may && may < contact && self.cheapest(may, f64::INFINITY).is_some() {
+        self.most_turn = LARGEST_TURN;
+        if latest < may && may < contact && self.best(may..=may, f64::INFINITY).is_some() {
             latest = may;
         }
         let mut wanted = latest - SPARE_S;
@@ -101,30 +159,11 @@ impl Manoeuvres<'_, '_> {
         }
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
-        let late = self.relaxed(|search| {
-            let found = search.best_at(leave, f64::INFINITY);
-            found.or_else(|| search.best_at(search.tidy_time(latest), f64::INFINITY))
-        })?;
-        self.earlier_action(&late, may).or(Some(late))
-    }
-
-    /// A manoeuvre that costs far less than a late one, begun before it but not before own ship may
-    /// act: the latest of five. It keeps a length off the same targets as the late one.
-    fn earlier_action(&mut self, late: &Manoeuvre, may: f64) -> Option<Manoeuvre> {
-        let leave = late.parameters.leave;
-        if !(leave > may) {
-            return None;
-        }
-        let times = self.departures(may.max(self.from), leave).into_iter();
-        // `from` may be before it may act
-        let mut times = times.filter(|time| *time < leave && *time >= may - SAMPLE_S);
-        // what is sailed before both is no part of the price
-        let before = until(self.nominal_motion, self.from);
-        let before = self.problem().error_of(&before);
-        let below = before + (late.cost - before) / LATE_PRICE;
-        // for the late one alone nothing else was clear
-        self.slows_to_turn = false;
-        times.find_map(|time| self.best_at(time, below))
+        self.relaxed(|search| {
+            let found = search.best(leave..=leave, f64::INFINITY);
+            let latest = search.tidy_time(latest);
+            found.or_else(|| search.best(latest..=latest, f64::INFINITY))
+        })
     }
 
     /// The first manoeuvre that is found: with a length off all targets, off those that own ship
@@ -145,7 +184,7 @@ impl Manoeuvres<'_, '_> {
             for slows_to_turn in speeds {
                 self.slows_to_turn = *slows_to_turn;
                 let found = find(self);
-                if found.is_some() || self.clock.is_up() {
+                if found.is_some() || self.effort.clock.is_up() {
                     return found;
                 }
             }
@@ -153,23 +192,27 @@ impl Manoeuvres<'_, '_> {
         None
     }
 
-    /// The latest time from which an escape is found, by sampling and bisection.
-    fn latest_escape(&self, contact: f64) -> Option<f64> {
+    /// The latest time from which there is an escape: a lawful manoeuvre with a turn of at most
+    /// `most_turn` that costs at most [`LATE_PRICE`] times one from when own ship `may` act. By
+    /// sampling and bisection.
+    fn latest_escape(&mut self, contact: f64, may: f64, most_turn: f64) -> Option<f64> {
+        self.most_turn = LARGEST_TURN;
+        let may = self.tidy_time(may.clamp(self.from, contact));
+        // what is sailed before both is no part of the price
+        let before = self.problem().error_of(&until(self.nominal_motion, may));
+        let early = self.best(may..=may, f64::INFINITY);
+        let below = early.map_or(f64::INFINITY, |early| {
+            before + LATE_PRICE * (early.whole.cost - before)
+        });
+        self.most_turn = most_turn;
         let step = (contact - self.from) / SAMPLES as f64;
-        let exists = |time: f64| {
-            let time = self.tidy_time(time);
-            self.clear_outward_legs(time, f64::INFINITY).any(|out| {
-                let few = self.endings(&out).into_iter().step_by(ENDING_STRIDE);
-                let mut escapes = few.filter_map(|ending| self.with_ending(&out, ending));
-                escapes.any(|escape| self.is_allowed(&out, &escape))
-            })
-        };
+        let exists = |time: f64| self.has_escape(self.tidy_time(time), below);
         let mut times = (0..=SAMPLES).rev().map(|k| self.from + step * k as f64);
-        let mut latest = times.find(|time| self.clock.is_up() || exists(*time))?;
+        let mut latest = times.find(|time| self.effort.clock.is_up() || exists(*time))?;
         let mut too_late = latest + step;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (latest + too_late);
-            if self.clock.is_up() {
+            if self.effort.clock.is_up() {
                 break;
             }
             if exists(middle) {
@@ -178,76 +221,176 @@ impl Manoeuvres<'_, '_> {
                 too_late = middle;
             }
         }
-        (!self.clock.is_up()).then_some(latest)
+        (!self.effort.clock.is_up()).then_some(latest)
     }
 
-    /// The cheapest clear manoeuvre of the grid from a departure, if it costs less than `below`.
-    fn cheapest(&self, leave: f64, below: f64) -> Option<Manoeuvre> {
-        let goes_on = || !self.clock.is_up();
-        let outs = self.clear_outward_legs(leave, below);
-        let outs: Vec<OutwardLeg> = outs.take_while(|_| goes_on()).collect();
-        let all = outs.iter().flat_map(|out| {
-            let endings = self.endings(out).into_iter();
-            endings.filter_map(move |ending| Some((out, self.with_ending(out, ending)?)))
-        });
-        let mut found: Vec<_> = all.filter(|(_, found)| found.cost < below).collect();
-        found.sort_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
-        let mut found = found.into_iter().take_while(|_| goes_on());
-        found.find_map(|(out, found)| self.is_allowed(out, &found).then_some(found))
+    /// True where some lawful manoeuvre from a departure costs less than `below`.
+    fn has_escape(&self, leave: f64, below: f64) -> bool {
+        let is_escape = |end: Partial| end.cost < below && self.is_lawful(&end);
+        let firsts = self.first_alterations(leave..=leave, false);
+        firsts.into_iter().any(|(leave, first)| {
+            let out = self.out(leave, first);
+            let Some(out) = out.filter(|o| o.cost < below && self.is_clear(o.off_route())) else {
+                return false;
+            };
+            match first {
+                FirstAlteration::Slow { .. } => self.slowed(&out, COARSE_S).is_some_and(is_escape),
+                FirstAlteration::Turn { .. } => outward(self, &out).iter().any(|passed| {
+                    let mut angles = ANGLES.iter();
+                    passed.cost < below
+                        && angles
+                            .any(|angle| self.back(passed, *angle, COARSE_S).is_some_and(is_escape))
+                }),
+            }
+        })
     }
 
-    /// [`Self::cheapest`], improved without another departure.
-    fn best_at(&self, leave: f64, below: f64) -> Option<Manoeuvre> {
-        let found = self.cheapest(leave, below)?;
-        Some(self.improved(found, leave..=leave))
+    /// The cheapest manoeuvre with a departure in a window that costs less than `below`.
+    fn best(&self, window: RangeInclusive<f64>, below: f64) -> Option<Manoeuvre> {
+        let departures = self.first_alterations(window.clone(), true);
+        self.best_of(departures, window, below)
     }
 
-    /// Pattern search: each parameter in turn, by steps that shrink.
-    fn improved(&self, mut best: Manoeuvre, leave: RangeInclusive<f64>) -> Manoeuvre {
-        let mut step = 1.0;
+    /// The cheapest manoeuvre that begins with one of some first alterations, improved within a window
+    /// of departures.
+    fn best_of(
+        &self,
+        departures: Vec<(f64, FirstAlteration)>,
+        window: RangeInclusive<f64>,
+        below: f64,
+    ) -> Option<Manoeuvre> {
+        let problem = self.problem();
+        let mut angles = ANGLES.to_vec();
+        // a return goes on as it is
+        let begun = problem.under_way.filter(|begun| begun.is_returning);
+        angles.extend(begun.map(|begun| wrap(begun.heading - begun.first_heading).abs()));
+        let mut graph = Graph {
+            manoeuvres: self,
+            departures,
+            angles: &angles,
+            below,
+        };
+        let mut search = Search::new(Partial::start());
+        let begun = problem.under_way;
+        let mut best: Option<(usize, Partial)> = None;
+        for _ in 0..MOST_GOALS {
+            let Stop::Goal(goal) = search.next_goal(&mut graph, MOST_EXPANDED) else {
+                break;
+            };
+            let found = &search.nodes()[goal].state;
+            let ends = [self.improved(found.clone(), window.clone()), found.clone()];
+            for whole in ends {
+                let broken = self.broken_before_risk(&whole);
+                if best.as_ref().is_none_or(|(least, _)| broken < *least) {
+                    best = Some((broken, whole));
+                }
+                if broken == 0 {
+                    break;
+                }
+            }
+            if best.as_ref().is_some_and(|(least, _)| *least == 0) {
+                break;
+            }
+        }
+        self.effort.explored.borrow_mut().add(self, search);
+        best.map(|(_, whole)| Manoeuvre { begun, whole })
+    }
+
+    /// Number of rules that the judges find broken by a manoeuvre that departs before a risk has begun:
+    /// the role toward that target is then another one than on the route.
+    fn broken_before_risk(&self, whole: &Partial) -> usize {
+        let mut all = self.passing.iter().map(|p| p.encountered);
+        match all.any(|e| whole.leave < e.risk_since) {
+            true => broken_rules(self.problem(), &whole.motion),
+            false => 0,
+        }
+    }
+
+    /// Pattern search over the departure, the turn and the angle of the return: each in turn, by steps
+    /// that shrink. Every hold hugs, closer than in the graph.
+    fn improved(&self, mut best: Partial, window: RangeInclusive<f64>) -> Partial {
+        best = self
+            .built(&Numbers::of(&best), f64::INFINITY)
+            .unwrap_or(best);
+        let mut scale = 1.0;
         for _ in 0..ROUNDS {
             let mut gained = false;
-            for parameter in 0..5 {
-                let better = [step, -step].into_iter().find_map(|step| {
-                    if self.clock.is_up() {
+            for (number, step) in STEPS.into_iter().enumerate() {
+                let better = [scale, -scale].into_iter().find_map(|scale| {
+                    if self.effort.clock.is_up() {
                         return None;
                     }
-                    let tried = best.parameters.stepped(parameter, step, self.unit);
-                    let mut tried = tried.filter(|tried| *tried != best.parameters)?;
-                    tried.leave = self.tidy_time(tried.leave.clamp(*leave.start(), *leave.end()));
-                    self.manoeuvre(&tried, best.cost)
+                    let numbers = self.stepped(&best, number, scale * step, &window)?;
+                    self.built(&numbers, best.cost)
                 });
                 gained |= better.is_some();
                 best = better.unwrap_or(best);
             }
             if !gained {
-                step *= 0.5;
+                scale *= 0.5;
             }
         }
         best
     }
 
-    /// The motions from a departure until every target is passed, those that are clear so far, keep
-    /// off the targets' bows, and cost less than `below`.
-    fn clear_outward_legs(&self, leave: f64, below: f64) -> impl Iterator<Item = OutwardLeg> + '_ {
-        let before = until(self.nominal_motion, leave);
-        self.alterations().into_iter().filter_map(move |first| {
-            let out = self.outward_leg(&before, leave, first)?;
-            // what follows can only add to the cost; without a limit this needs no sum
-            let cheap =
-                below.is_infinite() || self.problem().error_of(&out.motion) * first.price() < below;
-            (cheap
-                && self.is_clear(out.off_route())
-                && keeps_off_bows(self.problem(), self.to_judge(&out.motion)))
-            .then_some(out)
-        })
+    /// The numbers of a manoeuvre with one of them changed; `None` where it has no such number or this
+    /// changes nothing.
+    fn stepped(
+        &self,
+        best: &Partial,
+        number: usize,
+        step: f64,
+        window: &RangeInclusive<f64>,
+    ) -> Option<Numbers> {
+        let old = Numbers::of(best);
+        let mut new = old;
+        match (number, &mut new.first, &mut new.outward) {
+            (0, ..) => {
+                let moved = old.leave + step * self.unit;
+                new.leave = self.tidy_time(moved.clamp(*window.start(), *window.end()));
+            }
+            (1, FirstAlteration::Turn { turn, .. }, _) if self.problem().under_way.is_none() => {
+                *turn = (turn.abs() + step).clamp(APPARENT_TURN, self.most_turn) * turn.signum();
+            }
+            (2, FirstAlteration::Turn { .. }, _) => {
+                new.angle = (old.angle + step).clamp(*MOST_ANGLES.start(), *MOST_ANGLES.end());
+            }
+            (3, FirstAlteration::Turn { .. }, Outward::Parallel { spare }) => {
+                *spare = (*spare + step * self.unit).max(0.0);
+            }
+            _ => return None,
+        }
+        (new != old).then_some(new)
     }
 
-    fn alterations(&self) -> Vec<FirstAlteration> {
-        let problem = self.problem();
-        if let Some(begun) = problem.under_way {
-            return self.alterations_under_way(&begun);
+    /// The lawful manoeuvre of some numbers, where it costs less than `below`. Every hold is the least.
+    fn built(&self, numbers: &Numbers, below: f64) -> Option<Partial> {
+        let cheaper = |partial: &Partial| partial.cost + self.to_go(partial) < below;
+        let out = self.out(numbers.leave, numbers.first).filter(cheaper)?;
+        if !self.is_clear(out.off_route()) {
+            return None;
         }
+        let end = match numbers.first {
+            FirstAlteration::Slow { .. } => self.slowed(&out, FINE_S),
+            FirstAlteration::Turn { .. } => {
+                let passed = match numbers.outward {
+                    Outward::Direct => self.direct(&out),
+                    Outward::Parallel { spare } => self.parallel(&out, spare, FINE_S, None),
+                };
+                self.back(&passed.filter(cheaper)?, numbers.angle, FINE_S)
+            }
+        };
+        end.filter(|end| cheaper(end) && self.is_lawful(end))
+    }
+
+    /// First alterations with a departure in a window, the latest first, with turns to `tangents` or
+    /// without.
+    fn first_alterations(
+        &self,
+        window: RangeInclusive<f64>,
+        tangents: bool,
+    ) -> Vec<(f64, FirstAlteration)> {
+        let problem = self.problem();
         let (ordered, duty) = (ManoeuvreSpeeds::of(problem), problem.duty());
         // half of the desired speed, also where the ship cannot keep just that
         let legs = problem.desired.legs().iter().map(|leg| leg.speed);
@@ -261,53 +404,99 @@ impl Manoeuvres<'_, '_> {
             true => slow.clone().collect(),
             false => std::iter::once(ordered.normal).chain(faster).collect(),
         };
-        let mut all: Vec<FirstAlteration> = Vec::new();
-        for speed in speeds {
-            for side in duty.sides() {
-                if duty.stands_on && *side == Side::Port {
-                    continue;
+        let stands_on = duty.stands_on;
+        let sides = duty.sides().iter().copied();
+        let sides: Vec<Side> = sides
+            .filter(|side| !(stands_on && *side == Side::Port))
+            .collect();
+        let times = self.departures(*window.start(), *window.end());
+        let mut all = Vec::new();
+        for &speed in &speeds {
+            for side in &sides {
+                let turns: &[f64] = match tangents && times.len() == 1 {
+                    true => &ALL_TURNS,
+                    false => &TURNS,
+                };
+                let turns = turns.iter().map(|turn| turn * APPARENT_TURN);
+                let turns = turns.filter(|turn| *turn <= self.most_turn);
+                let turns: Vec<f64> = turns.map(|turn| turn * side.turn_sign()).collect();
+                for &time in &times {
+                    let tangents = match tangents {
+                        true => self.tangents(time, speed, *side),
+                        false => Vec::new(),
+                    };
+                    let turns = turns.iter().copied().chain(tangents);
+                    all.extend(turns.map(|turn| (time, FirstAlteration::Turn { turn, speed })));
                 }
-                for turn in TURNS.map(|turn| turn * APPARENT_TURN * side.turn_sign()) {
-                    let asides = ASIDE_S.map(|aside| aside * self.unit);
-                    all.extend(asides.map(|aside| FirstAlteration::Turn { turn, aside, speed }));
+                if times.len() > 1 {
+                    for &turn in &turns {
+                        let hugging = self.hugging_departures(&window, turn, speed);
+                        let first = FirstAlteration::Turn { turn, speed };
+                        all.extend(hugging.into_iter().map(|time| (time, first)));
+                    }
                 }
             }
         }
         if !self.slows_to_turn {
-            all.extend(slow.map(|speed| FirstAlteration::Slow { speed }));
+            let slow = slow.map(|speed| FirstAlteration::Slow { speed });
+            all.extend(slow.flat_map(|first| times.iter().map(move |time| (*time, first))));
         }
         all
     }
 
-    /// Choices that a manoeuvre under way still has. A turn is completed and kept. The parallel
-    /// course may follow once.
-    fn alterations_under_way(&self, begun: &UnderWay) -> Vec<FirstAlteration> {
-        let (mut turn, speed) = (begun.turn, begun.speed);
-        let is_parallel = wrap(begun.heading - begun.first_heading).abs() <= ON_COURSE;
-        let mut asides = vec![f64::INFINITY];
-        if begun.is_returning {
-            turn = 0.0;
-        } else if turn == 0.0 {
-            return vec![FirstAlteration::Slow { speed }];
-        } else if !is_parallel {
-            asides = ASIDE_S.map(|aside| aside * self.unit).to_vec();
-            asides.extend([0.0, begun.aside]);
+    /// The turns to a side from a departure, to lines that touch a set on its far side, radians.
+    fn tangents(&self, time: f64, speed: f64, side: Side) -> Vec<f64> {
+        let problem = self.problem();
+        let pose = match pose_at(self.nominal_motion, time) {
+            Some(pose) if time > 0.0 => pose,
+            _ => problem.own.pose,
+        };
+        let turning = Interceptor::new(&pose, time, speed, problem.own.turning_radius, side);
+        let limits = Limits {
+            turn: self.most_turn,
+            time: problem.horizon,
+        };
+        let mut tangents: Vec<f64> = Vec::new();
+        for proxy in self.context.proxies {
+            let met = proxy.body.moving_vertices().iter().filter_map(|vertex| {
+                let origin = vertex.origin - vertex.velocity * proxy.start();
+                turning.intercept(origin, vertex.velocity, limits)
+            });
+            let Some(turn) = met.map(|met| met.turn).reduce(f64::max) else {
+                continue;
+            };
+            let same = |other: &f64| (other.abs() - turn).abs() < SAME_TANGENT;
+            if turn > APPARENT_TURN && turn < self.most_turn && !tangents.iter().any(same) {
+                tangents.push((turn + CLEAR_OF_TANGENT) * side.turn_sign());
+            }
         }
-        let turn_for = |aside| FirstAlteration::Turn { turn, aside, speed };
-        asides.into_iter().map(turn_for).collect()
+        tangents
     }
 
-    fn endings(&self, out: &OutwardLeg) -> Vec<Ending> {
-        let mut angles = match out.first {
-            FirstAlteration::Turn { .. } => BACK.to_vec(),
-            FirstAlteration::Slow { .. } => BACK[..1].to_vec(),
-        };
-        // a return goes on as it is
-        let begun = self.problem().under_way.filter(|begun| begun.is_returning);
-        angles.extend(begun.map(|begun| wrap(begun.heading - begun.first_heading).abs()));
-        let after = AFTER_S.map(|after| after * self.unit).into_iter();
-        let endings =
-            after.flat_map(|after| angles.iter().map(move |&back| Ending { after, back }));
-        endings.collect()
+    /// The latest departures in a window after which the line of a turn touches a body, while the
+    /// nominal motion is straight.
+    fn hugging_departures(&self, window: &RangeInclusive<f64>, turn: f64, speed: f64) -> Vec<f64> {
+        let (from, to) = (*window.start(), *window.end());
+        let lines = self.nominal_motion.iter().filter(|s| !s.is_arc());
+        let lines = lines.filter(|s| s.end_time() > from && s.start_time < to);
+        let mut times: Vec<f64> = Vec::new();
+        for line in lines {
+            let line = line.between(from, to);
+            let held = HeldTurn {
+                pose: line.start,
+                time: line.start_time,
+                held_speed: line.speed,
+                turn,
+                speed,
+                radius: self.problem().own.turning_radius,
+            };
+            let holds = self.touching(&held, 0.0).into_iter();
+            let within = holds.filter(|hold| *hold < line.duration);
+            times.extend(within.map(|hold| self.tidy_time(line.start_time + hold)));
+        }
+        times.sort_by(|a, b| b.total_cmp(a));
+        times.dedup();
+        times.truncate(HUGGING_DEPARTURES);
+        times
     }
 }

@@ -1,0 +1,266 @@
+//! The graph of manoeuvres by the rules: a node is a phase with the motion to it, and an edge a part of
+//! a manoeuvre that hugs what it passes.
+//!
+//! ```text
+//! Route ─► Out ─┬► direct ──────────┬► Passed ─► back at an angle ─► End
+//!               └► parallel, wider ─┘
+//! Route ─► Out at half speed or less ──► along the route again ──► End
+//! ```
+//!
+//! The cost is J by [`FirstAlteration::price`]. The judge decides on an end when it leaves the queue, so
+//! the first goal is the cheapest lawful manoeuvre of the graph.
+
+use std::cell::RefCell;
+
+use petgraph::graph::NodeIndex;
+
+use crate::clock::Clock;
+use crate::search::{Fate, Search, Space};
+use crate::space_time::bound::squared_ramp;
+use crate::space_time::manoeuvre::motion::part;
+use crate::space_time::proxy::first_met;
+use crate::space_time::rules::hug::COARSE_S;
+use crate::space_time::rules::manoeuvre::{FirstAlteration, Manoeuvres, Partial, Phase};
+use crate::{
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, SearchKind, SearchStats,
+};
+use searoom_geometry::frame::{Vector, cross};
+
+/// Seconds for which a parallel course stays clear after the targets are passed: more is wider, with
+/// more room to return.
+const SPARE_S: [f64; 4] = [0.0, 6.0, 30.0, 150.0];
+
+/// The graph of manoeuvres with these departures and first alterations.
+pub(super) struct Graph<'g, 's, 'a> {
+    pub manoeuvres: &'g Manoeuvres<'s, 'a>,
+    /// Successors of the start.
+    pub departures: Vec<(f64, FirstAlteration)>,
+    /// Angles of the returns, radians.
+    pub angles: &'g [f64],
+    /// Nodes that cost as much are not wanted, m².
+    pub below: f64,
+}
+
+impl Space for Graph<'_, '_, '_> {
+    type State = Partial;
+
+    fn successors(&mut self, state: &Partial, out: &mut Vec<(Partial, f64)>) {
+        let from = state.cost;
+        let mut add = |next: Partial| {
+            let step = next.cost - from;
+            // the cost of a part and that of the whole differ by rounding
+            out.push((next, step.max(0.0)));
+        };
+        match state.phase {
+            Phase::Route => {
+                let all = self.departures.iter();
+                all.filter_map(|&(leave, first)| self.manoeuvres.out(leave, first))
+                    .for_each(add);
+            }
+            Phase::Out => match state.first {
+                FirstAlteration::Slow { .. } => {
+                    self.manoeuvres
+                        .slowed(state, COARSE_S)
+                        .into_iter()
+                        .for_each(add);
+                }
+                FirstAlteration::Turn { .. } => {
+                    outward(self.manoeuvres, state).into_iter().for_each(add);
+                }
+            },
+            Phase::Passed => {
+                let back = |angle: &f64| self.manoeuvres.back(state, *angle, COARSE_S);
+                self.angles.iter().filter_map(back).for_each(&mut add);
+            }
+            Phase::End => {}
+        }
+    }
+
+    fn bound(&mut self, state: &Partial) -> f64 {
+        let to_go = match self.manoeuvres.problem().search {
+            SearchKind::Dijkstra => 0.0,
+            _ => self.manoeuvres.to_go(state),
+        };
+        match state.cost + to_go < self.below {
+            true => to_go,
+            false => f64::INFINITY,
+        }
+    }
+
+    fn is_goal(&self, state: &Partial) -> bool {
+        state.phase == Phase::End
+    }
+
+    fn admits(&mut self, state: &Partial) -> bool {
+        match state.phase {
+            Phase::Route => true,
+            Phase::Out => self.manoeuvres.is_clear(state.off_route()),
+            // each was tested when it was made
+            Phase::Passed => true,
+            Phase::End => self.manoeuvres.is_lawful(state),
+        }
+    }
+
+    fn is_out_of_time(&self) -> bool {
+        self.manoeuvres.effort.clock.is_up()
+    }
+}
+
+/// The ways to go on after a turn until the targets are passed.
+pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> Vec<Partial> {
+    let problem = manoeuvres.problem();
+    let mut ways: Vec<Partial> = manoeuvres.direct(out).into_iter().collect();
+    let may_turn_back = problem.under_way.is_none_or(|begun| begun.may_turn_back());
+    if !may_turn_back {
+        return ways;
+    }
+    let mut last: Option<Partial> = None;
+    for spare in SPARE_S.map(|spare| spare * manoeuvres.unit) {
+        if last
+            .as_ref()
+            .is_some_and(|last| manoeuvres.goes_on(last, spare))
+        {
+            continue;
+        }
+        // where one has no room, a wider one has none
+        let Some(found) = manoeuvres.parallel(out, spare, COARSE_S, last.as_ref()) else {
+            break;
+        };
+        ways.extend(last.replace(found));
+    }
+    ways.extend(last);
+    ways
+}
+
+impl Manoeuvres<'_, '_> {
+    /// Lower bound of the cost from a partial manoeuvre to its end, m².
+    pub(super) fn to_go(&self, partial: &Partial) -> f64 {
+        let held = match partial.phase {
+            Phase::End | Phase::Route => return 0.0,
+            Phase::Out => self.until_passed(partial),
+            Phase::Passed => 0.0,
+        };
+        let (pose, time) = partial.end(self.problem().own.pose);
+        let free = self.bound.cost_to_go(&pose, time);
+        free.max(held) * partial.first.price()
+    }
+
+    /// Lower bound of the space-time error from the line after a turn to the end, m²: until every target
+    /// is passed, own ship keeps its course or turns back to its first one, so neither its offset nor its
+    /// lag shrinks; then both may, at the greatest speed.
+    ///
+    /// A target is passed when a quantity that is linear in time on each of the two courses is used up,
+    /// which takes at least as long as on the faster of them. Zero where own ship starts off its leg, where
+    /// there are several, or where it goes faster than the leg.
+    fn until_passed(&self, out: &Partial) -> f64 {
+        let problem = self.problem();
+        let ([leg], FirstAlteration::Turn { turn, speed }) = (problem.desired.legs(), out.first)
+        else {
+            return 0.0;
+        };
+        let (pose, time) = out.end(problem.own.pose);
+        let offset = pose.position - leg.start;
+        let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
+        let lag = leg.speed * (time - leg.start_time) - along;
+        let first = problem.own.pose;
+        let from = match problem.under_way {
+            Some(_) => return 0.0,
+            None => first.ahead(),
+        };
+        let outward = across * turn >= 0.0;
+        // on its first course own ship keeps its offset
+        let on_leg = cross(leg.direction, from).abs() <= 1e-9;
+        if !outward || !on_leg {
+            return 0.0;
+        }
+        let mut passed = 0.0_f64;
+        for e in self.passing.iter().map(|p| p.encountered) {
+            let target = e.ship.velocity();
+            let apart = e.ship.moved(time).pose.position - pose.position;
+            let relative = e.own.velocity() - target;
+            let left = apart.dot(&relative);
+            let rate = |ahead: Vector| (ahead * speed - target).dot(&relative);
+            let fastest = f64::max(rate(pose.ahead()), rate(from));
+            if left > 0.0 && fastest > 0.0 {
+                passed = passed.max(left / fastest);
+            }
+        }
+        // a faster ship may make good its lag before
+        let lags = lag >= 0.0 && speed <= leg.speed;
+        let kappa = problem.time_weight / (problem.time_weight + leg.speed * leg.speed);
+        let kappa = if lags { kappa } else { 0.0 };
+        let fastest = problem.own.max_speed();
+        let least = (problem.desired.end() - pose.position).norm() / fastest;
+        let held = passed * (across * across + kappa * lag * lag);
+        let back = squared_ramp(across.abs(), -fastest, f64::INFINITY);
+        let recovered = kappa * squared_ramp(lag, leg.speed - fastest, least - passed);
+        (held + back + recovered) / problem.desired.duration()
+    }
+}
+
+/// The time that is left for the searches of one plan, and what they have explored.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort<'e> {
+    pub clock: Clock,
+    pub explored: &'e RefCell<Explored>,
+}
+
+/// What the searches of one plan have explored.
+#[derive(Debug, Default)]
+pub(crate) struct Explored {
+    pub counts: SearchStats,
+    pub graph: ExploredGraph,
+}
+
+impl Explored {
+    /// Adds the counts of a search, and every edge that it used. All searches begin at one node.
+    pub(super) fn add(&mut self, manoeuvres: &Manoeuvres, search: Search<Partial>) {
+        let counts = search.counts();
+        self.counts.expanded += counts.expanded;
+        self.counts.generated += counts.generated;
+        self.counts.edges_checked += counts.edges_checked;
+        let own = manoeuvres.problem().own.pose;
+        let nodes = search.into_nodes();
+        let mut index_of: Vec<Option<NodeIndex>> = vec![None; nodes.len()];
+        for (index, node) in nodes.iter().enumerate() {
+            let state = &node.state;
+            let blocked = || first_met(manoeuvres.context.proxies, state.off_route());
+            let verdict = match (node.fate, state.phase) {
+                (Fate::Expanded | Fate::Goal, _) => EdgeVerdict::Free,
+                (Fate::Rejected, Phase::Out) => match blocked() {
+                    Some(obstacle) => EdgeVerdict::Blocked { obstacle },
+                    None => continue,
+                },
+                _ => continue,
+            };
+            let kind = match state.phase {
+                Phase::Route => NodeKind::Start,
+                Phase::Out | Phase::Passed => NodeKind::Course,
+                Phase::End => NodeKind::End,
+            };
+            let (pose, time) = state.end(own);
+            let start = self.graph.node_indices().next();
+            let start = start.filter(|_| state.phase == Phase::Route);
+            let added = start.unwrap_or_else(|| {
+                self.graph.add_node(ExploredNode {
+                    kind,
+                    pose,
+                    time,
+                    cost: node.cost,
+                    expanded: node.fate == Fate::Expanded,
+                })
+            });
+            index_of[index] = Some(added);
+            let Some((parent, before)) = node.parent.and_then(|p| Some((p, index_of[p]?))) else {
+                continue;
+            };
+            let (_, since) = nodes[parent].state.end(own);
+            let edge = ExploredEdge {
+                segments: part(&state.motion, since, f64::INFINITY),
+                cost: node.cost - nodes[parent].cost,
+                verdict,
+            };
+            self.graph.add_edge(before, added, edge);
+        }
+    }
+}

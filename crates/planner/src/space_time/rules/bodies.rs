@@ -1,0 +1,126 @@
+//! What a manoeuvre by the rules keeps clear of: sets and land, a length around each hull, and the
+//! water ahead of a bow. Each is a body, so each can be hugged.
+
+use crate::Problem;
+use crate::space_time::land;
+use crate::space_time::proxy::first_met;
+use crate::space_time::rules::hug::HeldTurn;
+use crate::space_time::rules::manoeuvre::Manoeuvres;
+use searoom_colregs::Encountered;
+use searoom_geometry::frame::{Pose, Vector, to_port};
+use searoom_geometry::tolerance::TOUCH_M;
+use searoom_geometry::{ConvexPolygon, outer_disc};
+use searoom_model::trajectory::Segment;
+use searoom_sets::{PolytopeObstacle, contact};
+
+/// Half the width of the line ahead of a bow, metres.
+const BOW_LINE_M: f64 = 0.02;
+
+/// Metres by which that line is longer than the room that the judge asks for.
+const BOW_SPARE_M: f64 = 0.5;
+
+/// A target that own ship must not pass nearer than a length.
+pub(super) struct Passing<'a> {
+    pub encountered: &'a Encountered,
+    /// The nominal hull, grown by own half-diagonal and the longer ship's length.
+    within_a_length: PolytopeObstacle,
+    /// The nominal hull, grown by own hull on its first course.
+    pub hulls: PolytopeObstacle,
+    /// The line ahead of the target that own ship must not cross, where there is one and own ship
+    /// does not begin on it.
+    ahead: Option<PolytopeObstacle>,
+}
+
+impl<'a> Passing<'a> {
+    pub(super) fn new(problem: &Problem, encountered: &'a Encountered) -> Self {
+        let (own, ship) = (&problem.own.hull, &encountered.ship);
+        let hull = encountered.hull.polygon(&ship.pose);
+        let around = own.half_diagonal() + own.length.max(encountered.hull.length);
+        let disc = outer_disc(around, ship.pose.heading);
+        let course = Pose::new(Vector::zeros(), encountered.own.pose.heading);
+        let moving =
+            |initial| PolytopeObstacle::new("", initial, ConvexPolygon::point(ship.velocity()));
+        let reach = (problem.own.max_speed() + ship.speed) * problem.horizon;
+        let room = encountered.bow_room();
+        let ahead = (room > 0.0).then(|| {
+            let (along, across) = (ship.pose.ahead(), to_port(ship.pose.ahead()) * BOW_LINE_M);
+            let to = ship.pose.position + along * (room.min(reach) + BOW_SPARE_M);
+            let from = ship.pose.position - along * BOW_SPARE_M;
+            ConvexPolygon::hull(&[from + across, from - across, to + across, to - across])
+        });
+        let ahead = ahead.and_then(Result::ok).map(moving);
+        let begins_there = |o: &PolytopeObstacle| o.contains(problem.own.pose.position, 0.0);
+        Self {
+            encountered,
+            within_a_length: moving(hull.minkowski_sum(&disc)),
+            hulls: moving(hull.minkowski_sum(&own.polygon(&course).negated())),
+            ahead: ahead.filter(|line| !begins_there(line)),
+        }
+    }
+
+    pub(super) fn keeps_clear(&self) -> bool {
+        self.encountered.role.duties().keeps_clear
+    }
+
+    /// True where own ship must not head to some side before the target has passed.
+    pub(super) fn forbids_a_heading(&self) -> bool {
+        self.encountered.role.duties().no_heading_to.is_some()
+    }
+
+    /// True for a place more than a length away.
+    pub(super) fn is_a_length_off(&self, place: Vector, time: f64) -> bool {
+        self.within_a_length.slack(place, time).value > 0.0
+    }
+}
+
+impl Manoeuvres<'_, '_> {
+    /// True for segments that are clear of every set, of land, of a length around every target, and of
+    /// the water ahead of its bow.
+    pub(super) fn is_clear(&self, segments: &[Segment]) -> bool {
+        first_met(self.context.proxies, segments).is_none()
+            && !land::meets(self.problem().land_obstacle, segments)
+            && self.keeps_lengths(segments)
+            && self.crosses_no_bow(segments)
+    }
+
+    /// Seconds for which a straight course is clear, at most to the horizon.
+    pub(super) fn clear_for(&self, pose: Pose, speed: f64, time: f64) -> f64 {
+        let problem = self.problem();
+        let line = Segment::straight(pose, time, problem.horizon - time, speed);
+        let sets = self
+            .context
+            .proxies
+            .iter()
+            .filter_map(|p| p.first_contact(&line));
+        let land = problem.land_obstacle.first_contact(&line, TOUCH_M);
+        let lengths = self.kept_off().map(|p| &p.within_a_length);
+        let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
+        let bodies = lengths.chain(ahead);
+        let bodies = bodies.filter_map(|body| contact::first_contact(body, &line, TOUCH_M));
+        let first = sets.chain(land).chain(bodies).reduce(f64::min);
+        first.unwrap_or(problem.horizon) - time
+    }
+
+    fn crosses_no_bow(&self, segments: &[Segment]) -> bool {
+        let mut lines = self.passing.iter().filter_map(|p| p.ahead.as_ref());
+        let meets = |s: &Segment, line| contact::meets(line, s, TOUCH_M);
+        !lines.any(|line| segments.iter().any(|s| meets(s, line)))
+    }
+
+    pub(super) fn keeps_lengths(&self, segments: &[Segment]) -> bool {
+        let near = |s, p: &Passing| contact::meets(&p.within_a_length, s, TOUCH_M);
+        !segments.iter().any(|s| self.kept_off().any(|p| near(s, p)))
+    }
+
+    /// Holds, longer than `least`, after which the line of a turn touches a body.
+    pub(super) fn touching(&self, turn: &HeldTurn, least: f64) -> Vec<f64> {
+        let sets = self.context.proxies.iter();
+        let sets = sets.map(|proxy| (proxy.body.moving_vertices(), proxy.start()));
+        let lengths = self.kept_off().map(|p| &p.within_a_length);
+        let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
+        let others = lengths
+            .chain(ahead)
+            .map(|body| (body.moving_vertices(), 0.0));
+        turn.touching(sets.chain(others), least)
+    }
+}

@@ -1,0 +1,278 @@
+//! Hugging: the least hold after which a turn and a line are clear.
+//!
+//! Own ship holds its course for `h` seconds, turns, and goes on straight. The vertex `o + v t` of a
+//! body is then passed at a distance that is linear in `h`: with the place `A` and the time `t_A` after
+//! a turn that is begun at once, and the velocities `w` and `b` relative to the vertex on the line and
+//! during the hold, the line passes exactly through the vertex for
+//!
+//! ```text
+//! h = − w × (A − o − v t_A) / (w × b)
+//! ```
+//!
+//! So a line that is clear of a body from one hold on touches it there: these holds are tried in
+//! order, and no search is needed (docs/rules.md, "Hugging").
+
+use searoom_geometry::frame::{Pose, Vector, cross};
+use searoom_model::trajectory::Segment;
+use searoom_sets::MovingVertex;
+
+/// Seconds beyond a hold that touches a body.
+const BEYOND_S: [f64; 5] = [2.0, 6.0, 14.0, 30.0, 60.0];
+
+/// Seconds to which a hold is found where none touches: among many manoeuvres, and for one.
+pub(super) const COARSE_S: f64 = 0.5;
+pub(super) const FINE_S: f64 = 0.05;
+
+/// A turn and a line after a hold.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldTurn {
+    /// Where the hold begins.
+    pub pose: Pose,
+    /// Seconds at which it begins.
+    pub time: f64,
+    /// Speed during the hold, m/s.
+    pub held_speed: f64,
+    /// Turn in radians, to port positive, and the speed during and after it, m/s.
+    pub turn: f64,
+    pub speed: f64,
+    /// Turning radius, metres.
+    pub radius: f64,
+}
+
+impl HeldTurn {
+    /// Pose and time after the turn, begun at once.
+    fn turned(&self) -> (Pose, f64) {
+        let seconds = self.radius * self.turn.abs() / self.speed;
+        // without a turn the rate has no meaning
+        let rate = if seconds > 0.0 {
+            self.turn / seconds
+        } else {
+            0.0
+        };
+        let arc = Segment::new(self.pose, self.time, seconds, self.speed, rate);
+        (arc.end(), self.time + seconds)
+    }
+
+    /// For each body the greatest hold after which the line touches a vertex of it ahead, seconds,
+    /// where it is longer than `least`: the line of a longer one has the body on one hand. A body is
+    /// given by its vertices and the start of its clock.
+    pub(super) fn touching<'b>(
+        &self,
+        bodies: impl Iterator<Item = (&'b [MovingVertex], f64)>,
+        least: f64,
+    ) -> Vec<f64> {
+        let (after, at) = self.turned();
+        let along = after.ahead() * self.speed;
+        let held = self.pose.ahead() * self.held_speed;
+        let mut holds = Vec::new();
+        for (vertices, start) in bodies {
+            let mut farthest = least;
+            for vertex in vertices {
+                let (line, hold) = (along - vertex.velocity, held - vertex.velocity);
+                let moved = vertex.velocity * (at - start);
+                let off: Vector = after.position - vertex.origin - moved;
+                let touches = -cross(line, off) / cross(line, hold);
+                // behind the turn it is not met, and a NaN touches nothing
+                let ahead = -(off + hold * touches).dot(&line);
+                if touches > farthest && ahead >= 0.0 {
+                    farthest = touches;
+                }
+            }
+            if farthest > least {
+                holds.push(farthest);
+            }
+        }
+        holds
+    }
+}
+
+/// The least clear hold of `least` to `most` seconds, to `close` seconds, in units of `unit`. It is that
+/// of the last trial that was clear.
+///
+/// The holds that touch come first. Where the turn meets what the line does not, or the line ends before
+/// it would touch, a shorter one is found by bisection. Where no hold that touches is clear, some beyond
+/// each are tried. With several targets there may be `gaps` between them: then some beyond each hold are
+/// tried before the next.
+pub(super) fn least_clear(
+    (least, most): (f64, f64),
+    mut touching: Vec<f64>,
+    (unit, close, gaps): (f64, f64, bool),
+    mut trial: impl FnMut(f64) -> bool,
+) -> Option<f64> {
+    if !(least < most) {
+        return None;
+    }
+    touching.retain(|hold| *hold > least && *hold < most);
+    touching.sort_by(f64::total_cmp);
+    let close = close * unit;
+    if trial(least) {
+        return Some(least);
+    }
+    let mut blocked = least;
+    for &hold in touching.iter().filter(|_| !gaps) {
+        if !trial(hold) {
+            blocked = hold;
+            continue;
+        }
+        // a line that touches does so from no earlier hold on
+        let touches = hold - blocked <= close || !trial(hold - close);
+        return Some(match touches {
+            true => hold,
+            false => between(blocked, hold - close, close, trial),
+        });
+    }
+    touching.insert(0, least);
+    let mut blocked = least;
+    for (index, &from) in touching.iter().enumerate() {
+        let next = touching.get(index + 1).copied().unwrap_or(most);
+        let beyond = BEYOND_S.map(|beyond| from + beyond * unit).into_iter();
+        // without gaps the holds that touch are known
+        let here = (gaps && index > 0).then_some(from);
+        for hold in here
+            .into_iter()
+            .chain(beyond)
+            .take_while(|hold| *hold < next)
+        {
+            if trial(hold) {
+                let touches = Some(hold) == here && !trial(hold - close);
+                return Some(match touches {
+                    true => hold,
+                    false => between(blocked, hold, close, trial),
+                });
+            }
+            blocked = hold;
+        }
+        blocked = blocked.max(from);
+    }
+    None
+}
+
+/// The least clear hold between one that is blocked and one that is clear, by bisection.
+fn between(
+    mut blocked: f64,
+    mut clear: f64,
+    close: f64,
+    mut trial: impl FnMut(f64) -> bool,
+) -> f64 {
+    while clear - blocked > close {
+        let middle = 0.5 * (blocked + clear);
+        if trial(middle) {
+            clear = middle;
+        } else {
+            blocked = middle;
+        }
+    }
+    clear
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry_fixtures::random_vector;
+    use rand::{Rng, SeedableRng};
+    use searoom_geometry::ConvexPolygon;
+    use searoom_geometry::tolerance::TOUCH_M;
+    use searoom_sets::{PolytopeObstacle, contact};
+
+    /// Own ship on the line after a hold and a turn, for ten minutes.
+    fn line(turn: &HeldTurn, hold: f64) -> Segment {
+        let held = Segment::straight(turn.pose, turn.time, hold, turn.held_speed);
+        let after = HeldTurn {
+            pose: held.end(),
+            time: turn.time + hold,
+            ..*turn
+        };
+        let (pose, time) = after.turned();
+        Segment::straight(pose, time, 600.0, turn.speed)
+    }
+
+    #[test]
+    fn a_line_touches_after_the_hold_that_is_found_and_meets_sooner() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(57);
+        let (mut found, mut meets_sooner) = (0, 0);
+        for _ in 0..6_000 {
+            let centre = random_vector(&mut rng, 1_500.0);
+            let drift = random_vector(&mut rng, 4.0);
+            let mut near = |at: Vector, most: f64| {
+                let points: Vec<Vector> =
+                    (0..5).map(|_| at + random_vector(&mut rng, most)).collect();
+                ConvexPolygon::hull(&points).expect("finite")
+            };
+            let body = PolytopeObstacle::new("", near(centre, 120.0), near(drift, 0.6));
+            let start = rng.random_range(0.0..50.0);
+            let turn = HeldTurn {
+                pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+                time: start + rng.random_range(0.0..100.0),
+                held_speed: 5.0,
+                turn: rng.random_range(-2.0..2.0),
+                speed: 6.0,
+                radius: 100.0,
+            };
+            let bodies = std::iter::once((body.moving_vertices(), start));
+            for hold in turn.touching(bodies, 0.0) {
+                let local = |hold: f64| Segment {
+                    start_time: line(&turn, hold).start_time - start,
+                    ..line(&turn, hold)
+                };
+                found += 1;
+                let after = local(hold);
+                // some vertex is on the line
+                let apart = body.moving_vertices().iter().map(|vertex| {
+                    let relative = after.velocity_at(after.start_time) - vertex.velocity;
+                    let at = vertex.origin + vertex.velocity * after.start_time;
+                    cross(relative, after.start.position - at).abs() / relative.norm()
+                });
+                assert!(apart.fold(f64::INFINITY, f64::min) < 1e-6);
+                // which is clear, because all others are on one hand
+                if contact::meets(&body, &after, TOUCH_M) {
+                    continue;
+                }
+                meets_sooner += usize::from(contact::meets(&body, &local(hold - 0.5), TOUCH_M));
+            }
+        }
+        assert!(found > 500, "{found}");
+        assert!(meets_sooner * 2 > found, "{meets_sooner} of {found}");
+    }
+
+    #[test]
+    fn the_least_clear_hold_is_that_of_a_dense_scan() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(58);
+        for case in 0..500 {
+            let gaps = case % 2 == 0;
+            // each body blocks the holds between two, and one blocks a little beyond the last
+            let mut blocks: Vec<[f64; 2]> = Vec::new();
+            for _ in 0..rng.random_range(0..4) {
+                let from = rng.random_range(-50.0..100.0);
+                blocks.push([from, from + rng.random_range(1.0..80.0)]);
+            }
+            let touching: Vec<f64> = blocks.iter().map(|block| block[1]).collect();
+            let arc = rng.random_range(0.0..1.0) < 0.3;
+            let more = if arc {
+                rng.random_range(0.1..20.0)
+            } else {
+                0.0
+            };
+            let last = touching.iter().copied().fold(0.0, f64::max);
+            let blocked = |hold: f64| {
+                blocks
+                    .iter()
+                    .any(|block| hold > block[0] && hold < block[1])
+                    || more > 0.0 && hold > last - 1.0 && hold < last + more
+            };
+            let found = least_clear((3.0, 400.0), touching, (1.0, FINE_S, gaps), |hold| {
+                !blocked(hold)
+            });
+            let found = found.expect("all is clear in the end");
+            assert!(!blocked(found));
+            let scanned = (0..40_000).map(|k| 3.0 + f64::from(k) * 0.01);
+            let least = scanned
+                .into_iter()
+                .find(|hold| !blocked(*hold))
+                .expect("clear");
+            assert!(
+                found < least + FINE_S + 0.02,
+                "{found} {least} {blocks:?} {more}"
+            );
+        }
+    }
+}
