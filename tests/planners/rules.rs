@@ -144,7 +144,9 @@ fn dijkstra_finds_the_same_manoeuvres_from_more_nodes() {
         let plans = runs
             .each_ref()
             .map(|run| run.planned.outcome.plan().expect("a plan"));
-        if plans.iter().any(|plan| plan.method != PlanMethod::Rules) {
+        let about = format!("{kind:?} {seed}");
+        assert_eq!(plans[0].method, plans[1].method, "{about}");
+        if plans[0].method != PlanMethod::Rules {
             continue;
         }
         let [a_star, dijkstra] = plans.map(|plan| plan.cost);

@@ -94,10 +94,9 @@ impl PlanMethod {
             | Self::Waiting
             | Self::OffStation
             | Self::Stay => Some(false),
-            // the best of many plans may be one by the rules, of a stricter request
-            Self::LeastHarm | Self::Thorough | Self::Other => None,
-            Self::Rules
-            | Self::AStar
+            // documents of earlier programs have none for a plan by the rules
+            Self::Rules | Self::LeastHarm | Self::Thorough | Self::Other => None,
+            Self::AStar
             | Self::Dijkstra
             | Self::WarmStart
             | Self::HybridAStar

@@ -237,5 +237,8 @@ fn no_manoeuvre_of_a_dense_grid_is_much_cheaper() {
         ratios.push(scene.cost(motion) / scene.least_of_grid());
     }
     println!("{ratios:.3?}");
-    assert!(ratios.iter().all(|ratio| *ratio < 1.02), "{ratios:.3?}");
+    assert!(
+        ratios.iter().all(|ratio| (0.8..1.02).contains(ratio)),
+        "{ratios:.3?}"
+    );
 }

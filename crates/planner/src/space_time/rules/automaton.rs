@@ -28,7 +28,7 @@ use searoom_geometry::frame::{Vector, cross};
 
 /// Seconds for which a parallel course stays clear after the targets are passed: more is wider, with
 /// more room to return.
-const SPARE_S: [f64; 4] = [0.0, 6.0, 30.0, 150.0];
+const ROOM_S: [f64; 4] = [0.0, 6.0, 30.0, 150.0];
 
 /// The graph of manoeuvres with these departures and first alterations.
 pub(super) struct Graph<'g, 's, 'a> {
@@ -37,8 +37,6 @@ pub(super) struct Graph<'g, 's, 'a> {
     pub departures: Vec<(f64, FirstAlteration)>,
     /// Angles of the returns, radians.
     pub angles: &'g [f64],
-    /// Nodes that cost as much are not wanted, m².
-    pub below: f64,
 }
 
 impl Space for Graph<'_, '_, '_> {
@@ -77,13 +75,9 @@ impl Space for Graph<'_, '_, '_> {
     }
 
     fn bound(&mut self, state: &Partial) -> f64 {
-        let to_go = match self.manoeuvres.problem().search {
+        match self.manoeuvres.problem().search {
             SearchKind::Dijkstra => 0.0,
             _ => self.manoeuvres.to_go(state),
-        };
-        match state.cost + to_go < self.below {
-            true => to_go,
-            false => f64::INFINITY,
         }
     }
 
@@ -115,7 +109,7 @@ pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> Vec<Partial> {
         return ways;
     }
     let mut last: Option<Partial> = None;
-    for spare in SPARE_S.map(|spare| spare * manoeuvres.unit) {
+    for spare in ROOM_S.map(|spare| spare * manoeuvres.unit) {
         if last
             .as_ref()
             .is_some_and(|last| manoeuvres.goes_on(last, spare))
@@ -150,7 +144,7 @@ impl Manoeuvres<'_, '_> {
     /// lag shrinks; then both may, at the greatest speed.
     ///
     /// A target is passed when a quantity that is linear in time on each of the two courses is used up,
-    /// which takes at least as long as on the faster of them. Zero where own ship starts off its leg, where
+    /// which takes at least as long as at the greatest rate on a course between them. Zero where own ship starts off its leg, where
     /// there are several, or where it goes faster than the leg.
     fn until_passed(&self, out: &Partial) -> f64 {
         let problem = self.problem();
@@ -162,14 +156,14 @@ impl Manoeuvres<'_, '_> {
         let offset = pose.position - leg.start;
         let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
         let lag = leg.speed * (time - leg.start_time) - along;
-        let first = problem.own.pose;
-        let from = match problem.under_way {
-            Some(_) => return 0.0,
-            None => first.ahead(),
+        let from = match (problem.under_way, out.before) {
+            (Some(_), _) => return 0.0,
+            (None, 0) => problem.own.pose.ahead(),
+            (None, before) => out.motion[before - 1].end().ahead(),
         };
         let outward = across * turn >= 0.0;
         // on its first course own ship keeps its offset
-        let on_leg = cross(leg.direction, from).abs() <= 1e-9;
+        let on_leg = cross(leg.direction, from).abs() <= 1e-9 && leg.direction.dot(&from) > 0.0;
         if !outward || !on_leg {
             return 0.0;
         }
@@ -180,7 +174,14 @@ impl Manoeuvres<'_, '_> {
             let relative = e.own.velocity() - target;
             let left = apart.dot(&relative);
             let rate = |ahead: Vector| (ahead * speed - target).dot(&relative);
-            let fastest = f64::max(rate(pose.ahead()), rate(from));
+            // on the arc between them the course may be that of the relative velocity
+            let [a, b] = [pose.ahead(), from].map(|course| cross(course, relative));
+            let between = a * b < 0.0 && relative.dot(&(pose.ahead() + from)) > 0.0;
+            let most = match between {
+                true => relative.norm() * speed - target.dot(&relative),
+                false => f64::NEG_INFINITY,
+            };
+            let fastest = most.max(rate(pose.ahead())).max(rate(from));
             if left > 0.0 && fastest > 0.0 {
                 passed = passed.max(left / fastest);
             }

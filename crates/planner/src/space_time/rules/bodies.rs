@@ -1,5 +1,5 @@
 //! What a manoeuvre by the rules keeps clear of: sets and land, a length around each hull, and the
-//! water ahead of a bow. Each is a body, so each can be hugged.
+//! water ahead of a bow. All but land are hugged; from land the exact contact test keeps clear.
 
 use crate::Problem;
 use crate::space_time::land;
@@ -112,8 +112,8 @@ impl Manoeuvres<'_, '_> {
         !segments.iter().any(|s| self.kept_off().any(|p| near(s, p)))
     }
 
-    /// Holds, longer than `least`, after which the line of a turn touches a body.
-    pub(super) fn touching(&self, turn: &HeldTurn, least: f64) -> Vec<f64> {
+    /// Holds of a range after which the line of a turn touches a body other than land.
+    pub(super) fn touching(&self, turn: &HeldTurn, range: (f64, f64)) -> Vec<f64> {
         let sets = self.context.proxies.iter();
         let sets = sets.map(|proxy| (proxy.body.moving_vertices(), proxy.start()));
         let lengths = self.kept_off().map(|p| &p.within_a_length);
@@ -121,6 +121,6 @@ impl Manoeuvres<'_, '_> {
         let others = lengths
             .chain(ahead)
             .map(|body| (body.moving_vertices(), 0.0));
-        turn.touching(sets.chain(others), least)
+        turn.touching(sets.chain(others), range)
     }
 }

@@ -17,8 +17,9 @@ const ARC_SAMPLES: u32 = 32;
 /// the step of the samples that it is found by, and of those of the judges.
 const PASSED_S: f64 = 3.0;
 
-/// Seconds to which the closest approach on a line is found.
+/// Seconds to which the closest approach on a line is found, and the most steps for it.
 const CLOSE_S: f64 = 0.25;
+const MOST_THIRDS: usize = 60;
 
 /// Greatest time between two samples for the closest approach, seconds.
 const NEAREST_S: f64 = 1.0;
@@ -70,7 +71,11 @@ pub(super) fn after_nearest(
     // convex in time, so the third with the greater distance at its inner end is cut off
     let distance = |after: f64| hulls.signed_distance(closing * after - apart);
     let (mut from, mut to) = ((nearest - about).max(0.0), nearest + about);
-    while to - from > CLOSE_S {
+    // with hardly any relative motion a third may be less than rounding
+    for _ in 0..MOST_THIRDS {
+        if !(to - from > CLOSE_S) {
+            break;
+        }
         let third = (to - from) / 3.0;
         if distance(from + third) < distance(to - third) {
             to -= third;

@@ -116,7 +116,8 @@ fn one_by_one(
             None if under_way.is_some() => 0.0,
             None => return Some(kept),
         };
-        if contact < from {
+        // negated on purpose: a NaN is too early
+        if !(contact >= from) {
             return None;
         }
         let lasts = |e: &Encountered| under_way.is_some() && e.risk_since <= 0.0;

@@ -102,13 +102,15 @@ pub(super) struct Partial {
     /// Angle between the return line and the route, radians.
     pub angle: f64,
     /// Number of segments before the route is left.
-    before: usize,
+    pub before: usize,
     /// From t = 0 on.
     pub motion: Vec<Segment>,
     /// Seconds at which own ship turns back or changes its speed back; known at the end.
     returns: f64,
     /// Seconds at which own ship is on the route again; known at the end.
     pub joined: f64,
+    /// True for an end that is known to be by the rules.
+    pub is_judged: bool,
     /// By which manoeuvres are compared, m²: a turn is preferred over less speed.
     pub cost: f64,
 }
@@ -126,6 +128,7 @@ impl Partial {
             motion: Vec::new(),
             returns: 0.0,
             joined: 0.0,
+            is_judged: false,
             cost: 0.0,
         }
     }
@@ -205,7 +208,9 @@ pub(super) struct Manoeuvres<'s, 'a> {
     pub unit: f64,
     /// True where own ship may pass between bodies.
     gaps: bool,
+    /// Bound of the cost to go without any set.
     pub bound: Heuristic<'s>,
+    /// The time left, and the account of the search.
     pub effort: Effort<'s>,
 }
 
@@ -298,7 +303,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         out: &Partial,
         spare: f64,
         close: f64,
-        wider: Option<&Partial>,
+        than: Option<&Partial>,
     ) -> Option<Partial> {
         let FirstAlteration::Turn { turn, speed } = out.first else {
             return None;
@@ -316,46 +321,40 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         // on a course that is sailed already there is no least time
         let least = if begun.is_some() { 0.0 } else { LEAST_S };
-        let narrower = wider.and_then(|than| than.motion.get(out.motion.len()));
+        let narrower = than.and_then(|than| than.motion.get(out.motion.len()));
         let narrower = narrower
             .filter(|line| !line.is_arc())
             .map(|line| line.duration);
         let least = narrower.map_or(least, |hold| hold.max(least));
         let most = self.clear_for(pose, speed, time);
-        let mut found = None;
         let trial = |hold: f64| {
             let line = Segment::straight(pose, time, hold, speed);
             let mut chain = Chain::new(line.end(), time + hold, speed, own.turning_radius);
             chain.arc(back * own.turning_radius);
             let (pose, time) = (chain.pose, chain.time);
             let Some(passed) = self.passed(pose.position, pose.ahead() * speed, time) else {
-                return false;
+                return None;
             };
             let on = |until: f64| Segment::straight(pose, time, (until - time).max(LEAST_S), speed);
             if !self.is_clear(&[on(passed + spare)]) || !self.is_clear(&chain.segments) {
-                return false;
+                return None;
             }
             let Some(guard) = self.heads_freely(pose, speed, (time, passed)) else {
-                return false;
+                return None;
             };
             if guard > passed && !self.is_clear(&[on(guard + spare)]) {
-                return false;
+                return None;
             }
-            let mut added = Vec::with_capacity(3);
+            let mut added: Vec<Segment> = Vec::with_capacity(3);
             added.extend((hold > 0.0).then_some(line));
             added.extend(chain.segments);
             added.push(on(guard));
-            found = Some(added);
-            true
+            Some(added)
         };
         let holds = (least, most);
-        least_clear(
-            holds,
-            self.touching(&held, least),
-            (self.unit, close, self.gaps),
-            trial,
-        )?;
-        self.passed_after(out, Outward::Parallel { spare }, &found?)
+        let touching = self.touching(&held, holds);
+        let added = least_clear(holds, touching, (self.unit, close, self.gaps), trial)?;
+        self.passed_after(out, Outward::Parallel { spare }, &added)
     }
 
     /// True where the last line stays clear for so many seconds longer.
@@ -406,7 +405,6 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let most = self.clear_for(pose, speed, time);
         let restricts = self.passing.iter().any(Passing::forbids_a_heading);
-        let mut found = None;
         let trial = |hold: f64| {
             let line = Segment::straight(pose, time, hold, speed);
             let (pose, time) = (line.end(), line.end_time());
@@ -415,32 +413,29 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let returned =
                 legs.find_map(|leg| motion_back(problem, route, (&pose, time), leg, angle));
             let Some(back) = returned else {
-                return false;
+                return None;
             };
             // on to the same side it would be a circle
             let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
             let joined = self.joining_time(&back).filter(|_| !circles());
             let Some(joined) = joined else {
-                return false;
+                return None;
             };
             let partial = self.ended(passed, (time, joined), hold, &back, angle);
             // on the way back the hulls may be closest later than on the line, and the judge forbids to
             // head to a side until then
             let partial = partial.filter(|whole| !restricts || self.is_lawful(whole));
             let Some(partial) = partial else {
-                return false;
+                return None;
             };
-            found = Some(partial);
-            true
+            Some(Partial {
+                is_judged: restricts,
+                ..partial
+            })
         };
         let holds = (0.0, most);
-        least_clear(
-            holds,
-            self.touching(&held, 0.0),
-            (self.unit, close, self.gaps),
-            trial,
-        )?;
-        found
+        let touching = self.touching(&held, holds);
+        least_clear(holds, touching, (self.unit, close, self.gaps), trial)
     }
 
     /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
@@ -492,16 +487,15 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             speed: problem.own.max_speed(),
             radius: problem.own.turning_radius,
         };
-        let mut found = None;
         let trial = |hold: f64| {
             let mut motion = out.motion.clone();
             let end = route.run(along, leave, hold * speed, speed, &mut motion);
             // at the end of the route the reduction may be too short to be apparent
             if end - along < speed * least - tolerance::LENGTH_M {
-                return false;
+                return None;
             }
             let Some(joined) = motion.last().map(Segment::end_time) else {
-                return false;
+                return None;
             };
             let slow = motion.len();
             motion.extend(route.follow(end, joined));
@@ -516,7 +510,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 && self.is_clear(&motion[out.before..slow])
                 && self.is_clear_to_the_end(&motion[slow..]);
             if !clear {
-                return false;
+                return None;
             }
             let mut partial = Partial {
                 phase: Phase::End,
@@ -526,17 +520,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 ..out.clone()
             };
             partial.cost = self.cost(&partial);
-            found = Some(partial);
-            true
+            Some(partial)
         };
         let holds = (hold, problem.horizon - leave);
-        least_clear(
-            holds,
-            self.touching(&held, hold),
-            (self.unit, close, self.gaps),
-            trial,
-        )?;
-        found
+        let touching = self.touching(&held, holds);
+        least_clear(holds, touching, (self.unit, close, self.gaps), trial)
     }
 
     fn cost(&self, whole: &Partial) -> f64 {
@@ -618,6 +606,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// True for a whole manoeuvre that is by the rules.
     pub(super) fn is_lawful(&self, whole: &Partial) -> bool {
+        if whole.is_judged {
+            return true;
+        }
         let off_route = match whole.first {
             FirstAlteration::Turn { .. } => whole.off_route(),
             FirstAlteration::Slow { .. } => &[],

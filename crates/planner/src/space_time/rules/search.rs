@@ -1,8 +1,8 @@
 //! Which manoeuvre: the cheapest lawful path of the graph of manoeuvres, then a pattern search over the
-//! three numbers that no contact decides.
+//! four numbers that no contact decides.
 //!
 //! ```text
-//! departures and courses ─► A* ─► departure, turn and angle of the return, each hold by hugging
+//! departures and courses ─► A* ─► departure, turn, angle of the return and room, each hold by hugging
 //! ```
 //!
 //! A ship that keeps clear departs in ample time; one that stands on holds until its escape is due.
@@ -23,7 +23,7 @@ use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
 use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
-    FirstAlteration, LARGEST_TURN, Manoeuvre, Manoeuvres, Outward, Partial,
+    FirstAlteration, LARGEST_TURN, LEAST_S, Manoeuvre, Manoeuvres, Outward, Partial,
 };
 use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN};
 use searoom_geometry::frame::{Side, wrap};
@@ -39,6 +39,9 @@ const ANGLES: [f64; 3] = [0.35, 0.65, 1.05];
 
 /// Radians by which a turn to a tangent is clear of it.
 const CLEAR_OF_TANGENT: f64 = 1e-6;
+
+/// Factor of the least turn: its duration must not be too short by rounding.
+const SPARE: f64 = 1.001;
 
 /// Tangents nearer to each other than this are one, radians.
 const SAME_TANGENT: f64 = 0.03;
@@ -110,7 +113,7 @@ impl Manoeuvres<'_, '_> {
                 speed: begun.speed,
             },
         };
-        self.relaxed(|search| search.best_of(vec![(0.0, first)], 0.0..=0.0, f64::INFINITY))
+        self.relaxed(|search| search.best_of(vec![(0.0, first)], 0.0..=0.0))
     }
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
@@ -118,7 +121,7 @@ impl Manoeuvres<'_, '_> {
     pub(super) fn giving_way(&mut self, contact: f64) -> Option<Manoeuvre> {
         let from = self.from;
         let latest = self.ample_time().min(contact).max(from);
-        self.relaxed(|search| search.best(from..=latest, f64::INFINITY))
+        self.relaxed(|search| search.best(from..=latest))
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
@@ -129,11 +132,11 @@ impl Manoeuvres<'_, '_> {
         }
         let may = self.may_act() + SAMPLE_S;
         // to hold on for as long as it must is worth more than a length, and than a moderate turn
-        let lengths = self.keeps_a_length;
+        let keeps_a_length = self.keeps_a_length;
         let ways = [
-            (LARGEST_ESCAPE, lengths),
+            (LARGEST_ESCAPE, keeps_a_length),
             (LARGEST_ESCAPE, FROM_NONE),
-            (LARGEST_TURN, lengths),
+            (LARGEST_TURN, keeps_a_length),
             (LARGEST_TURN, FROM_NONE),
         ];
         let mut latest: Option<f64> = None;
@@ -149,7 +152,7 @@ impl Manoeuvres<'_, '_> {
         }
         let mut latest = latest?;
         self.most_turn = LARGEST_TURN;
-        if latest < may && may < contact && self.best(may..=may, f64::INFINITY).is_some() {
+        if latest < may && may < contact && self.best(may..=may).is_some() {
             latest = may;
         }
         let mut wanted = latest - SPARE_S;
@@ -160,9 +163,9 @@ impl Manoeuvres<'_, '_> {
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
         self.relaxed(|search| {
-            let found = search.best(leave..=leave, f64::INFINITY);
+            let found = search.best(leave..=leave);
             let latest = search.tidy_time(latest);
-            found.or_else(|| search.best(latest..=latest, f64::INFINITY))
+            found.or_else(|| search.best(latest..=latest))
         })
     }
 
@@ -200,8 +203,9 @@ impl Manoeuvres<'_, '_> {
         let may = self.tidy_time(may.clamp(self.from, contact));
         // what is sailed before both is no part of the price
         let before = self.problem().error_of(&until(self.nominal_motion, may));
-        let early = self.best(may..=may, f64::INFINITY);
+        let early = self.best(may..=may);
         let below = early.map_or(f64::INFINITY, |early| {
+            let before = before * early.whole.first.price();
             before + LATE_PRICE * (early.whole.cost - before)
         });
         self.most_turn = most_turn;
@@ -209,7 +213,7 @@ impl Manoeuvres<'_, '_> {
         let exists = |time: f64| self.has_escape(self.tidy_time(time), below);
         let mut times = (0..=SAMPLES).rev().map(|k| self.from + step * k as f64);
         let mut latest = times.find(|time| self.effort.clock.is_up() || exists(*time))?;
-        let mut too_late = latest + step;
+        let mut too_late = (latest + step).min(contact);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (latest + too_late);
             if self.effort.clock.is_up() {
@@ -229,6 +233,9 @@ impl Manoeuvres<'_, '_> {
         let is_escape = |end: Partial| end.cost < below && self.is_lawful(&end);
         let firsts = self.first_alterations(leave..=leave, false);
         firsts.into_iter().any(|(leave, first)| {
+            if self.effort.clock.is_up() {
+                return false;
+            }
             let out = self.out(leave, first);
             let Some(out) = out.filter(|o| o.cost < below && self.is_clear(o.off_route())) else {
                 return false;
@@ -245,10 +252,10 @@ impl Manoeuvres<'_, '_> {
         })
     }
 
-    /// The cheapest manoeuvre with a departure in a window that costs less than `below`.
-    fn best(&self, window: RangeInclusive<f64>, below: f64) -> Option<Manoeuvre> {
+    /// The cheapest manoeuvre with a departure in a window.
+    fn best(&self, window: RangeInclusive<f64>) -> Option<Manoeuvre> {
         let departures = self.first_alterations(window.clone(), true);
-        self.best_of(departures, window, below)
+        self.best_of(departures, window)
     }
 
     /// The cheapest manoeuvre that begins with one of some first alterations, improved within a window
@@ -257,10 +264,10 @@ impl Manoeuvres<'_, '_> {
         &self,
         departures: Vec<(f64, FirstAlteration)>,
         window: RangeInclusive<f64>,
-        below: f64,
     ) -> Option<Manoeuvre> {
         let problem = self.problem();
-        let mut angles = ANGLES.to_vec();
+        let mut angles = ANGLES.map(|angle| angle.max(self.least_angle())).to_vec();
+        angles.dedup();
         // a return goes on as it is
         let begun = problem.under_way.filter(|begun| begun.is_returning);
         angles.extend(begun.map(|begun| wrap(begun.heading - begun.first_heading).abs()));
@@ -268,7 +275,6 @@ impl Manoeuvres<'_, '_> {
             manoeuvres: self,
             departures,
             angles: &angles,
-            below,
         };
         let mut search = Search::new(Partial::start());
         let begun = problem.under_way;
@@ -306,8 +312,8 @@ impl Manoeuvres<'_, '_> {
         }
     }
 
-    /// Pattern search over the departure, the turn and the angle of the return: each in turn, by steps
-    /// that shrink. Every hold hugs, closer than in the graph.
+    /// Pattern search over the departure, the turn, the angle of the return and the time for which a
+    /// parallel course stays clear: each in turn, by steps that shrink. Every hold hugs, closer than in the graph.
     fn improved(&self, mut best: Partial, window: RangeInclusive<f64>) -> Partial {
         best = self
             .built(&Numbers::of(&best), f64::INFINITY)
@@ -349,11 +355,13 @@ impl Manoeuvres<'_, '_> {
                 let moved = old.leave + step * self.unit;
                 new.leave = self.tidy_time(moved.clamp(*window.start(), *window.end()));
             }
-            (1, FirstAlteration::Turn { turn, .. }, _) if self.problem().under_way.is_none() => {
-                *turn = (turn.abs() + step).clamp(APPARENT_TURN, self.most_turn) * turn.signum();
+            (1, FirstAlteration::Turn { turn, speed }, _) if self.problem().under_way.is_none() => {
+                let least = self.least_turn(*speed).min(self.most_turn);
+                *turn = (turn.abs() + step).clamp(least, self.most_turn) * turn.signum();
             }
             (2, FirstAlteration::Turn { .. }, _) => {
-                new.angle = (old.angle + step).clamp(*MOST_ANGLES.start(), *MOST_ANGLES.end());
+                let least = MOST_ANGLES.start().max(self.least_angle());
+                new.angle = (old.angle + step).clamp(least, least.max(*MOST_ANGLES.end()));
             }
             (3, FirstAlteration::Turn { .. }, Outward::Parallel { spare }) => {
                 *spare = (*spare + step * self.unit).max(0.0);
@@ -383,12 +391,12 @@ impl Manoeuvres<'_, '_> {
         end.filter(|end| cheaper(end) && self.is_lawful(end))
     }
 
-    /// First alterations with a departure in a window, the latest first, with turns to `tangents` or
-    /// without.
+    /// First alterations with a departure in a window, the latest first, with turns to
+    /// tangents or without.
     fn first_alterations(
         &self,
         window: RangeInclusive<f64>,
-        tangents: bool,
+        with_tangents: bool,
     ) -> Vec<(f64, FirstAlteration)> {
         let problem = self.problem();
         let (ordered, duty) = (ManoeuvreSpeeds::of(problem), problem.duty());
@@ -413,15 +421,17 @@ impl Manoeuvres<'_, '_> {
         let mut all = Vec::new();
         for &speed in &speeds {
             for side in &sides {
-                let turns: &[f64] = match tangents && times.len() == 1 {
+                let turns: &[f64] = match with_tangents && times.len() == 1 {
                     true => &ALL_TURNS,
                     false => &TURNS,
                 };
-                let turns = turns.iter().map(|turn| turn * APPARENT_TURN);
+                let least = self.least_turn(speed);
+                let turns = turns.iter().map(|turn| (turn * APPARENT_TURN).max(least));
                 let turns = turns.filter(|turn| *turn <= self.most_turn);
-                let turns: Vec<f64> = turns.map(|turn| turn * side.turn_sign()).collect();
+                let mut turns: Vec<f64> = turns.map(|turn| turn * side.turn_sign()).collect();
+                turns.dedup();
                 for &time in &times {
-                    let tangents = match tangents {
+                    let tangents = match with_tangents {
                         true => self.tangents(time, speed, *side),
                         false => Vec::new(),
                     };
@@ -442,6 +452,17 @@ impl Manoeuvres<'_, '_> {
             all.extend(slow.flat_map(|first| times.iter().map(move |time| (*time, first))));
         }
         all
+    }
+
+    /// The least turn: readily apparent, and of [`LEAST_S`] seconds, radians.
+    fn least_turn(&self, speed: f64) -> f64 {
+        APPARENT_TURN.max(SPARE * LEAST_S * speed / self.problem().own.turning_radius)
+    }
+
+    /// The least angle of a return, whose last turn takes [`LEAST_S`] seconds, radians.
+    fn least_angle(&self) -> f64 {
+        let own = self.problem().own;
+        SPARE * LEAST_S * own.max_speed() / own.turning_radius
     }
 
     /// The turns to a side from a departure, to lines that touch a set on its far side, radians.
@@ -466,7 +487,8 @@ impl Manoeuvres<'_, '_> {
                 continue;
             };
             let same = |other: &f64| (other.abs() - turn).abs() < SAME_TANGENT;
-            if turn > APPARENT_TURN && turn < self.most_turn && !tangents.iter().any(same) {
+            if turn > self.least_turn(speed) && turn < self.most_turn && !tangents.iter().any(same)
+            {
                 tangents.push((turn + CLEAR_OF_TANGENT) * side.turn_sign());
             }
         }
@@ -490,9 +512,8 @@ impl Manoeuvres<'_, '_> {
                 speed,
                 radius: self.problem().own.turning_radius,
             };
-            let holds = self.touching(&held, 0.0).into_iter();
-            let within = holds.filter(|hold| *hold < line.duration);
-            times.extend(within.map(|hold| self.tidy_time(line.start_time + hold)));
+            let holds = self.touching(&held, (0.0, line.duration)).into_iter();
+            times.extend(holds.map(|hold| self.tidy_time(line.start_time + hold)));
         }
         times.sort_by(|a, b| b.total_cmp(a));
         times.dedup();
