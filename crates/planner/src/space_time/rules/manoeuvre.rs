@@ -332,16 +332,12 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let mut chain = Chain::new(line.end(), time + hold, speed, own.turning_radius);
             chain.arc(back * own.turning_radius);
             let (pose, time) = (chain.pose, chain.time);
-            let Some(passed) = self.passed(pose.position, pose.ahead() * speed, time) else {
-                return None;
-            };
+            let passed = self.passed(pose.position, pose.ahead() * speed, time)?;
             let on = |until: f64| Segment::straight(pose, time, (until - time).max(LEAST_S), speed);
             if !self.is_clear(&[on(passed + spare)]) || !self.is_clear(&chain.segments) {
                 return None;
             }
-            let Some(guard) = self.heads_freely(pose, speed, (time, passed)) else {
-                return None;
-            };
+            let guard = self.heads_freely(pose, speed, (time, passed))?;
             if guard > passed && !self.is_clear(&[on(guard + spare)]) {
                 return None;
             }
@@ -412,22 +408,16 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let mut legs = near..problem.desired.legs().len().min(near + 2);
             let returned =
                 legs.find_map(|leg| motion_back(problem, route, (&pose, time), leg, angle));
-            let Some(back) = returned else {
-                return None;
-            };
+            let back = returned?;
             // on to the same side it would be a circle
             let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
             let joined = self.joining_time(&back).filter(|_| !circles());
-            let Some(joined) = joined else {
-                return None;
-            };
+            let joined = joined?;
             let partial = self.ended(passed, (time, joined), hold, &back, angle);
             // on the way back the hulls may be closest later than on the line, and the judge forbids to
             // head to a side until then
             let partial = partial.filter(|whole| !restricts || self.is_lawful(whole));
-            let Some(partial) = partial else {
-                return None;
-            };
+            let partial = partial?;
             Some(Partial {
                 is_judged: restricts,
                 ..partial
@@ -494,9 +484,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             if end - along < speed * least - tolerance::LENGTH_M {
                 return None;
             }
-            let Some(joined) = motion.last().map(Segment::end_time) else {
-                return None;
-            };
+            let joined = motion.last().map(Segment::end_time)?;
             let slow = motion.len();
             motion.extend(route.follow(end, joined));
             let in_time = motion
