@@ -187,11 +187,10 @@ shape | domain 0 | reduced by 0
 
 /// Another word for what made a plan by the rules.
 const METHODS: &str = r#"
-by a search that did not run | /method = "a-star" | method
 by another search | /method = "dijkstra" | method
 by the other planner | /method = "path-time-graph"; /search_stats/expanded = 3 | method
 by nothing known | /method = "magic" |
-by the rules and a search | /search_stats/expanded = 3 | method
+by the rules without a search | /search_stats/expanded = null | method
 by rules that are not asked | /compliance = "shape" | method
 without a plan | /trajectory = null | method
 "#;

@@ -94,9 +94,10 @@ impl PlanMethod {
             | Self::Waiting
             | Self::OffStation
             | Self::Stay => Some(false),
-            // documents of earlier programs have none for a plan by the rules
-            Self::Rules | Self::LeastHarm | Self::Thorough | Self::Other => None,
-            Self::AStar
+            // the best of many plans may be one of another method, of a stricter request
+            Self::LeastHarm | Self::Thorough | Self::Other => None,
+            Self::Rules
+            | Self::AStar
             | Self::Dijkstra
             | Self::WarmStart
             | Self::HybridAStar
