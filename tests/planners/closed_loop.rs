@@ -259,11 +259,12 @@ fn a_perfect_ship_among_steady_targets_sails_what_planning_again_and_again_gives
 
 #[test]
 fn a_ship_with_a_rudder_stays_near_its_plan_and_arrives() {
-    for ship in [Ship::FirstOrder, Ship::Nomoto] {
+    // by Nomoto's equation own ship lags more in a turn: 22.8 m where it is overtaken
+    for (ship, most) in [(Ship::FirstOrder, 20.0), (Ship::Nomoto, 25.0)] {
         for kind in EncounterKind::ALL {
             let sailed = sail(meeting(kind, 2, &How { ship, ..CONSTANT }));
             let off = sailed.conduct.largest_off_plan_m;
-            assert!((1e-3..25.0).contains(&off), "{ship:?} {kind:?}: {off}");
+            assert!((1e-3..most).contains(&off), "{ship:?} {kind:?}: {off}");
             assert!(!sailed.contact && sailed.arrived);
         }
     }

@@ -144,8 +144,9 @@ impl Manoeuvres<'_, '_> {
     /// lag shrinks; then both may, at the greatest speed.
     ///
     /// A target is passed when a quantity that is linear in time on each of the two courses is used up,
-    /// which takes at least as long as at the greatest rate on a course between them. Zero where own ship starts off its leg, where
-    /// there are several, or where it goes faster than the leg.
+    /// which takes at least as long as at the greatest rate on a course between them. Zero where own ship
+    /// does not depart along its leg, and where there are several. The lag counts where own ship is late
+    /// and no faster than the leg.
     fn until_passed(&self, out: &Partial) -> f64 {
         let problem = self.problem();
         let ([leg], FirstAlteration::Turn { turn, speed }) = (problem.desired.legs(), out.first)

@@ -54,8 +54,8 @@ impl HeldTurn {
     }
 
     /// For each body the greatest hold between `least` and `most` after which the line touches a vertex
-    /// of it ahead, seconds. A body with one velocity is on one hand of the line of a longer one, to
-    /// `most`. A body is given by its vertices and the start of its clock.
+    /// of it ahead, seconds. After a longer hold a body that has one velocity is on one hand of the line.
+    /// A body is given by its vertices and the start of its clock.
     pub(super) fn touching<'b>(
         &self,
         bodies: impl Iterator<Item = (&'b [MovingVertex], f64)>,

@@ -313,11 +313,11 @@ impl Manoeuvres<'_, '_> {
     }
 
     /// Pattern search over the departure, the turn, the angle of the return and the time for which a
-    /// parallel course stays clear: each in turn, by steps that shrink. Every hold hugs, closer than in the graph.
+    /// parallel course stays clear: each in turn, by steps that shrink. Every hold hugs,
+    /// closer than in the graph.
     fn improved(&self, mut best: Partial, window: RangeInclusive<f64>) -> Partial {
-        best = self
-            .built(&Numbers::of(&best), f64::INFINITY)
-            .unwrap_or(best);
+        // built closer it may hug elsewhere, and be dearer
+        best = (self.built(&Numbers::of(&best), best.cost)).unwrap_or(best);
         let mut scale = 1.0;
         for _ in 0..ROUNDS {
             let mut gained = false;
