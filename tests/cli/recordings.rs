@@ -30,7 +30,7 @@ fn a_recording_gives_back_what_it_was_made_from() {
     let said = stdout(&searoom(&["inspect", &file]).success());
     says(
         &said,
-        "Head-on: solved (verified, safe) | space-time, by the rules | 'target': own ship is head-on | sim_time 0 to 302 | /curves/clearance_m",
+        "Head-on: solved (verified, safe) | space-time, by the rules | 'target': own ship is head-on | sim_time 0 to 300 s | /curves/clearance_m",
     );
     let found = document(&searoom(&["inspect", "--json", &file]).success());
     let plan: Value = serde_json::from_str(&plan).expect("a plan");
