@@ -283,7 +283,6 @@ fn memory_after(
             turn: manoeuvre.turn,
             heading: steered.end().heading,
             speed: nearest_speed(own, steered.speed),
-            aside: aside(&remainder, manoeuvre),
             is_returning: manoeuvre.returns <= 0.0,
         }),
         escape: (previous.escape.as_ref())
@@ -320,19 +319,11 @@ fn has_begun(manoeuvre: &PlannedManoeuvre) -> bool {
 /// The nearest of own ship's speeds, which may have changed.
 fn nearest_speed(own: &OwnShip, speed: f64) -> f64 {
     let off = |u: &f64| (u - speed).abs();
+    if speed == 0.0 && own.speeds.contains(&0.0) {
+        return 0.0;
+    }
     let nearest = own.moving_speeds().min_by(|a, b| off(a).total_cmp(&off(b)));
     nearest.unwrap_or(speed)
-}
-
-/// Seconds on the course that own ship steers or turns to, until it turns again before its return;
-/// infinite if it does not.
-fn aside(remainder: &[Segment], manoeuvre: &PlannedManoeuvre) -> f64 {
-    let straight = remainder.iter().position(|s| !s.is_arc());
-    let turns = straight.and_then(|first| remainder[first..].iter().find(|s| s.is_arc()));
-    let before = |s: &&Segment| s.start_time < manoeuvre.returns - tolerance::TIME_S;
-    turns.filter(before).map_or(f64::INFINITY, |turn| {
-        turn.start_time - straight.map_or(0.0, |first| remainder[first].start_time)
-    })
 }
 
 /// Where a target is, as the previous plan assumed.

@@ -14,7 +14,9 @@ use super::sets::TargetSets;
 use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::parallel;
-use crate::planner::{NoPlan, Outcome, Plan, PlanRequest, Planned, Planner, Problem, SearchKind};
+use crate::planner::{
+    NoPlan, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner, Problem, SearchKind,
+};
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
@@ -42,6 +44,12 @@ const SAME_REDUCTION_M: f64 = 1.0;
 
 /// Seconds between the next plan and the end of a remainder that is kept until then.
 const BEFORE_END_S: f64 = 2.0;
+
+/// Seconds off its schedule from which on a manoeuvre by the rules is compared with a plan that is none,
+/// and the ratio of the costs from which on that one is taken. A navigator orders bold alterations, but no
+/// detour of a quarter of an hour where a bend breaks no rule.
+const FAR_OFF_TIME_S: f64 = 300.0;
+const MANY_TIMES: f64 = 10.0;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
@@ -256,7 +264,8 @@ impl Relaxer<'_> {
     /// The answer of the first level that has one; without any, that of the first level.
     pub(super) fn answer_of_one_search(&self) -> Attempt {
         let with_domain = self.scenario.compliance.shapes();
-        let mut first = self.first();
+        let first = self.first();
+        let mut first = self.much_cheaper_than(&first).unwrap_or(first);
         let problem = self.problem(&first.obstacles);
         if let Some(kept) = better_remainder(self.scenario, &problem, &first) {
             let none = first.planned.outcome.plan().is_none();
@@ -485,6 +494,26 @@ impl Relaxer<'_> {
         let (level, risk) = (RelaxationLevel::Domains, self.scenario.max_risk);
         let found = self.attempt(level, &self.scales(1.0), risk);
         (!found.is_infeasible()).then_some(found)
+    }
+
+    /// A plan of the whole request that is no manoeuvre by the rules, but breaks none either, where such a
+    /// manoeuvre brings own ship minutes off its schedule and costs many times as much.
+    fn much_cheaper_than(&self, first: &Attempt) -> Option<Attempt> {
+        let plan = first.planned.outcome.plan()?;
+        let off_time = plan.trajectory.end_time() - self.scenario.desired.duration();
+        let is_dear = plan.method == PlanMethod::Rules && off_time.abs() > FAR_OFF_TIME_S;
+        if !is_dear || self.scenario.memory.under_way.is_some() || self.time_left().is_zero() {
+            return None;
+        }
+        let other = self.clear_of_domains(true)?;
+        let found = other.planned.outcome.plan()?;
+        let is_better = found.arrives()
+            && MANY_TIMES * found.cost <= plan.cost
+            && rules::breaks(self.scenario, &found.trajectory) == 0;
+        is_better.then_some(Attempt {
+            level: first.level,
+            ..other
+        })
     }
 
     /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets, or against halved domains,

@@ -37,7 +37,7 @@ fn no_rule_is_broken_where_none_need_be() {
 /// The target is on own starboard beam, near, and on nearly the same course.
 #[test]
 fn a_turn_at_less_speed_where_neither_alone_keeps_the_rules() {
-    for seed in [104, 193, 742, 1272] {
+    for seed in [14, 193, 277, 742] {
         let run = pipeline::run(meeting(EncounterKind::GiveWay, seed, &Meeting::NEAR));
         let plan = run.planned.outcome.plan().expect("a plan");
         let mut segments = plan.trajectory.segments().iter();

@@ -361,8 +361,6 @@ pub struct UnderWay {
     pub heading: f64,
     /// Speed, m/s.
     pub speed: f64,
-    /// Seconds until own ship turns to a parallel course by the last plan; infinite for none.
-    pub aside: f64,
     /// True where own ship has begun to return to its route.
     pub is_returning: bool,
 }

@@ -1,5 +1,6 @@
-//! Plans by the rules against a grid of the same family of manoeuvres: the slowest way that is
-//! obviously right. It shares the sets' contact test and the judges with the planner, no search.
+//! Plans by the rules against a dense search of the same family of manoeuvres, the slowest way that is
+//! obviously right: a grid, whose best are improved by random steps. It shares the sets' contact test and
+//! the judges with the planner, no search.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -21,6 +22,10 @@ const LENGTH: f64 = 2_500.0;
 const HORIZON: f64 = 1_000.0;
 /// Seconds of the latest departure: the risk exists at t = 0.
 const LATEST: f64 = 20.0;
+const LATEST_OVERTAKING: f64 = 10.0;
+/// Manoeuvres of the grid that are improved, and steps of each.
+const BEST: usize = 12;
+const STEPS: usize = 400;
 
 fn own() -> OwnShip {
     OwnShip {
@@ -39,9 +44,13 @@ fn target(role: Role, rng: &mut ChaCha8Rng) -> (Encountered, PolytopeObstacle) {
     let time = rng.random_range(120.0..200.0);
     let heading = match role {
         Role::HeadOn => std::f64::consts::PI + rng.random_range(-0.05..0.05),
+        Role::Overtaking => rng.random_range(-0.2..0.2),
         _ => rng.random_range(1.2..2.2),
     };
-    let speed = rng.random_range(4.0..6.0);
+    let speed = match role {
+        Role::Overtaking => rng.random_range(1.0..2.0),
+        _ => rng.random_range(4.0..6.0),
+    };
     let position = Vector::new(ORDERED * time, 0.0) - direction(heading) * (speed * time);
     let ship = SteadyShip::new(Pose::new(position, heading), speed);
     let hull = Hull::new(rng.random_range(40.0..90.0), 12.0);
@@ -86,18 +95,18 @@ fn end(motion: &[Segment]) -> (Pose, f64) {
         .map_or((own().pose, 0.0), |s| (s.end(), s.end_time()))
 }
 
-/// Back to the path from starboard of it at an angle, then on, faster while late. `None` where there is
-/// no room.
-fn returned(mut motion: Vec<Segment>, angle: f64) -> Option<Vec<Segment>> {
+/// Back to the path from a side of it (1 to port) at an angle, then on, faster while late. `None` where
+/// there is no room.
+fn returned(mut motion: Vec<Segment>, side: f64, angle: f64) -> Option<Vec<Segment>> {
     let (pose, _) = end(&motion);
-    turned(&mut motion, angle - pose.heading, FASTEST);
+    turned(&mut motion, -side * angle - pose.heading, FASTEST);
     let (pose, _) = end(&motion);
-    let left = -pose.position.y - RADIUS * (1.0 - angle.cos());
+    let left = side * pose.position.y - RADIUS * (1.0 - angle.cos());
     if !(left >= 0.0) {
         return None;
     }
     straight(&mut motion, left / angle.sin() / FASTEST, FASTEST);
-    turned(&mut motion, -angle, FASTEST);
+    turned(&mut motion, side * angle, FASTEST);
     let (pose, time) = end(&motion);
     let late = ORDERED * time - pose.position.x;
     let to_go = LENGTH - pose.position.x;
@@ -109,6 +118,47 @@ fn returned(mut motion: Vec<Segment>, angle: f64) -> Option<Vec<Segment>> {
     let (pose, _) = end(&motion);
     straight(&mut motion, (LENGTH - pose.position.x) / ORDERED, ORDERED);
     (end(&motion).1 <= HORIZON).then_some(motion)
+}
+
+/// A manoeuvre of the family: a turn, a line, the turn back and a parallel course, a return.
+#[derive(Debug, Clone, Copy)]
+struct Numbers {
+    /// 1 to port, and the speed until the return.
+    side: f64,
+    speed: f64,
+    /// Seconds of the departure, radians of the turn, seconds of the line (0: no parallel course) and of
+    /// the course after it, radians of the return.
+    values: [f64; 5],
+}
+
+impl Numbers {
+    /// The motion until the return.
+    fn passing(&self) -> Vec<Segment> {
+        let [leave, turn, hold, after, _] = self.values;
+        let mut motion = Vec::new();
+        straight(&mut motion, leave, ORDERED);
+        turned(&mut motion, self.side * turn, self.speed);
+        if hold > 0.0 {
+            straight(&mut motion, hold, self.speed);
+            turned(&mut motion, -self.side * turn, self.speed);
+        }
+        straight(&mut motion, after, self.speed);
+        motion
+    }
+
+    fn motion(&self) -> Option<Vec<Segment>> {
+        returned(self.passing(), self.side, self.values[4])
+    }
+
+    fn is_of_the_family(&self) -> bool {
+        let [leave, turn, hold, after, angle] = self.values;
+        (leave == 0.0 || leave >= 3.0)
+            && leave <= LATEST
+            && (30.0_f64.to_radians()..3.0).contains(&turn)
+            && (hold == 0.0 || hold >= 3.0)
+            && after >= 3.0
+            && (0.1..1.4).contains(&angle)
+    }
 }
 
 struct Scene {
@@ -166,62 +216,121 @@ impl Scene {
         whole_space_time_error(&self.desired, motion, ORDERED * ORDERED)
     }
 
-    /// The least cost of the grid: departures every 4 s, turns to starboard every 5°, holds every 3 s,
-    /// with a parallel course or without, returns every 2 s at ten angles.
-    fn least_of_grid(&self) -> f64 {
-        let mut least = f64::INFINITY;
-        for leave in 0..=(LATEST / 4.0) as usize {
-            for turn in 0..10 {
-                let turn = -(30.0 + 5.0 * f64::from(turn)).to_radians();
-                for hold in 0..40 {
-                    let mut out = Vec::new();
-                    straight(&mut out, 4.0 * leave as f64, ORDERED);
-                    turned(&mut out, turn, ORDERED);
-                    // the first has no parallel course
-                    if hold > 0 {
-                        straight(&mut out, 3.0 * f64::from(hold), ORDERED);
-                        turned(&mut out, -turn, ORDERED);
+    /// The least costs of a grid, one for each departure and turn: departures every 4 s, turns every 5°,
+    /// holds every 3 s, with a parallel course or without, returns every 2 s at ten angles.
+    fn grid(&self) -> Vec<(f64, Numbers)> {
+        let ways: &[(f64, f64)] = match self.encountered.role {
+            Role::Overtaking => &[
+                (1.0, ORDERED),
+                (-1.0, ORDERED),
+                (1.0, FASTEST),
+                (-1.0, FASTEST),
+            ],
+            _ => &[(-1.0, ORDERED)],
+        };
+        let mut found = Vec::new();
+        for &(side, speed) in ways {
+            for leave in 0..=(self.latest() / 4.0) as usize {
+                for turn in 0..14 {
+                    let turn = (30.0 + 5.0 * f64::from(turn)).to_radians() + 1e-9;
+                    let mut least: Option<(f64, Numbers)> = None;
+                    for hold in 0..40 {
+                        // the first has no parallel course
+                        let hold = 3.0 * f64::from(hold);
+                        let values = [4.0 * leave as f64, turn, hold, 3.0, 0.2];
+                        self.returns(
+                            Numbers {
+                                side,
+                                speed,
+                                values,
+                            },
+                            &mut least,
+                        );
                     }
-                    if self.is_clear(&out) {
-                        self.returns(&out, &mut least);
-                    }
+                    found.extend(least);
                 }
             }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found
+    }
+
+    fn returns(&self, mut numbers: Numbers, least: &mut Option<(f64, Numbers)>) {
+        for after in 0..120 {
+            numbers.values[3] = 3.0 + 2.0 * f64::from(after);
+            let passed = numbers.passing();
+            let so_far = sailed_space_time_error(&self.desired, &passed, ORDERED * ORDERED);
+            let most = least.map_or(f64::INFINITY, |(cost, _)| cost);
+            if so_far >= most || !self.is_clear(&passed) {
+                break;
+            }
+            for angle in 0..10 {
+                numbers.values[4] = 0.2 + 0.1 * f64::from(angle);
+                let most = least.map_or(f64::INFINITY, |(cost, _)| cost);
+                if let Some(cost) = self.cost_below(&numbers, most) {
+                    *least = Some((cost, numbers));
+                }
+            }
+        }
+    }
+
+    /// The cost of a lawful manoeuvre that is clear, where it is less.
+    fn cost_below(&self, numbers: &Numbers, most: f64) -> Option<f64> {
+        let cost = self.cost(&numbers.motion()?);
+        let good = || {
+            let motion = numbers.motion()?;
+            let passed = self.is_passed(&numbers.passing(), numbers.speed);
+            (passed && self.is_clear(&motion) && self.is_lawful(&motion)).then_some(cost)
+        };
+        if cost < most { good() } else { None }
+    }
+
+    /// The least cost that random steps find from the best manoeuvres of the grid. Steps shrink where
+    /// few are better.
+    fn least(&self, rng: &mut ChaCha8Rng) -> f64 {
+        let mut least = f64::INFINITY;
+        for (mut cost, mut numbers) in self.grid().into_iter().take(BEST) {
+            let mut scale = 1.0;
+            for _ in 0..STEPS {
+                let mut next = numbers;
+                for (value, step) in next.values.iter_mut().zip([4.0, 0.08, 3.0, 2.0, 0.1]) {
+                    // a number without a parallel course keeps none, and a bound is often best
+                    if *value > 0.0 && rng.random_range(0..3) > 0 {
+                        *value += scale * step * rng.random_range(-1.0..1.0);
+                    }
+                }
+                next.values[0] = next.values[0].clamp(0.0, self.latest());
+                next.values[1] = next.values[1].max(30.0_f64.to_radians() + 1e-9);
+                let found = next
+                    .is_of_the_family()
+                    .then(|| self.cost_below(&next, cost));
+                match found.flatten() {
+                    Some(better) => {
+                        (cost, numbers) = (better, next);
+                        scale = (scale * 1.5_f64).min(1.0);
+                    }
+                    None => scale = (scale * 0.97).max(1e-3),
+                }
+            }
+            least = least.min(cost);
         }
         least
     }
 
-    fn returns(&self, out: &[Segment], least: &mut f64) {
-        for after in 0..120 {
-            let mut passed = out.to_vec();
-            straight(&mut passed, 3.0 + 2.0 * f64::from(after), ORDERED);
-            let so_far = sailed_space_time_error(&self.desired, &passed, ORDERED * ORDERED);
-            if so_far >= *least || !self.is_clear(&passed) {
-                break;
-            }
-            if !self.is_passed(&passed, ORDERED) {
-                continue;
-            }
-            for angle in 0..10 {
-                let angle = 0.2 + 0.1 * f64::from(angle);
-                let Some(motion) = returned(passed.clone(), angle) else {
-                    continue;
-                };
-                let cost = self.cost(&motion);
-                if cost < *least && self.is_clear(&motion) && self.is_lawful(&motion) {
-                    *least = cost;
-                }
-            }
+    /// Seconds of the latest departure.
+    fn latest(&self) -> f64 {
+        match self.encountered.role {
+            Role::Overtaking => LATEST_OVERTAKING,
+            _ => LATEST,
         }
     }
 }
 
-#[test]
-fn no_manoeuvre_of_a_dense_grid_is_much_cheaper() {
-    let mut rng = ChaCha8Rng::seed_from_u64(57);
+/// Ratios of the costs of plans to the least costs of the family.
+fn ratios(role: Role, seed: u64, scenes: usize) -> Vec<f64> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut ratios = Vec::new();
-    for case in 0..6 {
-        let role = [Role::HeadOn, Role::GiveWay][case % 2];
+    for case in 0..scenes {
         let scene = Scene::new(role, &mut rng);
         let (own, encountered) = (own(), [scene.encountered]);
         let sets: [Obstacle; 1] = [scene.set.clone().into()];
@@ -234,11 +343,36 @@ fn no_manoeuvre_of_a_dense_grid_is_much_cheaper() {
         assert_eq!(plan.method, PlanMethod::Rules);
         let motion = plan.trajectory.segments();
         assert!(scene.is_clear(motion) && scene.is_lawful(motion), "{case}");
-        ratios.push(scene.cost(motion) / scene.least_of_grid());
+        ratios.push(scene.cost(motion) / scene.least(&mut rng));
     }
-    println!("{ratios:.3?}");
-    assert!(
-        ratios.iter().all(|ratio| (0.8..1.02).contains(ratio)),
-        "{ratios:.3?}"
-    );
+    ratios.sort_by(f64::total_cmp);
+    ratios
+}
+
+#[test]
+fn no_manoeuvre_of_a_dense_search_is_much_cheaper() {
+    for (role, seed) in [(Role::HeadOn, 57), (Role::GiveWay, 58)] {
+        let ratios = ratios(role, seed, 2);
+        println!("{role:?} {ratios:.3?}");
+        let near = ratios.iter().all(|ratio| (0.8..1.05).contains(ratio));
+        assert!(near, "{role:?} {ratios:.3?}");
+    }
+}
+
+/// The table of docs/rules.md.
+#[test]
+#[ignore = "some minutes"]
+fn plans_and_dense_search_of_many_scenes() {
+    for (role, seed) in [
+        (Role::HeadOn, 570),
+        (Role::GiveWay, 571),
+        (Role::Overtaking, 572),
+    ] {
+        let ratios = ratios(role, seed, 25);
+        let [median, most] = [ratios[12], ratios[23]];
+        println!(
+            "{role:?}: median {median:.3}, 95 % {most:.3}, worst {:.3}",
+            ratios[24]
+        );
+    }
 }

@@ -6,4 +6,5 @@ pub mod encounters;
 pub mod harbour;
 pub mod invariance;
 pub mod mutations;
+pub mod relations;
 pub mod tidiness;

@@ -15,7 +15,9 @@ use std::process::ExitCode;
 
 use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
-use campaigns::plans::{asked, compliance, encounters, harbour, invariance, mutations, tidiness};
+use campaigns::plans::{
+    asked, compliance, encounters, harbour, invariance, mutations, relations, tidiness,
+};
 use campaigns::{Report, dense_search, forces, path_time, stopping, wild};
 use clap::{Args, Parser, Subcommand};
 use searoom::scenario::Compliance;
@@ -139,6 +141,8 @@ enum Campaign {
     Asked(Scenes<200>),
     /// Scenes moved, turned, mirrored and scaled
     Invariance(Scenes<300>),
+    /// Changes whose effect on the cost is known: horizon, speeds, margin, a far ship, waypoints, legs
+    Relations(Scenes<100>),
     /// Numbers of plan documents altered, each alone
     Mutations {
         /// Numbers altered in each document; all of them if not given
@@ -252,6 +256,7 @@ fn run(campaign: Campaign) -> Report {
         }
         Campaign::Asked(scenes) => asked::run(scenes.of_each(1)),
         Campaign::Invariance(scenes) => invariance::run(scenes.of_each(1)),
+        Campaign::Relations(scenes) => relations::run(scenes.of_each(1)),
         Campaign::Mutations { numbers } => mutations::run(numbers),
         Campaign::Wild {
             scenes,

@@ -8,7 +8,10 @@ use std::path::Path;
 
 use searoom::document::PlanDocument;
 use searoom::pipeline;
-use searoom::report::figure::{FigureOptions, comparison_figure, plan_figure, simulation_figure};
+use searoom::planner::SearchKind;
+use searoom::report::figure::{
+    Figure, FigureOptions, comparison_figure, explored_panel, plan_figure, simulation_figure,
+};
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::compare;
@@ -30,6 +33,9 @@ const PLANS: [&str; 5] = [
 
 /// Scenario that is sailed in the closed loop.
 const SAILED: &str = "closed-loop/harbour-ferries";
+
+/// Scenario whose searches are drawn side by side.
+const SEARCHED: &str = "colregs/give-way";
 
 /// Scenario of the comparison, and its accepted risks.
 const COMPARED: (&str, [f64; 4]) = ("colregs/give-way", [0.0, 0.1, 0.2, 0.4]);
@@ -58,6 +64,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         simulation.step();
     }
     simulation_figure(&scenario, &simulation.record(), &natural)?.write(&picture(SAILED, ""))?;
+    let panels = [SearchKind::AStar, SearchKind::Dijkstra].map(|search| {
+        let run = pipeline::run(Scenario {
+            search,
+            ..read(SEARCHED)?
+        });
+        let nodes = run.planned.stats.map_or(0, |stats| stats.expanded);
+        let title = format!("{}: {nodes} nodes expanded", search.label());
+        Ok(explored_panel(&title, &run))
+    });
+    let panels = panels
+        .into_iter()
+        .collect::<Result<_, Box<dyn std::error::Error>>>()?;
+    Figure::new(2, panels).write(&picture(SEARCHED, "-searched"))?;
     let (name, risks) = COMPARED;
     let scenario = read(name)?;
     let entries = compare(&scenario, &risks);

@@ -2,6 +2,7 @@
 
 use crate::Problem;
 use crate::space_time::land;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::proxy::{Proxy, first_contact};
 use crate::space_time::route::Route;
 use searoom_model::trajectory::Segment;
@@ -18,6 +19,8 @@ pub(crate) struct Context<'a> {
     pub proxies: &'a [Proxy<'a>],
     /// Land blocks.
     pub blocks: &'a [Proxy<'a>],
+    /// Speeds where the first conflict is.
+    pub speeds: ManoeuvreSpeeds,
     /// Longest arc per chord in the search for approaches, radians.
     pub chord: f64,
     /// Least time of a segment variable, seconds.
@@ -25,18 +28,20 @@ pub(crate) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// Final accuracy, and no least time.
+    /// Final accuracy, and no least time. The nominal motion has its first conflict at a time, seconds.
     pub(crate) fn new(
         problem: &'a Problem<'a>,
         route: &'a Route,
         proxies: &'a [Proxy<'a>],
         blocks: &'a [Proxy<'a>],
+        first_conflict: f64,
     ) -> Self {
         Self {
             problem,
             route,
             proxies,
             blocks,
+            speeds: ManoeuvreSpeeds::at(problem, first_conflict),
             chord: FINE_CHORD_RAD,
             segment_time: 0.0,
         }

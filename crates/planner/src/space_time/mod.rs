@@ -270,11 +270,12 @@ fn plan_with(
         return refuse(covered);
     }
     let blocks = land::proxies(problem);
-    let context = Context::new(problem, &route, proxies, &blocks);
     let contact = first_contact(proxies, &nominal_motion);
     let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
+    let at = first_conflict.unwrap_or(0.0);
+    let context = Context::new(problem, &route, proxies, &blocks, at);
     let has_duty = !problem.duty().is_none() && first_conflict.is_some();
     if has_duty || problem.under_way.is_some() {
         let explored = RefCell::default();

@@ -60,6 +60,8 @@ struct RoutePiece {
     slowness: f64,
     /// Leg that it lies on, where it is straight on one.
     leg: Option<usize>,
+    /// Speed of its leg, or of the leg before a corner, m/s.
+    ordered: f64,
     /// Speed regardless of the schedule: set for the joining manoeuvre.
     speed: Option<f64>,
 }
@@ -196,6 +198,7 @@ impl Route {
             for piece in &mut self.pieces {
                 piece.due *= factor;
                 piece.slowness *= factor;
+                piece.ordered /= factor;
             }
         }
         self
@@ -245,7 +248,7 @@ impl Route {
         };
         let join = Pose::new(first.start + first.direction * along, heading(leg));
         let due = first.start_time + along / first.speed;
-        route.connect(own.pose, join, radius, None, due, Some(speed))?;
+        route.connect(own.pose, join, radius, None, (due, speed), Some(speed))?;
         let mut at = (join, due, along);
         for next in leg + 1..legs.len() {
             let before = &legs[next - 1];
@@ -279,10 +282,11 @@ impl Route {
                 entry,
                 radius,
                 Some((next - 1, before)),
-                entry_due,
+                (entry_due, before.speed),
                 None,
             )?;
-            route.connect(entry, exit, radius, None, exit_due, None)?;
+            let due = (exit_due, before.speed);
+            route.connect(entry, exit, radius, None, due, None)?;
             at = (exit, exit_due, offset);
         }
         let last = legs.len() - 1;
@@ -303,20 +307,20 @@ impl Route {
             end,
             radius,
             Some((last, &legs[last])),
-            desired.duration(),
+            (desired.duration(), legs[last].speed),
             None,
         )?;
         (!route.pieces.is_empty()).then_some(route)
     }
 
-    /// Appends the shortest path between two poses; `due` is the scheduled time at its end.
+    /// Appends the shortest path between two poses; `due` is the scheduled time at its end, `ordered` the speed of its leg.
     fn connect(
         &mut self,
         from: Pose,
         to: Pose,
         radius: f64,
         leg: Option<(usize, &searoom_model::trajectory::DesiredLeg)>,
-        due: f64,
+        (due, ordered): (f64, f64),
         speed: Option<f64>,
     ) -> Option<()> {
         let path = dubins::shortest(&from, &to, radius)?;
@@ -352,6 +356,7 @@ impl Route {
                 due: due_here,
                 slowness,
                 leg: on_leg.map(|(i, _)| i),
+                ordered,
                 speed,
             };
             pose = piece.end();
@@ -413,6 +418,29 @@ impl Route {
         speed: f64,
         out: &mut Vec<Segment>,
     ) -> f64 {
+        self.run_at(from, time, length, |_| speed, out)
+    }
+
+    /// Follows `length` metres of the route at the ordered speed of each part; returns the distance
+    /// reached. A delay is not made good.
+    pub(crate) fn run_ordered(
+        &self,
+        from: f64,
+        time: f64,
+        length: f64,
+        out: &mut Vec<Segment>,
+    ) -> f64 {
+        self.run_at(from, time, length, |piece| self.ordered(piece), out)
+    }
+
+    fn run_at(
+        &self,
+        from: f64,
+        time: f64,
+        length: f64,
+        speed: impl Fn(&RoutePiece) -> f64,
+        out: &mut Vec<Segment>,
+    ) -> f64 {
         let (mut at, mut time) = (from, time);
         let end = (from + length).min(self.length());
         while end - at > tolerance::LENGTH_M {
@@ -426,7 +454,7 @@ impl Route {
                 piece.pose_after(at - piece.distance),
                 time,
                 step,
-                speed,
+                speed(piece),
                 piece.curvature,
             );
             time += part.duration;
@@ -434,6 +462,39 @@ impl Route {
             out.push(part);
         }
         at
+    }
+
+    /// Own ship's speed that is nearest to the ordered one.
+    fn ordered(&self, piece: &RoutePiece) -> f64 {
+        piece
+            .speed
+            .unwrap_or_else(|| self.nearest_speed(piece.ordered))
+    }
+
+    /// Ordered speed at a distance along the route, m/s.
+    pub(crate) fn ordered_speed(&self, distance: f64) -> f64 {
+        self.ordered(&self.pieces[self.piece_at(distance)])
+    }
+
+    /// Seconds from the start to a distance along the route at the ordered speeds.
+    pub(crate) fn ordered_time(&self, distance: f64) -> f64 {
+        let sailed = |p: &RoutePiece| (distance - p.distance).clamp(0.0, p.length);
+        let times = self.pieces.iter().map(|p| sailed(p) / self.ordered(p));
+        times.sum()
+    }
+
+    /// Distance along the route that is reached at a time at the ordered speeds, metres.
+    pub(crate) fn ordered_distance(&self, time: f64) -> f64 {
+        let mut left = time;
+        for piece in &self.pieces {
+            let speed = self.ordered(piece);
+            // negated on purpose: a NaN goes nowhere
+            if !(left * speed > piece.length) {
+                return piece.distance + (left * speed).max(0.0);
+            }
+            left -= piece.length / speed;
+        }
+        self.length()
     }
 
     /// Scheduled time at a distance along the route.

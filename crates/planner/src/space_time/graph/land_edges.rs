@@ -30,13 +30,13 @@ pub(super) fn land_edges(
     nominal_motion: &[Segment],
 ) -> impl Iterator<Item = TangentEdges> {
     let land_obstacle = problem.land_obstacle;
-    let aground = first_contact(land_obstacle, nominal_motion).is_some();
-    let blocks = if aground {
+    let grounds = first_contact(land_obstacle, nominal_motion);
+    let blocks = if grounds.is_some() {
         near(land_obstacle, nominal_motion.iter(), AIMED_M)
     } else {
         Vec::new()
     };
-    let speed_table = ManoeuvreSpeeds::of(problem);
+    let speed_table = ManoeuvreSpeeds::at(problem, grounds.unwrap_or(0.0));
     blocks.into_iter().filter_map(move |b| {
         let block = &land_obstacle.blocks()[b];
         let around = outer_simplified(block.initial(), BLOCK_VERTICES);

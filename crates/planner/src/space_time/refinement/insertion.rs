@@ -67,7 +67,7 @@ pub(crate) fn with_insertions(
 pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
     let radius = context.problem.own.turning_radius;
     let is_of_use = |(variable, length): &(SegmentVariable, f64)| match variable {
-        SegmentVariable::Run { .. } => true,
+        SegmentVariable::Ordered { .. } | SegmentVariable::Run { .. } => true,
         SegmentVariable::Arc { .. } => *length >= LEAST_TURN * radius,
         SegmentVariable::Line { .. } => *length >= LEAST_LINE * radius,
     };
@@ -89,7 +89,7 @@ fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialG
         ));
     };
     for (variable, length) in guess.pieces() {
-        let is_run = matches!(variable, SegmentVariable::Run { .. });
+        let is_run = variable.is_on_route();
         if length >= EMPTY_M || is_run && length > 0.0 {
             add(variable, length);
         }
@@ -159,8 +159,10 @@ fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
 
 /// Every kind of segment variable after the runs.
 fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
-    let speed_table = ManoeuvreSpeeds::of(context.problem);
-    let mut speeds = vec![speed_table.slow, speed_table.normal, speed_table.fast];
+    let ManoeuvreSpeeds {
+        slow, normal, fast, ..
+    } = context.speeds;
+    let mut speeds = vec![slow, normal, fast];
     speeds.dedup();
     speeds.into_iter().flat_map(|speed| {
         let turns = Side::BOTH.map(|side| SegmentVariable::Arc { side, speed });

@@ -256,7 +256,7 @@ pub(crate) mod tests {
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];
-        let context = Context::new(&problem, &route, &proxies, &[]);
+        let context = Context::new(&problem, &route, &proxies, &[], 0.0);
         let canonical = EvasiveManoeuvre::new(0.7, 0.9, 1.0);
         let conflict = Conflict {
             from: 140.0,

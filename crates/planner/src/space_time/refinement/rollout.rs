@@ -102,6 +102,8 @@ pub(crate) struct Place {
     pub position: Vector,
     pub ahead: Vector,
     pub time: f64,
+    /// Seconds per metre there.
+    pub slowness: f64,
     /// Segment variable, and the fraction of it before the point.
     pub variable: usize,
     pub share: f64,
@@ -130,6 +132,7 @@ impl Rollout {
             position,
             ahead,
             time: l.segment.start_time + l.segment.duration * fraction,
+            slowness: 1.0 / l.segment.speed,
             variable: index,
             share: from + (to - from) * fraction,
         })
@@ -137,15 +140,14 @@ impl Rollout {
 
     /// Rates of a point with its own segment variable: (east, north, clock) per metre.
     pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
-        let share = if index == place.variable {
-            place.share
-        } else {
-            1.0
+        let (share, slowness) = match index == place.variable {
+            true => (place.share, place.slowness),
+            false => (1.0, self.rigid_motions[index].slowness),
         };
         [
             share * place.ahead.x,
             share * place.ahead.y,
-            share * self.rigid_motions[index].slowness,
+            share * slowness,
         ]
     }
 

@@ -21,7 +21,10 @@ pub(crate) const FLATTEST_RETURN: f64 = 0.01;
 /// Segment variable: kind, side and speed of a part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SegmentVariable {
-    /// Follows the route.
+    /// Follows the route at the ordered speed of each of its parts; where the manoeuvre begins that is
+    /// `speed`.
+    Ordered { speed: f64 },
+    /// Follows the route at one speed.
     Run { speed: f64 },
     /// Turns with the turning radius.
     Arc { side: Side, speed: f64 },
@@ -32,14 +35,21 @@ pub(crate) enum SegmentVariable {
 impl SegmentVariable {
     pub(crate) fn speed(&self) -> f64 {
         match *self {
-            Self::Run { speed } | Self::Arc { speed, .. } | Self::Line { speed } => speed,
+            Self::Ordered { speed } | Self::Run { speed } => speed,
+            Self::Arc { speed, .. } | Self::Line { speed } => speed,
         }
+    }
+
+    /// True for a part of the route.
+    pub(crate) fn is_on_route(&self) -> bool {
+        matches!(self, Self::Ordered { .. } | Self::Run { .. })
     }
 
     /// This segment variable at another speed.
     pub(crate) fn at_speed(self, speed: f64) -> Self {
         match self {
-            Self::Run { .. } => Self::Run { speed },
+            Self::Ordered { speed: ordered } if speed == ordered => self,
+            Self::Ordered { .. } | Self::Run { .. } => Self::Run { speed },
             Self::Arc { side, .. } => Self::Arc { side, speed },
             Self::Line { .. } => Self::Line { speed },
         }
@@ -91,8 +101,8 @@ impl Structure {
         };
         let mut runs = 0;
         for (index, variable) in self.variables.iter().enumerate() {
-            if let SegmentVariable::Run { speed } = *variable {
-                at.run(route, index, lengths[index], speed, &mut rollout);
+            if variable.is_on_route() {
+                at.run(route, *variable, index, lengths[index], &mut rollout);
                 runs = index + 1;
             } else {
                 at.roll_out(*variable, index, lengths[index], &mut rollout);
@@ -253,10 +263,27 @@ impl Cursor {
         };
     }
 
-    fn run(&mut self, route: &Route, index: usize, length: f64, speed: f64, rollout: &mut Rollout) {
+    fn run(
+        &mut self,
+        route: &Route,
+        variable: SegmentVariable,
+        index: usize,
+        length: f64,
+        rollout: &mut Rollout,
+    ) {
         let mut motions = Vec::new();
-        let before = self.route;
-        self.route = route.run(self.route, self.time, length, speed, &mut motions);
+        let (before, time) = (self.route, self.time);
+        self.route = match variable {
+            SegmentVariable::Ordered { .. } => {
+                route.run_ordered(before, time, length, &mut motions)
+            }
+            _ => route.run(before, time, length, variable.speed(), &mut motions),
+        };
+        let speed = match (motions.last(), variable) {
+            (Some(last), _) => last.speed,
+            (None, SegmentVariable::Ordered { .. }) => route.ordered_speed(before),
+            (None, _) => variable.speed(),
+        };
         let total = (self.route - before).max(1e-12);
         let mut from = 0.0;
         for segment in motions {

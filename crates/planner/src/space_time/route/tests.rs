@@ -17,6 +17,7 @@ fn line(slowness: f64, length: f64) -> Route {
             due: 0.0,
             slowness,
             leg: None,
+            ordered: 5.0,
             speed: None,
         }],
         least_change: 0.0,

@@ -2,7 +2,7 @@
 //! a manoeuvre that hugs what it passes.
 //!
 //! ```text
-//! Route ─► Out ─┬► direct ──────────┬► Passed ─► back at an angle ─► End
+//! Route ─► Out ─┬► direct ──────────┬► Passed ─► back at an angle, or to the end ─► End
 //!               └► parallel, wider ─┘
 //! Route ─► Out at half speed or less ──► along the route again ──► End
 //! ```
@@ -20,7 +20,7 @@ use crate::space_time::bound::squared_ramp;
 use crate::space_time::manoeuvre::motion::part;
 use crate::space_time::proxy::first_met;
 use crate::space_time::rules::hug::COARSE_S;
-use crate::space_time::rules::manoeuvre::{FirstAlteration, Manoeuvres, Partial, Phase};
+use crate::space_time::rules::manoeuvre::{FirstAlteration, Manoeuvres, Partial, Phase, WayBack};
 use crate::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, SearchKind, SearchStats,
 };
@@ -44,7 +44,7 @@ impl Space for Graph<'_, '_, '_> {
 
     fn successors(&mut self, state: &Partial, out: &mut Vec<(Partial, f64)>) {
         let from = state.cost;
-        let mut add = |next: Partial| {
+        let add = |next: Partial| {
             let step = next.cost - from;
             // the cost of a part and that of the whole differ by rounding
             out.push((next, step.max(0.0)));
@@ -67,8 +67,7 @@ impl Space for Graph<'_, '_, '_> {
                 }
             },
             Phase::Passed => {
-                let back = |angle: &f64| self.manoeuvres.back(state, *angle, COARSE_S);
-                self.angles.iter().filter_map(back).for_each(&mut add);
+                ways_back(self.manoeuvres, state, self.angles, f64::INFINITY).for_each(add);
             }
             Phase::End => {}
         }
@@ -98,6 +97,24 @@ impl Space for Graph<'_, '_, '_> {
     fn is_out_of_time(&self) -> bool {
         self.manoeuvres.effort.clock.is_up()
     }
+}
+
+/// The ends of a manoeuvre once the targets are passed: onto the route at some angles, radians, the least
+/// first. Where the route is too short for the least, also by one turn to the last waypoint.
+/// Only those that cost less than `below`.
+pub(super) fn ways_back<'m>(
+    manoeuvres: &'m Manoeuvres,
+    passed: &'m Partial,
+    angles: &'m [f64],
+    below: f64,
+) -> impl Iterator<Item = Partial> + 'm {
+    let onto = angles.iter().map(|angle| WayBack::At(*angle));
+    let flattest = angles
+        .first()
+        .filter(|angle| manoeuvres.ends_soon(passed, **angle));
+    let to_end = flattest.map(|_| WayBack::ToEnd);
+    let ways = onto.chain(to_end);
+    ways.filter_map(move |way| manoeuvres.back(passed, way, COARSE_S, below))
 }
 
 /// The ways to go on after a turn until the targets are passed.

@@ -7,7 +7,7 @@ use searoom_colregs::compliance::{ComplianceReport, OwnSamples};
 use searoom_colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_model::target::ShipTrack;
-use searoom_model::trajectory::{Segment, Trajectory};
+use searoom_model::trajectory::{Mover, Segment, Trajectory};
 use searoom_model::vessel::Hull;
 
 /// Samples per segment for the position relative to a target.
@@ -135,18 +135,22 @@ fn keeps_off_bow_of(encountered: &Encountered, motion: &[Segment]) -> bool {
         return true;
     }
     let ship = &encountered.ship;
+    let (drift, ahead) = (ship.velocity(), ship.pose.ahead());
     let seen = |s: &Segment, time: f64| {
-        let target = Pose {
-            position: ship.pose.position + ship.velocity() * time,
-            ..ship.pose
-        };
-        target.body_coordinates(s.pose_at(time).position)
+        let from_target = s.pose_at(time).position - ship.pose.position - drift * time;
+        Vector::new(ahead.dot(&from_target), cross(ahead, from_target))
     };
     let mut before: Option<Vector> = None;
     motion.iter().all(|s| {
         let hampers = room.is_finite() && s.speed < ship.speed;
-        (0..=ARC_SAMPLES).all(|k| {
-            let share = f64::from(k) / f64::from(ARC_SAMPLES);
+        // seen from the target a line is one, too
+        let parts = if s.is_arc() || hampers {
+            ARC_SAMPLES
+        } else {
+            1
+        };
+        (0..=parts).all(|k| {
+            let share = f64::from(k) / f64::from(parts);
             let here = seen(s, s.start_time + s.duration * share);
             if hampers && here.x > 0.0 && here.norm() < room {
                 return false;
@@ -181,6 +185,11 @@ fn keeps_off(problem: &Problem, off_route: &[Segment], side: Side, until: f64) -
     })
 }
 
+/// Metres from the centre of a hull to its farthest point in a direction.
+fn reach(hull: &Hull, ahead: Vector, toward: Vector) -> f64 {
+    0.5 * (hull.length * ahead.dot(&toward).abs() + hull.beam * cross(ahead, toward).abs())
+}
+
 /// Closest approach of the hulls on a motion to a target that holds course and speed.
 #[derive(Debug)]
 struct Nearest {
@@ -190,16 +199,12 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// By samples every [`NEAREST_S`] seconds, and at the ends of the segments.
+    /// The nearest of the samples every [`NEAREST_S`] seconds, and at the ends of the segments.
     fn of(own: &Hull, encountered: &Encountered, motion: &[Segment]) -> Self {
         let ship = &encountered.ship;
-        let at = |s: &Segment, time: f64| {
-            let target = ship.pose.position + ship.velocity() * time;
-            (s.pose_at(time), target)
-        };
+        let drift = ship.velocity();
         let apart = |s: &Segment, time: f64| {
-            let (pose, target) = at(s, time);
-            (pose.position - target).norm()
+            (s.pose_at(time).position - ship.pose.position - drift * time).norm()
         };
         let steps = |s: &Segment| (s.duration / NEAREST_S).ceil().max(1.0);
         let sample = |s: &Segment, k: f64| s.start_time + s.duration * (k / steps(s));
@@ -211,8 +216,8 @@ impl Nearest {
                 let closing = s.speed + ship.speed;
                 return 0.5 * (from + to - closing * s.duration);
             }
-            let offset = s.start.position - ship.pose.position - ship.velocity() * s.start_time;
-            let relative = s.velocity_at(s.start_time) - ship.velocity();
+            let offset = s.start.position - ship.pose.position - drift * s.start_time;
+            let relative = s.velocity_at(s.start_time) - drift;
             let ahead = -offset.dot(&relative) / relative.norm_squared();
             // a NaN, without relative motion, is the first
             let k = (ahead / s.duration * steps(s)).round().max(0.0);
@@ -227,36 +232,68 @@ impl Nearest {
         let long = own.half_diagonal() + encountered.hull.half_diagonal();
         let wide = [own, &encountered.hull].map(|hull| 0.5 * hull.length.min(hull.beam));
         let most = centres + long - wide.iter().sum::<f64>();
-        let (mut least, mut nearest) = (f64::INFINITY, None);
         let origin = |heading| Pose::new(Vector::zeros(), heading);
         let hull = encountered.hull.polygon(&origin(ship.pose.heading));
         let both = |heading| hull.minkowski_sum(&own.polygon(&origin(heading)).negated());
-        for s in motion {
-            if centres_on(s) > most {
-                continue;
+        let (mut least, mut nearest) = (f64::INFINITY, None);
+        let mut add = |s: &Segment, (time, from_target): (f64, Vector), hulls: f64| {
+            if hulls < least {
+                let relative = s.velocity_at(time) - drift;
+                nearest = Some(Self {
+                    time,
+                    drifts_to_port: cross(relative, from_target) < 0.0,
+                });
+                least = hulls;
             }
-            // on a line the heading is that of its start
-            let on_line = (!s.is_arc()).then(|| both(s.start.heading));
-            for k in 0..=steps(s) as usize {
+            least
+        };
+        let course = ship.pose.ahead();
+        let near = |s: &&Segment| centres_on(s) <= most;
+        // lines first, because they leave few samples of arcs
+        let (arcs, lines): (Vec<&Segment>, Vec<&Segment>) =
+            motion.iter().filter(near).partition(|s| s.is_arc());
+        let mut so_far = f64::INFINITY;
+        for s in lines {
+            // the heading is that of its start, and the distance of the hulls convex in time
+            let (sum, velocity) = (both(s.start.heading), s.velocity_at(s.start_time));
+            let from_target = |k: usize| {
                 let time = sample(s, k as f64);
-                let (pose, target) = at(s, time);
-                let from_target = pose.position - target;
+                let place = s.start.position + velocity * (time - s.start_time);
+                (time, place - ship.pose.position - drift * time)
+            };
+            let hulls = |k: usize| sum.signed_distance(from_target(k).1);
+            let (mut first, mut last) = (0, steps(s) as usize);
+            while first < last {
+                let middle = (first + last) / 2;
+                match hulls(middle) <= hulls(middle + 1) {
+                    true => last = middle,
+                    false => first = middle + 1,
+                }
+            }
+            so_far = add(s, from_target(first), hulls(first));
+        }
+        for s in arcs {
+            let mover = Mover::new(s);
+            // metres by which the hulls come nearer from one sample to the next, at most
+            let turning = s.turn_rate.abs() * own.half_diagonal();
+            let step = (s.speed + ship.speed + turning) * s.duration / steps(s);
+            // from the nearer end, because the others are left out by what is found there
+            let (steps, begins) = (steps(s), apart(s, s.start_time) < apart(s, s.end_time()));
+            let mut along = 0.0;
+            while along <= steps {
+                let time = sample(s, if begins { along } else { steps - along });
+                let from_target = mover.position_at(time) - ship.pose.position - drift * time;
                 let range = from_target.norm();
-                if range > most || range - long >= least {
-                    continue;
+                let (to_own, ahead) = (from_target / range, mover.velocity_at(time) / s.speed);
+                // no hulls are nearer than along the line between their centres
+                let reaches = reach(own, ahead, to_own) + reach(&encountered.hull, course, to_own);
+                let mut hulls = range - reaches;
+                // negated on purpose: a NaN, at no range, is not far
+                if !(hulls >= so_far) {
+                    hulls = both(s.pose_at(time).heading).signed_distance(from_target);
+                    so_far = add(s, (time, from_target), hulls);
                 }
-                let hulls = match &on_line {
-                    Some(sum) => sum.signed_distance(from_target),
-                    None => both(pose.heading).signed_distance(from_target),
-                };
-                if hulls < least {
-                    let relative = s.velocity_at(time) - ship.velocity();
-                    least = hulls;
-                    nearest = Some(Self {
-                        time,
-                        drifts_to_port: cross(relative, from_target) < 0.0,
-                    });
-                }
+                along += ((hulls - so_far) / step).floor().max(1.0);
             }
         }
         nearest.unwrap_or(Self {

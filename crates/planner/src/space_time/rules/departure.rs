@@ -2,7 +2,6 @@
 //! before it may act, and not after its last escape.
 
 use crate::Problem;
-use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::rules::manoeuvre::{LEAST_S, Manoeuvres};
 use searoom_colregs::{Encountered, MayAct, Role, SMALL_TURN};
 use searoom_geometry::frame::{heading_of, wrap};
@@ -51,7 +50,7 @@ impl Manoeuvres<'_, '_> {
         let (limits, own) = (self.problem().thresholds, self.problem().own);
         let ample = limits.ample_time(own.hull.length);
         let soon = limits.time_factor(own.hull.length) * limits.monitor.response();
-        let turning = SMALL_TURN * own.turning_radius / ManoeuvreSpeeds::of(self.problem()).normal;
+        let turning = SMALL_TURN * own.turning_radius / self.context.speeds.normal;
         let keeping_clear = self.passing.iter().filter(|p| p.keeps_clear());
         let latest = keeping_clear.map(|p| {
             let e = p.encountered;

@@ -1,6 +1,7 @@
 //! Several targets: those that are passed in one manoeuvre, and the manoeuvres one after another.
 
 use crate::space_time::context::Context;
+use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::can_hold_speed;
@@ -170,6 +171,7 @@ fn resolved(
     };
     let context = Context {
         problem: &problem,
+        speeds: ManoeuvreSpeeds::at(&problem, contact),
         ..*context
     };
     let mut manoeuvres = Manoeuvres::new(&context, motion, all, effort);

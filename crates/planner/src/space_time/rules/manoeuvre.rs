@@ -3,19 +3,19 @@
 //!
 //! ```text
 //! hold ─► turn ─► straight [─► parallel] ─► passed ─► turn back ─► join the route
-//! hold ─► half speed or less ───────────► passed ─► follow the route
+//! hold ─► half speed or less, or a stop ─► passed ─► follow the route
 //! ```
 //!
 //! A [`Partial`] manoeuvre is built part by part: each part is the shortest one whose line is clear
-//! ([`hug`](super::hug)), so only the departure, the course, and the angle of the return are chosen.
+//! ([`hug`](super::hug)), so only the departure, the course, and the way back are chosen.
 
 use crate::space_time::bound::Heuristic;
 use crate::space_time::context::Context;
 use crate::space_time::land;
 use crate::space_time::manoeuvre::chain::Chain;
+use crate::space_time::manoeuvre::interceptor::Interceptor;
 use crate::space_time::manoeuvre::motion::until;
 use crate::space_time::manoeuvre::return_to_line::motion_back;
-use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::proxy::Proxy;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::bodies::Passing;
@@ -34,6 +34,9 @@ const NORMAL_TURN_S: f64 = 20.0;
 /// Largest first turn, radians: with a little more own ship would turn about.
 pub(super) const LARGEST_TURN: f64 = 3.0;
 
+/// Largest turn toward the last waypoint, radians: with more own ship would circle.
+const LARGEST_LAST: f64 = 2.5;
+
 /// Seconds of the least segment.
 pub(super) const LEAST_S: f64 = 3.0;
 
@@ -49,7 +52,7 @@ const SHORT_PRICE: f64 = 2.0;
 pub(super) enum FirstAlteration {
     /// Turn in radians to port, and the speed in m/s.
     Turn { turn: f64, speed: f64 },
-    /// The speed that is kept until passed, m/s.
+    /// The speed that is kept until passed, m/s; 0 for a stop.
     Slow { speed: f64 },
 }
 
@@ -78,6 +81,15 @@ pub(super) enum Outward {
     Parallel { spare: f64 },
 }
 
+/// How own ship comes back once the targets are passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum WayBack {
+    /// Onto the route, by a line at this angle to it, radians.
+    At(f64),
+    /// By one turn and a line to the last waypoint, at the greatest speed or at the one ordered there.
+    ToEnd,
+}
+
 /// Where a partial manoeuvre ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Phase {
@@ -99,8 +111,7 @@ pub(super) struct Partial {
     pub leave: f64,
     pub first: FirstAlteration,
     pub outward: Outward,
-    /// Angle between the return line and the route, radians.
-    pub angle: f64,
+    pub way_back: WayBack,
     /// Number of segments before the route is left.
     pub before: usize,
     /// From t = 0 on.
@@ -123,7 +134,7 @@ impl Partial {
             leave: 0.0,
             first: FirstAlteration::Slow { speed: 0.0 },
             outward: Outward::Direct,
-            angle: 0.0,
+            way_back: WayBack::ToEnd,
             before: 0,
             motion: Vec::new(),
             returns: 0.0,
@@ -202,6 +213,8 @@ pub(super) struct Manoeuvres<'s, 'a> {
     pub keeps_a_length: fn(&Passing) -> bool,
     /// True where turns are made at half speed or less.
     pub slows_to_turn: bool,
+    /// True where own ship may also stop.
+    pub stops: bool,
     /// Largest first turn, radians.
     pub most_turn: f64,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
@@ -228,7 +241,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let obstacles = problem.obstacles.iter();
         let passing = problem.encountered.iter().map(|e| Passing::new(problem, e));
-        let turn_s = problem.own.turning_radius / ManoeuvreSpeeds::of(problem).normal;
+        let turn_s = problem.own.turning_radius / context.speeds.normal;
         Self {
             context,
             nominal_motion,
@@ -237,6 +250,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             passing: passing.collect(),
             keeps_a_length: |_| true,
             slows_to_turn: false,
+            stops: false,
             most_turn: LARGEST_TURN,
             unit: (turn_s / NORMAL_TURN_S).max(1.0),
             gaps: problem.obstacles.len() > 1 || !problem.land_obstacle.is_empty(),
@@ -375,12 +389,33 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         in_time.then_some(partial)
     }
 
-    /// The least further hold after which a return at an angle is clear, to the end of the route.
-    pub(super) fn back(&self, passed: &Partial, angle: f64, close: f64) -> Option<Partial> {
-        let (problem, route) = (self.problem(), self.context.route);
+    /// The least further hold after which a way back is clear, to the end of the route, and costs less
+    /// than `below`.
+    pub(super) fn back(
+        &self,
+        passed: &Partial,
+        way_back: WayBack,
+        close: f64,
+        below: f64,
+    ) -> Option<Partial> {
         let FirstAlteration::Turn { turn, speed } = passed.first else {
             return None;
         };
+        match way_back {
+            WayBack::At(angle) => self.back_onto_route(passed, (turn, speed), angle, close, below),
+            WayBack::ToEnd => self.to_end(passed, speed, close, below),
+        }
+    }
+
+    fn back_onto_route(
+        &self,
+        passed: &Partial,
+        (turn, speed): (f64, f64),
+        angle: f64,
+        close: f64,
+        below: f64,
+    ) -> Option<Partial> {
+        let (problem, route) = (self.problem(), self.context.route);
         let (pose, time) = passed.end(problem.own.pose);
         let near = problem.desired.nearest(pose.position, time, 0.0).leg;
         let course = &problem.desired.legs()[near];
@@ -400,7 +435,6 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             radius: problem.own.turning_radius,
         };
         let most = self.clear_for(pose, speed, time);
-        let restricts = self.passing.iter().any(Passing::forbids_a_heading);
         let trial = |hold: f64| {
             let line = Segment::straight(pose, time, hold, speed);
             let (pose, time) = (line.end(), line.end_time());
@@ -412,31 +446,78 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             // on to the same side it would be a circle
             let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
             let joined = self.joining_time(&back).filter(|_| !circles());
-            let joined = joined?;
-            let partial = self.ended(passed, (time, joined), hold, &back, angle);
-            // on the way back the hulls may be closest later than on the line, and the judge forbids to
-            // head to a side until then
-            let partial = partial.filter(|whole| !restricts || self.is_lawful(whole));
-            let partial = partial?;
-            Some(Partial {
-                is_judged: restricts,
-                ..partial
-            })
+            self.ended(
+                passed,
+                (time, joined?),
+                hold,
+                (&back, WayBack::At(angle)),
+                below,
+            )
         };
         let holds = (0.0, most);
         let touching = self.touching(&held, holds);
         least_clear(holds, touching, (self.unit, close, self.gaps), trial)
     }
 
+    /// True where the route is too short for a return at an angle, in radians, from the end of a partial
+    /// manoeuvre.
+    pub(super) fn ends_soon(&self, passed: &Partial, angle: f64) -> bool {
+        let (own, desired) = (self.problem().own, self.problem().desired);
+        let (pose, time) = passed.end(own.pose);
+        let nearest = desired.nearest(pose.position, time, 0.0);
+        let leg = &desired.legs()[nearest.leg];
+        let off = cross(leg.direction, pose.position - leg.start).abs();
+        desired.length() - nearest.distance <= off / angle.tan() + 4.0 * own.turning_radius
+    }
+
+    /// The least further hold after which one turn and a line lead to the last waypoint, which is where
+    /// own ship joins the route.
+    fn to_end(&self, passed: &Partial, speed: f64, close: f64, below: f64) -> Option<Partial> {
+        let (own, end) = (self.problem().own, self.problem().desired.end());
+        let (pose, time) = passed.end(own.pose);
+        let holds = (0.0, self.clear_for(pose, speed, time));
+        let ordered = self
+            .context
+            .route
+            .ordered_speed(self.context.route.length());
+        let mut speeds = vec![own.max_speed(), ordered];
+        speeds.dedup();
+        let trial = |hold: f64| {
+            let line = Segment::straight(pose, time, hold, speed);
+            let (pose, time) = (line.end(), line.end_time());
+            let radius = own.turning_radius;
+            let to_end = |(side, speed): (Side, f64)| {
+                let turning = Interceptor::new(&pose, time, speed, radius, side);
+                let (turn, line) = turning
+                    .path_to(end)
+                    .filter(|(turn, _)| *turn < LARGEST_LAST)?;
+                let mut chain = Chain::new(pose, time, speed, radius);
+                chain.arc(side.turn_sign() * turn * radius);
+                chain.line(line);
+                Some(chain)
+            };
+            let ends = speeds.iter().filter_map(|speed| {
+                let ways = Side::BOTH.into_iter().map(|side| (side, *speed));
+                let chain = ways
+                    .filter_map(to_end)
+                    .min_by(|a, b| a.time.total_cmp(&b.time))?;
+                let back = (&chain.segments[..], WayBack::ToEnd);
+                self.ended(passed, (time, chain.time), hold, back, below)
+            });
+            ends.min_by(|a, b| a.cost.total_cmp(&b.cost))
+        };
+        least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)
+    }
+
     /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
-    /// is tidy and clear.
+    /// is tidy, clear, costs less than `below`, and does not head to a forbidden side too soon.
     fn ended(
         &self,
         passed: &Partial,
         (returns, joined): (f64, f64),
         hold: f64,
-        back: &[Segment],
-        angle: f64,
+        (back, way_back): (&[Segment], WayBack),
+        below: f64,
     ) -> Option<Partial> {
         let problem = self.problem();
         // the route has segments of its own, as short as its corners are
@@ -454,9 +535,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         partial.motion.last_mut()?.duration += hold;
         partial.motion.extend_from_slice(back);
         partial.phase = Phase::End;
-        (partial.returns, partial.joined, partial.angle) = (returns, joined, angle);
+        (partial.returns, partial.joined, partial.way_back) = (returns, joined, way_back);
         partial.cost = self.cost(&partial);
-        Some(partial)
+        // on the way back the hulls may be closest later than on the line, and the judge forbids to head
+        // to a side until then
+        partial.is_judged = self.passing.iter().any(Passing::forbids_a_heading);
+        let is_lawful = || !partial.is_judged || self.is_by_the_judges(&partial);
+        (partial.cost < below && is_lawful()).then_some(partial)
     }
 
     /// Less speed along the route for the least time after which the route is clear at the greatest
@@ -479,7 +564,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let trial = |hold: f64| {
             let mut motion = out.motion.clone();
-            let end = route.run(along, leave, hold * speed, speed, &mut motion);
+            let end = match speed > 0.0 {
+                true => route.run(along, leave, hold * speed, speed, &mut motion),
+                false => {
+                    motion.push(Segment::straight(on, leave, hold, speed));
+                    along
+                }
+            };
             // at the end of the route the reduction may be too short to be apparent
             if end - along < speed * least - tolerance::LENGTH_M {
                 return None;
@@ -594,9 +685,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// True for a whole manoeuvre that is by the rules.
     pub(super) fn is_lawful(&self, whole: &Partial) -> bool {
-        if whole.is_judged {
-            return true;
-        }
+        whole.is_judged || self.is_by_the_judges(whole)
+    }
+
+    fn is_by_the_judges(&self, whole: &Partial) -> bool {
         let off_route = match whole.first {
             FirstAlteration::Turn { .. } => whole.off_route(),
             FirstAlteration::Slow { .. } => &[],

@@ -2,7 +2,7 @@
 //! four numbers that no contact decides.
 //!
 //! ```text
-//! departures and courses ─► A* ─► departure, turn, angle of the return and room, each hold by hugging
+//! departures and courses ─► A* ─► departure, turn, way back and room, each hold by hugging
 //! ```
 //!
 //! A ship that keeps clear departs in ample time; one that stands on holds until its escape is due.
@@ -16,14 +16,14 @@ use crate::UnderWay;
 use crate::search::{Search, Stop};
 use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
 use crate::space_time::manoeuvre::motion::{pose_at, until};
-use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
-use crate::space_time::rules::automaton::{Graph, outward};
+use crate::space_time::manoeuvre::speeds::{ManoeuvreSpeeds, due_leg};
+use crate::space_time::rules::automaton::{Graph, outward, ways_back};
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
 use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
-    FirstAlteration, LARGEST_TURN, LEAST_S, Manoeuvre, Manoeuvres, Outward, Partial,
+    FirstAlteration, LARGEST_TURN, LEAST_S, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
 };
 use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN};
 use searoom_geometry::frame::{Side, wrap};
@@ -86,7 +86,7 @@ struct Numbers {
     leave: f64,
     first: FirstAlteration,
     outward: Outward,
-    angle: f64,
+    way_back: WayBack,
 }
 
 impl Numbers {
@@ -95,7 +95,7 @@ impl Numbers {
             leave: partial.leave,
             first: partial.first,
             outward: partial.outward,
-            angle: partial.angle,
+            way_back: partial.way_back,
         }
     }
 }
@@ -105,7 +105,8 @@ const FROM_NONE: fn(&Passing) -> bool = |_| false;
 impl Manoeuvres<'_, '_> {
     /// The cheapest end of the manoeuvre that is under way.
     pub(super) fn going_on(&mut self, begun: &UnderWay) -> Option<Manoeuvre> {
-        let first = match begun.turn == 0.0 && !begun.is_returning {
+        let slows = begun.turn == 0.0 && !begun.is_returning || begun.speed == 0.0;
+        let first = match slows {
             true => FirstAlteration::Slow { speed: begun.speed },
             false => FirstAlteration::Turn {
                 // a return may turn to either side
@@ -170,8 +171,18 @@ impl Manoeuvres<'_, '_> {
     }
 
     /// The first manoeuvre that is found: with a length off all targets, off those that own ship
-    /// keeps clear of, off none; of each with turns at the ordered speed, then at half or less.
+    /// keeps clear of, off none; of each with turns at the ordered speed, then at half or less. Where there
+    /// is none, also with stops.
     fn relaxed(&mut self, find: impl Fn(&Self) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
+        let may_stop = self.problem().own.speeds.contains(&0.0);
+        let stops: &[bool] = if may_stop { &[false, true] } else { &[false] };
+        stops.iter().find_map(|stops| {
+            self.stops = *stops;
+            self.of_the_levels(&find)
+        })
+    }
+
+    fn of_the_levels(&mut self, find: &impl Fn(&Self) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
         let problem = self.problem();
         let may_slow = problem.duty().may_slow && problem.under_way.is_none();
         let speeds: &[bool] = if may_slow { &[false, true] } else { &[false] };
@@ -232,6 +243,7 @@ impl Manoeuvres<'_, '_> {
     fn has_escape(&self, leave: f64, below: f64) -> bool {
         let is_escape = |end: Partial| end.cost < below && self.is_lawful(&end);
         let firsts = self.first_alterations(leave..=leave, false);
+        let angles = self.angles();
         firsts.into_iter().any(|(leave, first)| {
             if self.effort.clock.is_up() {
                 return false;
@@ -243,10 +255,10 @@ impl Manoeuvres<'_, '_> {
             match first {
                 FirstAlteration::Slow { .. } => self.slowed(&out, COARSE_S).is_some_and(is_escape),
                 FirstAlteration::Turn { .. } => outward(self, &out).iter().any(|passed| {
-                    let mut angles = ANGLES.iter();
                     passed.cost < below
-                        && angles
-                            .any(|angle| self.back(passed, *angle, COARSE_S).is_some_and(is_escape))
+                        && ways_back(self, passed, &angles, below)
+                            .into_iter()
+                            .any(is_escape)
                 }),
             }
         })
@@ -266,8 +278,7 @@ impl Manoeuvres<'_, '_> {
         window: RangeInclusive<f64>,
     ) -> Option<Manoeuvre> {
         let problem = self.problem();
-        let mut angles = ANGLES.map(|angle| angle.max(self.least_angle())).to_vec();
-        angles.dedup();
+        let mut angles = self.angles();
         // a return goes on as it is
         let begun = problem.under_way.filter(|begun| begun.is_returning);
         angles.extend(begun.map(|begun| wrap(begun.heading - begun.first_heading).abs()));
@@ -354,14 +365,23 @@ impl Manoeuvres<'_, '_> {
             (0, ..) => {
                 let moved = old.leave + step * self.unit;
                 new.leave = self.tidy_time(moved.clamp(*window.start(), *window.end()));
+                // on another leg the ordered speed may be another
+                let ordered = |time| ManoeuvreSpeeds::at(self.problem(), time);
+                if ordered(new.leave) != ordered(old.leave) {
+                    return None;
+                }
             }
             (1, FirstAlteration::Turn { turn, speed }, _) if self.problem().under_way.is_none() => {
                 let least = self.least_turn(*speed).min(self.most_turn);
                 *turn = (turn.abs() + step).clamp(least, self.most_turn) * turn.signum();
             }
             (2, FirstAlteration::Turn { .. }, _) => {
+                let WayBack::At(angle) = old.way_back else {
+                    return None;
+                };
                 let least = MOST_ANGLES.start().max(self.least_angle());
-                new.angle = (old.angle + step).clamp(least, least.max(*MOST_ANGLES.end()));
+                let most = least.max(*MOST_ANGLES.end());
+                new.way_back = WayBack::At((angle + step).clamp(least, most));
             }
             (3, FirstAlteration::Turn { .. }, Outward::Parallel { spare }) => {
                 *spare = (*spare + step * self.unit).max(0.0);
@@ -385,7 +405,7 @@ impl Manoeuvres<'_, '_> {
                     Outward::Direct => self.direct(&out),
                     Outward::Parallel { spare } => self.parallel(&out, spare, FINE_S, None),
                 };
-                self.back(&passed.filter(cheaper)?, numbers.angle, FINE_S)
+                self.back(&passed.filter(cheaper)?, numbers.way_back, FINE_S, below)
             }
         };
         end.filter(|end| cheaper(end) && self.is_lawful(end))
@@ -398,18 +418,43 @@ impl Manoeuvres<'_, '_> {
         window: RangeInclusive<f64>,
         with_tangents: bool,
     ) -> Vec<(f64, FirstAlteration)> {
+        let times = self.departures(*window.start(), *window.end());
+        let ordered = |time: &f64| ManoeuvreSpeeds::at(self.problem(), *time);
+        let stretches: Vec<&[f64]> = times.chunk_by(|a, b| ordered(a) == ordered(b)).collect();
+        let mut all = Vec::new();
+        for times in &stretches {
+            let (Some(latest), Some(first)) = (times.first(), times.last()) else {
+                continue;
+            };
+            let (from, to) = (
+                due_leg(self.problem(), *first),
+                due_leg(self.problem(), *latest),
+            );
+            let window = window.start().max(from.start_time)..=window.end().min(to.end_time());
+            let speeds = ordered(latest);
+            self.add_first_alterations((times, window), speeds, with_tangents, &mut all);
+        }
+        all
+    }
+
+    /// First alterations at some times of a window, where these are the speeds.
+    fn add_first_alterations(
+        &self,
+        (times, window): (&[f64], RangeInclusive<f64>),
+        ordered: ManoeuvreSpeeds,
+        with_tangents: bool,
+        all: &mut Vec<(f64, FirstAlteration)>,
+    ) {
         let problem = self.problem();
-        let (ordered, duty) = (ManoeuvreSpeeds::of(problem), problem.duty());
-        // half of the desired speed, also where the ship cannot keep just that
-        let legs = problem.desired.legs().iter().map(|leg| leg.speed);
-        let desired = legs.fold(0.0, f64::max).min(ordered.normal);
-        let most = APPARENT_SPEED * desired * (1.0 + 1e-9);
-        let slow = problem.own.moving_speeds();
-        let slow = slow.filter(|u| duty.may_slow && *u <= most);
+        let duty = problem.duty();
+        // half of the ordered speed, also where the ship cannot keep just that
+        let most = APPARENT_SPEED * ordered.wanted.min(ordered.normal) * (1.0 + 1e-9);
+        let slow = problem.own.speeds.iter().copied();
+        let slow = slow.filter(|u| duty.may_slow && *u <= most && (*u > 0.0 || self.stops));
         let may_speed_up = (problem.encountered.iter()).any(|e| e.role.duties().may_speed_up);
         let faster = (may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
         let speeds: Vec<f64> = match self.slows_to_turn {
-            true => slow.clone().collect(),
+            true => slow.clone().filter(|u| *u > 0.0).collect(),
             false => std::iter::once(ordered.normal).chain(faster).collect(),
         };
         let stands_on = duty.stands_on;
@@ -417,8 +462,6 @@ impl Manoeuvres<'_, '_> {
         let sides: Vec<Side> = sides
             .filter(|side| !(stands_on && *side == Side::Port))
             .collect();
-        let times = self.departures(*window.start(), *window.end());
-        let mut all = Vec::new();
         for &speed in &speeds {
             for side in &sides {
                 let turns: &[f64] = match with_tangents && times.len() == 1 {
@@ -430,7 +473,7 @@ impl Manoeuvres<'_, '_> {
                 let turns = turns.filter(|turn| *turn <= self.most_turn);
                 let mut turns: Vec<f64> = turns.map(|turn| turn * side.turn_sign()).collect();
                 turns.dedup();
-                for &time in &times {
+                for &time in times {
                     let tangents = match with_tangents {
                         true => self.tangents(time, speed, *side),
                         false => Vec::new(),
@@ -451,12 +494,18 @@ impl Manoeuvres<'_, '_> {
             let slow = slow.map(|speed| FirstAlteration::Slow { speed });
             all.extend(slow.flat_map(|first| times.iter().map(move |time| (*time, first))));
         }
-        all
     }
 
     /// The least turn: readily apparent, and of [`LEAST_S`] seconds, radians.
     fn least_turn(&self, speed: f64) -> f64 {
         APPARENT_TURN.max(SPARE * LEAST_S * speed / self.problem().own.turning_radius)
+    }
+
+    /// Angles of the returns, radians.
+    fn angles(&self) -> Vec<f64> {
+        let mut angles = ANGLES.map(|angle| angle.max(self.least_angle())).to_vec();
+        angles.dedup();
+        angles
     }
 
     /// The least angle of a return, whose last turn takes [`LEAST_S`] seconds, radians.

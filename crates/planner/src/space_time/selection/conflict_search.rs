@@ -157,7 +157,7 @@ fn beside(
     side: Side,
 ) -> Option<Vec<Vec<Corner>>> {
     let offset = conflict.offset(side);
-    let speeds = ManoeuvreSpeeds::of(context.problem);
+    let speeds = ManoeuvreSpeeds::at(context.problem, conflict.from);
     let at = |time: f64| {
         let begins = node.motion.first().map_or(time, |s| s.start_time);
         let pose = pose_at(&node.motion, time.max(begins))?;
@@ -275,14 +275,15 @@ fn child(
 /// Otherwise it goes back onto the route, at an angle unless that corner is where it returns.
 fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Option<InitialGuess> {
     let (problem, route) = (context.problem, context.route);
-    let speeds = ManoeuvreSpeeds::of(problem);
     let radius = problem.own.turning_radius;
     let first = corners.first()?;
+    let speeds = ManoeuvreSpeeds::at(problem, first.time);
     let sailed = sailed_between(&node.motion, 0.0, first.time);
     let (departure, _) = route.pose_at(sailed);
     let mut builder = InitialGuessBuilder::default();
     let run = |builder: &mut InitialGuessBuilder, length: f64| {
-        let [slow, normal, fast] = mixed(&speeds, length.max(0.0), first.time);
+        let length = length.max(0.0);
+        let [slow, normal, fast] = mixed(&speeds, length, first.time - route.ordered_time(length));
         builder.runs(&speeds, normal, fast, slow);
     };
     // a corner may be ahead of where own ship is then, or behind it
@@ -334,7 +335,7 @@ fn guess(context: &Context, node: &Node, corners: &[Corner], angle: f64) -> Opti
         let way = (points[i + 1] - points[i]).norm();
         let length = (way - tangent(angle) - tangent(angles[i + 1])).max(0.0);
         let time = (corners[i + 1].time - corners[i].time) * length / way;
-        let [slow, normal, fast] = mixed(&speeds, length, time);
+        let [slow, normal, fast] = mixed(&speeds, length, time - length / speeds.normal);
         let line = |speed: f64| SegmentVariable::Line { speed };
         builder.push(line(speeds.slow), slow);
         if turns <= MOST_WITH_ALL_SPEEDS {
@@ -382,11 +383,12 @@ fn ending(
     (leg, Some(line.start + line.direction * along))
 }
 
-/// Lengths at the slow, the normal and the fast speed that together take a time, as nearly as
-/// possible.
-fn mixed(speeds: &ManoeuvreSpeeds, length: f64, time: f64) -> [f64; 3] {
-    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
-    let spare = time - length / normal;
+/// Lengths at the slow, the normal and the fast speed that together take some seconds more than the
+/// normal speed, as nearly as possible.
+fn mixed(speeds: &ManoeuvreSpeeds, length: f64, spare: f64) -> [f64; 3] {
+    let ManoeuvreSpeeds {
+        slow, normal, fast, ..
+    } = *speeds;
     let other = if spare > 0.0 { slow } else { fast };
     // without another speed the share is a NaN or infinite, and becomes the length
     let share = (spare / (1.0 / other - 1.0 / normal)).min(length).max(0.0);
@@ -434,7 +436,7 @@ mod tests {
         let proxies = within_reach(&problem, &pieces);
         let clock = Clock::new(Duration::from_secs(60));
         let route = Route::new(&problem, clock).expect("a route");
-        let context = Context::new(&problem, &route, &proxies, &[]);
+        let context = Context::new(&problem, &route, &proxies, &[], 0.0);
         let nominal = route.follow(0.0, 0.0);
         let conflict = Conflict::of(&proxies, &nominal).expect("a conflict");
         let root = Node::root(&nominal);

@@ -69,13 +69,11 @@ impl InitialGuessBuilder {
         }
     }
 
-    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
-        let runs = [
-            (speeds.normal, normal),
-            (speeds.fast, fast),
-            (speeds.slow, slow),
-        ];
-        for (speed, length) in runs {
+    /// The route at the ordered speeds, then at the greatest and the least one.
+    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, ordered: f64, fast: f64, slow: f64) {
+        let speed = speeds.normal;
+        self.push(SegmentVariable::Ordered { speed }, ordered);
+        for (speed, length) in [(speeds.fast, fast), (speeds.slow, slow)] {
             self.push(SegmentVariable::Run { speed }, length);
         }
     }
@@ -116,7 +114,7 @@ impl EvasiveManoeuvre {
         conflict: &Conflict,
         leg: usize,
     ) -> Option<InitialGuess> {
-        let speeds = ManoeuvreSpeeds::of(problem);
+        let speeds = ManoeuvreSpeeds::at(problem, conflict.from);
         let radius = problem.own.turning_radius;
         let (slow, fast) = (speeds.slow, speeds.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
@@ -127,7 +125,7 @@ impl EvasiveManoeuvre {
         let arc = turn * radius;
         let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
         let departure = (conflict.from - self.lead * exit_distance).max(0.0);
-        let lead = (departure * speeds.normal).min(route.length());
+        let lead = route.ordered_distance(departure);
         // progress along the route outbound, and on the return at the smallest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
@@ -172,12 +170,13 @@ impl EvasiveManoeuvre {
 /// the route.
 pub(crate) fn waiting(
     problem: &Problem,
+    route: &Route,
     side: Side,
     across: bool,
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speeds = ManoeuvreSpeeds::of(problem);
+    let speeds = ManoeuvreSpeeds::at(problem, conflict.from);
     let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lag, due) = conflict.astern;
     let needed = lag / (normal - slow * WAITING_TURN.cos());
@@ -190,7 +189,7 @@ pub(crate) fn waiting(
     }
     let back = side.opposite();
     let mut builder = InitialGuessBuilder::default();
-    builder.runs(&speeds, begin * normal, 0.0, 0.0);
+    builder.runs(&speeds, route.ordered_distance(begin), 0.0, 0.0);
     builder.turn(side, &[(fast, 0.0), (slow, arc)]);
     builder.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
     builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
@@ -219,11 +218,12 @@ pub(crate) fn waiting(
 /// return.
 pub(crate) fn ahead(
     problem: &Problem,
+    route: &Route,
     side: Side,
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speeds = ManoeuvreSpeeds::of(problem);
+    let speeds = ManoeuvreSpeeds::at(problem, conflict.from);
     let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
@@ -237,7 +237,8 @@ pub(crate) fn ahead(
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
     let mut builder = InitialGuessBuilder::default();
-    builder.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
+    let ordered = route.ordered_distance(begin);
+    builder.runs(&speeds, ordered, (turn - begin) * fast, 0.0);
     builder.turn(side, &[(fast, arc)]);
     builder.line(&[(fast, AHEAD_OUT_M)]);
     builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
@@ -251,9 +252,9 @@ pub(crate) fn ahead(
 /// beside each, and an empty turn back where it has only one turn. `path` holds the states after
 /// the root.
 pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
-    let speeds = ManoeuvreSpeeds::of(problem);
     let (last, before) = path.split_last()?;
     let (departure, vertices) = before.split_first()?;
+    let speeds = ManoeuvreSpeeds::at(problem, departure.time);
     if vertices.is_empty() {
         return None;
     }
@@ -304,7 +305,9 @@ fn group(
     line: Option<&Segment>,
     groups: usize,
 ) {
-    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
+    let ManoeuvreSpeeds {
+        slow, normal, fast, ..
+    } = *speeds;
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),

@@ -164,13 +164,15 @@ impl<'a> Selection<'a> {
                 for across in [false, true] {
                     let both = Side::BOTH.into_iter();
                     guesses.extend(
-                        both.filter_map(|side| waiting(problem, side, across, conflict, leg)),
+                        both.filter_map(|side| {
+                            waiting(problem, route, side, across, conflict, leg)
+                        }),
                     );
                 }
             }
             if conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
-                guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
+                guesses.extend(both.filter_map(|side| ahead(problem, route, side, conflict, leg)));
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };

@@ -168,7 +168,7 @@ impl Selection<'_> {
         for refinement in running {
             pool.add_refined(refinement);
         }
-        let speeds = ManoeuvreSpeeds::of(self.context.problem);
+        let speeds = self.context.speeds;
         for (guess, rank) in leaders(running, LEADERS, LEADER_MARGIN) {
             if pool.has_tidy_below(ENOUGH * rank) {
                 break;
@@ -259,7 +259,9 @@ impl Speeds {
 
     fn all(speeds: &ManoeuvreSpeeds) -> Vec<Self> {
         let mut all = Self::of_one(speeds);
-        let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
+        let ManoeuvreSpeeds {
+            slow, normal, fast, ..
+        } = *speeds;
         if slow < normal {
             all.extend([normal, fast].map(|then| Self::SlowThen { slow, then }));
             all.dedup();
@@ -284,7 +286,6 @@ fn simplified(
 ) -> Option<InitialGuess> {
     let normal = speeds.normal;
     let given: Vec<_> = guess.pieces().filter(|piece| piece.1 > 0.0).collect();
-    let is_run = |variable: &SegmentVariable| matches!(variable, SegmentVariable::Run { .. });
     let (last_speed, slow) = match pattern {
         Speeds::One(speed) => (speed, None),
         Speeds::SlowThen { slow, then } => {
@@ -304,10 +305,18 @@ fn simplified(
         let speed = match slow {
             Some((first, last, slow)) if (first..=last).contains(&i) => slow,
             Some((first, ..)) if i < first => normal,
-            None if is_run(&variable) && variable.speed() != last_speed => normal,
+            None if variable.is_on_route() && variable.speed() != last_speed => normal,
             _ => last_speed,
         };
-        join(&mut parts, variable.at_speed(speed), length);
+        // after another run its time would depend on where it begins
+        let at_first = parts
+            .iter()
+            .all(|part| matches!(part.0, SegmentVariable::Ordered { .. }));
+        let variable = match variable.is_on_route() && speed == normal && at_first {
+            true => SegmentVariable::Ordered { speed },
+            false => variable.at_speed(speed),
+        };
+        join(&mut parts, variable, length);
     }
     let is_arc = |part: &(SegmentVariable, f64)| matches!(part.0, SegmentVariable::Arc { .. });
     loop {
@@ -405,12 +414,13 @@ mod tests {
             slow: 2.5,
             normal: 5.0,
             fast: 6.0,
+            wanted: 5.0,
         };
         let tidy = Tidiness::at_length(30.0);
         let arc = |side, speed| SegmentVariable::Arc { side, speed };
         let line = |speed| SegmentVariable::Line { speed };
         let parts = [
-            (SegmentVariable::Run { speed: 5.0 }, 300.0),
+            (SegmentVariable::Ordered { speed: 5.0 }, 300.0),
             (arc(Starboard, 2.5), 40.0),
             (arc(Starboard, 6.0), 80.0),
             (line(2.5), 3.0),
@@ -425,7 +435,7 @@ mod tests {
         let simple = simplified(&guess, &speeds, Speeds::One(6.0), &tidy).expect("a manoeuvre");
         let kept: Vec<_> = simple.pieces().collect();
         let expected = [
-            (SegmentVariable::Run { speed: 5.0 }, 300.0),
+            (SegmentVariable::Ordered { speed: 5.0 }, 300.0),
             (arc(Starboard, 6.0), 120.0),
             (line(6.0), 203.0),
             (arc(Port, 6.0), 60.0),

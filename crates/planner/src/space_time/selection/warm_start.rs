@@ -7,7 +7,7 @@ use crate::space_time::manoeuvre::ending::Ending;
 use crate::space_time::manoeuvre::motion::merged;
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::plan_normalised;
-use crate::space_time::proxy::Proxy;
+use crate::space_time::proxy::{Proxy, first_contact};
 use crate::space_time::refinement::InitialGuess;
 use crate::space_time::refinement::quadratic::MAX_VARIABLES;
 use crate::space_time::refinement::structure::SegmentVariable;
@@ -50,7 +50,11 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
     let found = Route::new(problem, clock).and_then(|route| {
         let guess = initial_guess_from(problem, &route, motion)?;
         let blocks = land::proxies(problem);
-        let context = Context::new(problem, &route, proxies, &blocks);
+        let follows = route.follow(0.0, 0.0);
+        let contact = first_contact(proxies, &follows).map(|(_, at)| at);
+        let grounding = land::first_contact(problem.land_obstacle, &follows);
+        let first = contact.into_iter().chain(grounding).reduce(f64::min);
+        let context = Context::new(problem, &route, proxies, &blocks, first.unwrap_or(0.0));
         let mut selection = Selection::new(context, &SearchBudget::WARM_START);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], &[], clock);
@@ -80,7 +84,6 @@ pub(crate) fn initial_guess_from(
     if motion.iter().any(|s| s.speed <= 0.0) {
         return None;
     }
-    let speeds = ManoeuvreSpeeds::of(problem);
     let mut run = [0.0; 3];
     let (mut left_at, mut first) = (0.0, 0);
     for s in &motion {
@@ -89,7 +92,9 @@ pub(crate) fn initial_guess_from(
         if !(is_at(route, to, s.end()) && is_at(route, halfway, s.middle())) {
             break;
         }
-        run[nearest(s.speed, [speeds.normal, speeds.fast, speeds.slow])] += s.length();
+        let speeds = ManoeuvreSpeeds::at(problem, s.start_time);
+        let ordered = route.ordered_speed(halfway);
+        run[nearest(s.speed, [ordered, speeds.fast, speeds.slow])] += s.length();
         (left_at, first) = (to, first + 1);
     }
     let (mut back_at, mut join) = (route.length(), motion.len());
@@ -101,6 +106,8 @@ pub(crate) fn initial_guess_from(
         (back_at, join) = (from, join - 1);
     }
     let manoeuvre = &motion[first..join];
+    let leaves = manoeuvre.first().map_or(0.0, |s| s.start_time);
+    let speeds = ManoeuvreSpeeds::at(problem, leaves);
     let (last, before) = manoeuvre.split_last()?;
     let (free, ending) = if join < motion.len() {
         let leg = (0..problem.desired.legs().len()).find(|leg| {
