@@ -34,6 +34,62 @@ fn no_rule_is_broken_where_none_need_be() {
     }
 }
 
+/// The turn is made at the speed of its leg, 12 kn, though the mission ends with a leg of 6 kn.
+#[test]
+fn a_turn_is_made_at_the_ordered_speed_of_its_leg() {
+    let run = run(include_str!("../faults/two-ordered-speeds.toml"));
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert_eq!(plan.method, PlanMethod::Rules);
+    let legs = run.scenario.desired.legs();
+    let segments = plan.trajectory.segments();
+    let first = segments.iter().position(|s| s.is_arc()).expect("a turn");
+    assert!(segments[first].end_time() < legs[1].start_time);
+    for segment in &segments[..=first] {
+        assert!((segment.speed - legs[0].speed).abs() < 1e-3, "{segment:?}");
+    }
+}
+
+/// The route is too short for a line back onto it: own ship turns once, to the last waypoint.
+#[test]
+fn a_way_back_may_lead_to_the_last_waypoint() {
+    for (text, most) in [
+        (
+            include_str!("../faults/goal-at-meeting-head-on.toml"),
+            200.0,
+        ),
+        (
+            include_str!("../faults/goal-at-meeting-give-way.toml"),
+            120.0,
+        ),
+    ] {
+        let run = run(text);
+        let plan = run.planned.outcome.plan().expect("a plan");
+        assert_eq!(plan.method, PlanMethod::Rules);
+        assert!(
+            run.relaxations.is_empty() && run.evaluation.as_ref().is_some_and(|e| e.verified())
+        );
+        for report in run.judged_compliance().iter().flatten() {
+            assert_eq!(report.broken().count(), 0, "{report:?}");
+        }
+        let delay = plan.trajectory.end_time() - run.scenario.desired.duration();
+        assert!(delay < most, "{delay}");
+    }
+}
+
+/// A bend that breaks no rule is taken in place of a manoeuvre that costs 250 times as much.
+#[test]
+fn no_detour_of_half_an_hour_is_made_for_a_manoeuvre_by_the_rules() {
+    let run = run(include_str!("../faults/detour-by-the-rules.toml"));
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert_ne!(plan.method, PlanMethod::Rules);
+    assert!(run.relaxations.is_empty());
+    for report in run.judged_compliance().iter().flatten() {
+        assert_eq!(report.broken().count(), 0, "{report:?}");
+    }
+    let delay = plan.trajectory.end_time() - run.scenario.desired.duration();
+    assert!(delay.abs() < 300.0, "{delay}");
+}
+
 /// The target is on own starboard beam, near, and on nearly the same course.
 #[test]
 fn a_turn_at_less_speed_where_neither_alone_keeps_the_rules() {

@@ -488,9 +488,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let radius = own.turning_radius;
             let to_end = |(side, speed): (Side, f64)| {
                 let turning = Interceptor::new(&pose, time, speed, radius, side);
-                let (turn, line) = turning
-                    .path_to(end)
-                    .filter(|(turn, _)| *turn < LARGEST_LAST)?;
+                let (turn, line) = turning.path_to(end)?;
                 let mut chain = Chain::new(pose, time, speed, radius);
                 chain.arc(side.turn_sign() * turn * radius);
                 chain.line(line);
@@ -506,7 +504,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             });
             ends.min_by(|a, b| a.cost.total_cmp(&b.cost))
         };
-        least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)
+        // a hold that is clear by a circle leads to a shorter one without
+        let found = least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)?;
+        let last = found.motion.iter().rfind(|s| s.is_arc());
+        let turn = last.map_or(0.0, |arc| arc.turn_rate.abs() * arc.duration);
+        (turn < LARGEST_LAST).then_some(found)
     }
 
     /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
