@@ -46,8 +46,8 @@ const SAME_REDUCTION_M: f64 = 1.0;
 const BEFORE_END_S: f64 = 2.0;
 
 /// Seconds off its schedule from which on a manoeuvre by the rules is compared with a plan that is none,
-/// and the ratio of the costs from which on that one is taken. A navigator orders bold alterations, but no
-/// detour of a quarter of an hour where a bend breaks no rule.
+/// and the ratio of the costs from which on that one is taken: an alteration should be bold, but no detour
+/// of a quarter of an hour where a bend breaks no rule.
 const FAR_OFF_TIME_S: f64 = 300.0;
 const MANY_TIMES: f64 = 10.0;
 

@@ -313,7 +313,8 @@ impl Route {
         (!route.pieces.is_empty()).then_some(route)
     }
 
-    /// Appends the shortest path between two poses; `due` is the scheduled time at its end, `ordered` the speed of its leg.
+    /// Appends the shortest path between two poses; `due` is the scheduled time at its end, `ordered` the
+    /// speed of its leg.
     fn connect(
         &mut self,
         from: Pose,

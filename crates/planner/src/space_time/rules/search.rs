@@ -255,10 +255,7 @@ impl Manoeuvres<'_, '_> {
             match first {
                 FirstAlteration::Slow { .. } => self.slowed(&out, COARSE_S).is_some_and(is_escape),
                 FirstAlteration::Turn { .. } => outward(self, &out).iter().any(|passed| {
-                    passed.cost < below
-                        && ways_back(self, passed, &angles, below)
-                            .into_iter()
-                            .any(is_escape)
+                    passed.cost < below && ways_back(self, passed, &angles, below).any(is_escape)
                 }),
             }
         })
