@@ -204,7 +204,8 @@ fn add_of<S: Shape>(
             };
             let to = sample(fraction, position, Some(from.slack.face));
             let mut piece = Chord::new(shape, leg, &from, &to);
-            if count > 1.0 && piece.least.is_mixed() {
+            if segment.is_arc() && piece.least.is_mixed() {
+                piece.least.fraction = piece.onto_arc(shape, l, [&from, &to]);
                 let place = l.along(piece.least.fraction).0;
                 let at = sample(piece.least.fraction, place, Some(to.slack.face));
                 piece.least.slack = at.slack.value;
@@ -452,5 +453,27 @@ impl<F: Copy> Chord<F> {
             start_rate,
             end_rate,
         }
+    }
+
+    /// Weighs the two faces of a mixed minimum for the velocity on the arc, so that the slack's rate
+    /// along the arc vanishes, not that along the chord; returns the fraction at which they meet there.
+    fn onto_arc<S: Shape<Face = F>>(&mut self, shape: &S, arc: &Leg, ends: [&Sample<F>; 2]) -> f64 {
+        let [from, to] = ends;
+        let least = &mut self.least;
+        let share = (least.fraction - from.fraction) / (to.fraction - from.fraction);
+        let (place, ahead) = arc.along(least.fraction);
+        let off = place - from.position.lerp(&to.position, share);
+        let velocity = ahead * arc.segment.speed;
+        let [fall, rise] = least.faces.map(|(face, _)| {
+            let (normal, speed) = shape.plane(face);
+            (normal.dot(&velocity) - speed, normal.dot(&off))
+        });
+        if !(fall.0 < 0.0 && rise.0 > 0.0) {
+            return least.fraction;
+        }
+        let weight = rise.0 / (rise.0 - fall.0);
+        [least.faces[0].1, least.faces[1].1] = [weight, 1.0 - weight];
+        let later = (fall.1 - rise.1) / (rise.0 - fall.0);
+        (least.fraction + later / arc.segment.duration).clamp(from.fraction, to.fraction)
     }
 }

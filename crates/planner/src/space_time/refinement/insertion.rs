@@ -289,7 +289,7 @@ impl Prices {
         variable: SegmentVariable,
     ) -> Option<(f64, f64)> {
         let leg = unreduced.trial.rollout.legs.iter().find(
-            |l| matches!(l.owner, SegmentOrigin::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
+            |l| matches!(l.owner, SegmentOrigin::SegmentVariable { index, .. } if index == gap),
         )?;
         let at = leg.segment.start.position - self.origin;
         let slowness = 1.0 / variable.speed();

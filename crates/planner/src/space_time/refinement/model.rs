@@ -239,9 +239,14 @@ pub(crate) mod tests {
     /// Runs a check on three manoeuvres near a target with all segment variables in use: two that
     /// return and one that ends at the goal.
     pub(crate) fn at_manoeuvres(check: impl Fn(&Context, &InitialGuess)) {
-        let own = own_ship(&[2.5, 5.0, 6.0]);
         let points = [(0.0, 0.0), (2500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        at_manoeuvres_along(&desired, check);
+    }
+
+    /// The same manoeuvres on a desired trajectory along the same line.
+    fn at_manoeuvres_along(desired: &DesiredTrajectory, check: impl Fn(&Context, &InitialGuess)) {
+        let own = own_ship(&[2.5, 5.0, 6.0]);
         let velocity = searoom_geometry::ConvexPolygon::hull(&[
             Vector::new(-4.0, 0.3),
             Vector::new(-5.0, -0.4),
@@ -252,8 +257,9 @@ pub(crate) mod tests {
             velocity.expect("finite"),
         )
         .into()];
-        let problem = Problem::new(&own, &desired, &obstacles, 900.0);
+        let problem = Problem::new(&own, desired, &obstacles, 900.0);
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
+        let leg = desired.legs().len() - 1;
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];
         let context = Context::new(&problem, &route, &proxies, &[], 0.0);
@@ -272,7 +278,7 @@ pub(crate) mod tests {
             (Side::Port, true),
         ] {
             let mut guess = canonical
-                .guess(&problem, &route, side, &conflict, 0)
+                .guess(&problem, &route, side, &conflict, leg)
                 .expect("a guess");
             if goal {
                 guess.structure.ending = Ending::Goal { side, speed: 6.0 };
@@ -288,40 +294,53 @@ pub(crate) mod tests {
         }
     }
 
-    /// Compares every rate with central differences.
+    /// Compares every rate with central differences, also where the ordered speed changes on the run
+    /// before the manoeuvre.
     #[test]
     fn rates_match_differences() {
-        at_manoeuvres(|context, guess| {
-            let goal = matches!(guess.structure.ending, Ending::Goal { .. });
-            let here = context
-                .model(&guess.structure, &guess.lengths)
-                .expect("fits");
-            let contact_rows = here.rows.len() - if goal { 2 } else { 3 };
-            assert!(contact_rows > 0);
-            let step = 1e-4;
-            for i in 0..guess.structure.free() {
-                let at = |d: f64| {
-                    let mut lengths = guess.lengths;
-                    lengths[i] += d;
-                    context.model(&guess.structure, &lengths).expect("fits")
-                };
-                let (less, more) = (at(-step), at(step));
-                let rate = (more.cost - less.cost) / (2.0 * step);
-                let scale = 1.0 + rate.abs();
-                assert!(
-                    (here.gradient[i] - rate).abs() < 2e-4 * scale,
-                    "slot {i}: {} {rate}",
-                    here.gradient[i]
-                );
-                for k in 0..here.rows.len() {
-                    let rate = (less.rows[k].bound - more.rows[k].bound) / (2.0 * step);
-                    let found = here.rows[k].coefficients[i];
-                    assert!(
-                        (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
-                        "row {k} variable {i}: {found} {rate}"
-                    );
-                }
-            }
+        at_manoeuvres(|context, guess| assert!(contacts_with_right_rates(context, guess) > 0));
+        let points = [0.0, 100.0, 2500.0].map(|x| Vector::new(x, 0.0));
+        let desired = DesiredTrajectory::new(&points, &[2.5, 5.0]).expect("valid");
+        at_manoeuvres_along(&desired, |context, guess| {
+            let mut guess = guess.clone();
+            assert!(contacts_with_right_rates(context, &guess) > 0);
+            let run = &mut guess.structure.variables[0];
+            *run = SegmentVariable::Run { speed: run.speed() };
+            contacts_with_right_rates(context, &guess);
         });
+    }
+
+    /// Number of contact rows, after every rate was compared.
+    fn contacts_with_right_rates(context: &Context, guess: &InitialGuess) -> usize {
+        let goal = matches!(guess.structure.ending, Ending::Goal { .. });
+        let here = context
+            .model(&guess.structure, &guess.lengths)
+            .expect("fits");
+        let contact_rows = here.rows.len() - if goal { 2 } else { 3 };
+        let step = 1e-4;
+        for i in 0..guess.structure.free() {
+            let at = |d: f64| {
+                let mut lengths = guess.lengths;
+                lengths[i] += d;
+                context.model(&guess.structure, &lengths).expect("fits")
+            };
+            let (less, more) = (at(-step), at(step));
+            let rate = (more.cost - less.cost) / (2.0 * step);
+            let scale = 1.0 + rate.abs();
+            assert!(
+                (here.gradient[i] - rate).abs() < 2e-4 * scale,
+                "slot {i}: {} {rate}",
+                here.gradient[i]
+            );
+            for k in 0..here.rows.len() {
+                let rate = (less.rows[k].bound - more.rows[k].bound) / (2.0 * step);
+                let found = here.rows[k].coefficients[i];
+                assert!(
+                    (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
+                    "row {k} variable {i}: {found} {rate}"
+                );
+            }
+        }
+        contact_rows
     }
 }

@@ -11,17 +11,18 @@ use searoom_model::trajectory::Segment;
 /// Origin of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SegmentOrigin {
-    /// Fractions `[from, to]` of segment variable `index`.
-    SegmentVariable { index: usize, from: f64, to: f64 },
+    /// Part of segment variable `index`. It grows with the variable, or is a part of the route before
+    /// the one that does.
+    SegmentVariable { index: usize, grows: bool },
     /// The route followed after the manoeuvre.
     ReturnSegments { index: usize },
 }
 
 impl SegmentOrigin {
-    /// All of segment variable `index`.
-    pub(crate) fn whole(index: usize) -> Self {
-        let (from, to) = (0.0, 1.0);
-        Self::SegmentVariable { index, from, to }
+    /// The part of segment variable `index` that grows with it.
+    pub(crate) fn growing(index: usize) -> Self {
+        let grows = true;
+        Self::SegmentVariable { index, grows }
     }
 }
 
@@ -104,7 +105,7 @@ pub(crate) struct Place {
     pub time: f64,
     /// Seconds per metre there.
     pub slowness: f64,
-    /// Segment variable, and the fraction of it before the point.
+    /// Segment variable, and the metres by which the point moves ahead per metre of it.
     pub variable: usize,
     pub share: f64,
 }
@@ -124,7 +125,7 @@ impl Rollout {
     /// Point at `fraction` of a segment; `None` on the return segments.
     pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
         let l = &self.legs[leg];
-        let SegmentOrigin::SegmentVariable { index, from, to } = l.owner else {
+        let SegmentOrigin::SegmentVariable { index, grows } = l.owner else {
             return None;
         };
         let (position, ahead) = l.along(fraction);
@@ -134,7 +135,7 @@ impl Rollout {
             time: l.segment.start_time + l.segment.duration * fraction,
             slowness: 1.0 / l.segment.speed,
             variable: index,
-            share: from + (to - from) * fraction,
+            share: if grows { fraction } else { 0.0 },
         })
     }
 

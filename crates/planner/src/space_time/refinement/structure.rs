@@ -284,21 +284,20 @@ impl Cursor {
             (None, SegmentVariable::Ordered { .. }) => route.ordered_speed(before),
             (None, _) => variable.speed(),
         };
-        let total = (self.route - before).max(1e-12);
-        let mut from = 0.0;
+        let last = motions.pop();
         for segment in motions {
-            let to = from + segment.length() / total;
-            let owner = SegmentOrigin::SegmentVariable { index, from, to };
+            let grows = false;
+            let owner = SegmentOrigin::SegmentVariable { index, grows };
             self.follow(segment, owner, rollout);
-            from = to;
         }
-        if from == 0.0 {
-            let segment = Segment::straight(self.pose, self.time, 0.0, speed);
-            rollout.legs.push(Leg {
-                segment,
+        let owner = SegmentOrigin::growing(index);
+        match last {
+            Some(segment) => self.follow(segment, owner, rollout),
+            None => rollout.legs.push(Leg {
+                segment: Segment::straight(self.pose, self.time, 0.0, speed),
                 ahead: self.ahead,
-                owner: SegmentOrigin::whole(index),
-            });
+                owner,
+            }),
         }
         rollout.rigid_motions.push(RigidMotion {
             end: self.pose.position,
@@ -330,7 +329,7 @@ impl Cursor {
         rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,
-            owner: SegmentOrigin::whole(index),
+            owner: SegmentOrigin::growing(index),
         });
         if length > 0.0 {
             let (position, ahead) = if curvature == 0.0 {

@@ -92,14 +92,14 @@ impl<'a> Context<'a> {
 
     /// Quadrature points of a segment.
     fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
-        let SegmentOrigin::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
+        let SegmentOrigin::SegmentVariable { index, grows } = rollout.legs[leg].owner else {
             return;
         };
         let segment = rollout.legs[leg].segment;
         let desired = self.problem.desired;
         let q = self.problem.time_weight;
         let per_time = 1.0 / desired.duration();
-        let growth = (to - from) / segment.speed * per_time;
+        let growth = if grows { per_time / segment.speed } else { 0.0 };
         if segment.duration <= 0.0 {
             let nearest = desired.nearest(segment.start.position, segment.start_time, q);
             points.push(Point {
