@@ -86,8 +86,22 @@ impl HeldTurn {
     }
 }
 
+/// What a hold leads to.
+pub(super) enum Trial<T> {
+    Clear(T),
+    Blocked,
+    /// It is clear and costs too much, as every longer hold does.
+    TooDear,
+}
+
+impl<T> From<Option<T>> for Trial<T> {
+    fn from(found: Option<T>) -> Self {
+        found.map_or(Self::Blocked, Self::Clear)
+    }
+}
+
 /// What a trial gives for the least clear hold of `least` to `most` seconds, to `close` seconds, in units
-/// of `unit`. A trial gives nothing for a hold that is blocked.
+/// of `unit`; nothing where that one is too dear.
 ///
 /// The holds that touch come first. Where the turn meets what the line does not, or the line ends before
 /// it would touch, a shorter one is found by bisection. Where no hold that touches is clear, some beyond
@@ -97,7 +111,7 @@ pub(super) fn least_clear<T>(
     (least, most): (f64, f64),
     mut touching: Vec<f64>,
     (unit, close, gaps): (f64, f64, bool),
-    mut trial: impl FnMut(f64) -> Option<T>,
+    mut trial: impl FnMut(f64) -> Trial<T>,
 ) -> Option<T> {
     // a NaN has no hold
     if !(least <= most) {
@@ -106,14 +120,17 @@ pub(super) fn least_clear<T>(
     touching.retain(|hold| *hold > least && *hold < most);
     touching.sort_by(f64::total_cmp);
     let close = close * unit;
-    if let Some(found) = trial(least) {
-        return Some(found);
+    match trial(least) {
+        Trial::Clear(found) => return Some(found),
+        Trial::TooDear => return None,
+        Trial::Blocked => {}
     }
     let mut blocked = least;
     for &hold in touching.iter().filter(|_| !gaps) {
         match trial(hold) {
-            Some(found) => return Some(sooner(blocked, (hold, found), close, trial)),
-            None => blocked = hold,
+            Trial::Clear(found) => return Some(sooner(blocked, (hold, found), close, trial)),
+            Trial::TooDear => return None,
+            Trial::Blocked => blocked = hold,
         }
     }
     touching.insert(0, least);
@@ -129,8 +146,9 @@ pub(super) fn least_clear<T>(
             .take_while(|hold| *hold < next)
         {
             match trial(hold) {
-                Some(found) => return Some(sooner(blocked, (hold, found), close, trial)),
-                None => blocked = hold,
+                Trial::Clear(found) => return Some(sooner(blocked, (hold, found), close, trial)),
+                Trial::TooDear => return None,
+                Trial::Blocked => blocked = hold,
             }
         }
         blocked = blocked.max(from);
@@ -144,13 +162,13 @@ fn sooner<T>(
     mut blocked: f64,
     mut clear: (f64, T),
     close: f64,
-    mut trial: impl FnMut(f64) -> Option<T>,
+    mut trial: impl FnMut(f64) -> Trial<T>,
 ) -> T {
     let mut next = clear.0 - close;
     while clear.0 - blocked > close {
         match trial(next) {
-            Some(found) => clear = (next, found),
-            None => blocked = next,
+            Trial::Clear(found) => clear = (next, found),
+            Trial::Blocked | Trial::TooDear => blocked = next,
         }
         next = 0.5 * (blocked + clear.0);
     }
@@ -252,7 +270,7 @@ mod tests {
                     || more > 0.0 && hold > last - 1.0 && hold < last + more
             };
             let close = [FINE_S, COARSE_S][case % 3 % 2];
-            let trial = |hold: f64| (!blocked(hold)).then_some(hold);
+            let trial = |hold: f64| Trial::from((!blocked(hold)).then_some(hold));
             let found = least_clear((3.0, 400.0), touching, (1.0, close, gaps), trial);
             let found = found.expect("all is clear in the end");
             assert!(found >= 3.0 && !blocked(found));

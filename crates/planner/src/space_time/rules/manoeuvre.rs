@@ -20,7 +20,7 @@ use crate::space_time::proxy::Proxy;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::{after_nearest, complies};
-use crate::space_time::rules::hug::{HeldTurn, least_clear};
+use crate::space_time::rules::hug::{HeldTurn, Trial, least_clear};
 use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::APPARENT_TIME;
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
@@ -363,6 +363,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let holds = (least, most);
         let touching = self.touching(&held, holds);
+        let trial = |hold: f64| trial(hold).into();
         let added = least_clear(holds, touching, (self.unit, close, self.gaps), trial)?;
         self.passed_after(out, Outward::Parallel { spare }, &added)
     }
@@ -442,17 +443,20 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let mut legs = near..problem.desired.legs().len().min(near + 2);
             let returned =
                 legs.find_map(|leg| motion_back(problem, route, (&pose, time), leg, angle));
-            let back = returned?;
+            let Some(back) = returned else {
+                return Trial::Blocked;
+            };
             // on to the same side it would be a circle
             let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
-            let joined = self.joining_time(&back).filter(|_| !circles());
-            self.ended(
-                passed,
-                (time, joined?),
-                hold,
-                (&back, WayBack::At(angle)),
-                below,
-            )
+            let Some(joined) = self.joining_time(&back).filter(|_| !circles()) else {
+                return Trial::Blocked;
+            };
+            let back = (&back[..], WayBack::At(angle));
+            match self.ended(passed, (time, joined), hold, back) {
+                Some(end) if end.cost < below => Trial::from(self.judged(end)),
+                Some(_) => Trial::TooDear,
+                None => Trial::Blocked,
+            }
         };
         let holds = (0.0, most);
         let touching = self.touching(&held, holds);
@@ -500,9 +504,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                     .filter_map(to_end)
                     .min_by(|a, b| a.time.total_cmp(&b.time))?;
                 let back = (&chain.segments[..], WayBack::ToEnd);
-                self.ended(passed, (time, chain.time), hold, back, below)
+                let end = self.ended(passed, (time, chain.time), hold, back)?;
+                (end.cost < below).then(|| self.judged(end))?
             });
-            ends.min_by(|a, b| a.cost.total_cmp(&b.cost))
+            // a longer hold may be cheaper, as it may end without a circle
+            Trial::from(ends.min_by(|a, b| a.cost.total_cmp(&b.cost)))
         };
         // a hold that is clear by a circle leads to a shorter one without
         let found = least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)?;
@@ -512,14 +518,13 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
-    /// is tidy, clear, costs less than `below`, and does not head to a forbidden side too soon.
+    /// is tidy and clear.
     fn ended(
         &self,
         passed: &Partial,
         (returns, joined): (f64, f64),
         hold: f64,
         (back, way_back): (&[Segment], WayBack),
-        below: f64,
     ) -> Option<Partial> {
         let problem = self.problem();
         // the route has segments of its own, as short as its corners are
@@ -539,11 +544,15 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         partial.phase = Phase::End;
         (partial.returns, partial.joined, partial.way_back) = (returns, joined, way_back);
         partial.cost = self.cost(&partial);
-        // on the way back the hulls may be closest later than on the line, and the judge forbids to head
-        // to a side until then
-        partial.is_judged = self.passing.iter().any(Passing::forbids_a_heading);
-        let is_lawful = || !partial.is_judged || self.is_by_the_judges(&partial);
-        (partial.cost < below && is_lawful()).then_some(partial)
+        Some(partial)
+    }
+
+    /// An end that does not head to a forbidden side too soon: on the way back the hulls may be closest
+    /// later than on the line, and the judge forbids to head to that side until then.
+    fn judged(&self, mut end: Partial) -> Option<Partial> {
+        end.is_judged = self.passing.iter().any(Passing::forbids_a_heading);
+        let is_lawful = !end.is_judged || self.is_by_the_judges(&end);
+        is_lawful.then_some(end)
     }
 
     /// Less speed along the route for the least time after which the route is clear at the greatest
@@ -605,6 +614,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let holds = (hold, problem.horizon - leave);
         let touching = self.touching(&held, holds);
+        let trial = |hold: f64| trial(hold).into();
         least_clear(holds, touching, (self.unit, close, self.gaps), trial)
     }
 
