@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! Route ─► Out ─┬► direct ──────────┬► Passed ─► back at an angle, or to the end ─► End
-//!               └► parallel, wider ─┘
+//!               └► parallel ─► wider┘
 //! Route ─► Out at half speed or less ──► along the route again ──► End
 //! ```
 //!
@@ -20,7 +20,9 @@ use crate::space_time::bound::squared_ramp;
 use crate::space_time::manoeuvre::motion::part;
 use crate::space_time::proxy::first_met;
 use crate::space_time::rules::hug::COARSE_S;
-use crate::space_time::rules::manoeuvre::{FirstAlteration, Manoeuvres, Partial, Phase, WayBack};
+use crate::space_time::rules::manoeuvre::{
+    FirstAlteration, Manoeuvres, Outward, Partial, Phase, WayBack,
+};
 use crate::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, SearchKind, SearchStats,
 };
@@ -44,7 +46,7 @@ impl Space for Graph<'_, '_, '_> {
 
     fn successors(&mut self, state: &Partial, out: &mut Vec<(Partial, f64)>) {
         let from = state.cost;
-        let add = |next: Partial| {
+        let mut add = |next: Partial| {
             let step = next.cost - from;
             // the cost of a part and that of the whole differ by rounding
             out.push((next, step.max(0.0)));
@@ -63,10 +65,11 @@ impl Space for Graph<'_, '_, '_> {
                         .for_each(add);
                 }
                 FirstAlteration::Turn { .. } => {
-                    outward(self.manoeuvres, state).into_iter().for_each(add);
+                    outward(self.manoeuvres, state).for_each(add);
                 }
             },
             Phase::Passed => {
+                wider(self.manoeuvres, state).into_iter().for_each(&mut add);
                 ways_back(self.manoeuvres, state, self.angles, f64::INFINITY).for_each(add);
             }
             Phase::End => {}
@@ -117,30 +120,26 @@ pub(super) fn ways_back<'m>(
     ways.filter_map(move |way| manoeuvres.back(passed, way, COARSE_S, below))
 }
 
-/// The ways to go on after a turn until the targets are passed.
-pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> Vec<Partial> {
-    let problem = manoeuvres.problem();
-    let mut ways: Vec<Partial> = manoeuvres.direct(out).into_iter().collect();
-    let may_turn_back = problem.under_way.is_none_or(|begun| begun.may_turn_back());
-    if !may_turn_back {
-        return ways;
-    }
-    let mut last: Option<Partial> = None;
-    for spare in ROOM_S.map(|spare| spare * manoeuvres.unit) {
-        if last
-            .as_ref()
-            .is_some_and(|last| manoeuvres.goes_on(last, spare))
-        {
-            continue;
-        }
-        // where one has no room, a wider one has none
-        let Some(found) = manoeuvres.parallel(out, spare, COARSE_S, last.as_ref()) else {
-            break;
-        };
-        ways.extend(last.replace(found));
-    }
-    ways.extend(last);
-    ways
+/// The least ways to go on after a turn until the targets are passed: straight, and on the nearest
+/// parallel course.
+pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> impl Iterator<Item = Partial> {
+    let begun = manoeuvres.problem().under_way;
+    let may_turn_back = begun.is_none_or(|begun| begun.may_turn_back());
+    let parallel = || manoeuvres.parallel(out, ROOM_S[0], COARSE_S, None);
+    let parallel = may_turn_back.then(parallel).flatten();
+    manoeuvres.direct(out).into_iter().chain(parallel)
+}
+
+/// The next parallel course with more room than one; it costs more, as it leads farther off the route.
+pub(super) fn wider(manoeuvres: &Manoeuvres, passed: &Partial) -> Option<Partial> {
+    let Outward::Parallel { spare } = passed.outward else {
+        return None;
+    };
+    let wider = ROOM_S.map(|room| room * manoeuvres.unit);
+    let mut wider = wider.into_iter().filter(|room| *room > spare);
+    let spare = wider.find(|room| !manoeuvres.goes_on(passed, *room))?;
+    let out = manoeuvres.out(passed.leave, passed.first)?;
+    manoeuvres.parallel(&out, spare, COARSE_S, Some(passed))
 }
 
 impl Manoeuvres<'_, '_> {

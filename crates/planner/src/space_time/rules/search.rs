@@ -10,6 +10,7 @@
 //! where nothing else is clear.
 
 use std::f64::consts::FRAC_PI_2;
+use std::iter::successors;
 use std::ops::RangeInclusive;
 
 use crate::UnderWay;
@@ -17,7 +18,7 @@ use crate::search::{Search, Stop};
 use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
 use crate::space_time::manoeuvre::motion::{pose_at, until};
 use crate::space_time::manoeuvre::speeds::{ManoeuvreSpeeds, due_leg};
-use crate::space_time::rules::automaton::{Graph, outward, ways_back};
+use crate::space_time::rules::automaton::{Graph, outward, ways_back, wider};
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
@@ -254,9 +255,15 @@ impl Manoeuvres<'_, '_> {
             };
             match first {
                 FirstAlteration::Slow { .. } => self.slowed(&out, COARSE_S).is_some_and(is_escape),
-                FirstAlteration::Turn { .. } => outward(self, &out).iter().any(|passed| {
-                    passed.cost < below && ways_back(self, passed, &angles, below).any(is_escape)
-                }),
+                FirstAlteration::Turn { .. } => {
+                    let returns =
+                        |passed: &Partial| ways_back(self, passed, &angles, below).any(is_escape);
+                    outward(self, &out).any(|passed| {
+                        let all = successors(Some(passed), |narrower| wider(self, narrower));
+                        all.take_while(|passed| passed.cost < below)
+                            .any(|p| returns(&p))
+                    })
+                }
             }
         })
     }
