@@ -135,6 +135,9 @@ impl Grid {
 
     /// The table with lines broken so that it fits; itself where it is too wide for that.
     fn fitted(self, width: usize, display: Display) -> Result<Self, Self> {
+        if width == usize::MAX {
+            return Ok(self);
+        }
         let mut broken = self.clone();
         for (name, least) in &self.breaking {
             let excess = broken.width(display).saturating_sub(width);

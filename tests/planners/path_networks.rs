@@ -248,3 +248,17 @@ fn on_the_alternative_path_the_ferry_lets_the_coaster_pass() {
     let at_full_speed = (alone - length / 5.0).abs() < 1e-6;
     assert!(at_full_speed && both > alone + 5.0, "{both} {alone}");
 }
+
+/// Own ship turns on the spot before it leaves along a way that begins 0.8 micrometres from it.
+#[test]
+fn a_turn_on_the_spot_is_where_the_way_begins() {
+    let run = verified(include_str!(
+        "../faults/exit3-path-time-beside-own-position.toml"
+    ));
+    let plan = run.planned.outcome.plan().expect("a plan");
+    let [turn, leaves, ..] = plan.trajectory.segments() else {
+        panic!("two segments");
+    };
+    assert_eq!(turn.duration, 0.0);
+    assert_eq!(turn.start.position, leaves.start.position);
+}

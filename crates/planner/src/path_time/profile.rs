@@ -221,7 +221,7 @@ impl Profile {
         let heading = |leg: usize| heading_of(scene.tracks[leg].direction);
         // own ship turns when it moves off
         let mut facing = start.heading;
-        let still = Segment::straight(start, 0.0, 0.0, 0.0);
+        let still = |pose| Segment::straight(pose, 0.0, 0.0, 0.0);
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let way = to.distance - from.distance;
@@ -239,12 +239,14 @@ impl Profile {
                 if speed > 0.0 {
                     facing = heading(leg);
                 }
+                let place = scene.tracks[leg].at(a.distance);
                 if segments.is_empty() && wrap(facing - start.heading).abs() > tolerance::JOINT_RAD
                 {
-                    segments.push(still);
+                    // where the leg begins, which need not be own position to the last digit
+                    segments.push(still(Pose::new(place, start.heading)));
                 }
                 segments.push(Segment::straight(
-                    Pose::new(scene.tracks[leg].at(a.distance), facing),
+                    Pose::new(place, facing),
                     a.time,
                     b.time - a.time,
                     speed,
@@ -252,7 +254,7 @@ impl Profile {
             }
         }
         if segments.is_empty() {
-            segments.push(still);
+            segments.push(still(start));
         }
         Trajectory::with_corners(segments).ok()
     }
