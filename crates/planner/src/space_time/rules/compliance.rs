@@ -13,11 +13,16 @@ use searoom_model::vessel::Hull;
 /// Samples per segment for the position relative to a target.
 const ARC_SAMPLES: u32 = 32;
 
-/// Seconds after the closest approach of the hulls at which a target counts as passed: more than
-/// the step of the samples that it is found by, and of those of the judges.
-const PASSED_S: f64 = 3.0;
+/// Seconds after the closest approach of the hulls at which a target counts as passed: those in which
+/// the range opens by so many metres, so that no way back is nearer again by the judges' samples, but no
+/// fewer than these and no more than those. For a horizon above so many seconds the samples have longer
+/// steps.
+const OPENED_M: f64 = 20.0;
+const LEAST_PASSED_S: f64 = 1.5;
+const MOST_PASSED_S: f64 = 4.0;
+const SECONDWISE_S: f64 = 5_000.0;
 
-/// Seconds to which the closest approach on a line is found, and the most steps for it.
+/// Seconds to which the closest approach is found, and the most steps for it.
 const CLOSE_S: f64 = 0.25;
 const MOST_THIRDS: usize = 60;
 
@@ -38,7 +43,7 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
         }
         let nearest = Nearest::of(&problem.own.hull, encountered, motion);
         let passes = nearest.drifts_to_port || !duties.port_to_port;
-        let until = nearest.time + PASSED_S;
+        let until = nearest.time + passed_after(problem, nearest.relative);
         let off = |side| keeps_off(problem, off_route, side, until);
         let heads = duties.no_heading_to.is_none_or(off);
         let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
@@ -46,16 +51,24 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
     })
 }
 
-/// Seconds at which own ship on a straight course may head to any side again: [`PASSED_S`] and a sample
+/// Seconds after the closest approach of the hulls at which a target counts as passed, for a relative
+/// speed in m/s.
+fn passed_after(problem: &Problem, relative: f64) -> f64 {
+    // a NaN, without relative motion, is the most
+    let opened = (OPENED_M / relative).min(MOST_PASSED_S).max(LEAST_PASSED_S);
+    opened * (problem.horizon / SECONDWISE_S).max(1.0)
+}
+
+/// Seconds at which own ship on a straight course may head to any side again: a little
 /// after the closest approach of the hulls, or at once where the target is passed already.
 pub(super) fn after_nearest(
-    own: &Hull,
+    problem: &Problem,
     encountered: &Encountered,
     pose: Pose,
     speed: f64,
     time: f64,
 ) -> f64 {
-    let ship = &encountered.ship;
+    let (own, ship) = (&problem.own.hull, &encountered.ship);
     let apart = ship.moved(time).pose.position - pose.position;
     let closing = pose.ahead() * speed - ship.velocity();
     // the hulls are nearest about when the centres are
@@ -68,10 +81,15 @@ pub(super) fn after_nearest(
     let origin = |heading| Pose::new(Vector::zeros(), heading);
     let hull = encountered.hull.polygon(&origin(ship.pose.heading));
     let hulls = hull.minkowski_sum(&own.polygon(&origin(pose.heading)).negated());
-    // convex in time, so the third with the greater distance at its inner end is cut off
     let distance = |after: f64| hulls.signed_distance(closing * after - apart);
-    let (mut from, mut to) = ((nearest - about).max(0.0), nearest + about);
-    // with hardly any relative motion a third may be less than rounding
+    let nearest = closest((nearest - about).max(0.0), nearest + about, distance);
+    time + nearest + passed_after(problem, closing.norm())
+}
+
+/// Latest time at which a distance that is convex in time may be least, to [`CLOSE_S`].
+fn closest(mut from: f64, mut to: f64, distance: impl Fn(f64) -> f64) -> f64 {
+    // the third with the greater distance at its inner end is cut off; with hardly any relative motion a
+    // third may be less than rounding
     for _ in 0..MOST_THIRDS {
         if !(to - from > CLOSE_S) {
             break;
@@ -83,7 +101,7 @@ pub(super) fn after_nearest(
             from += third;
         }
     }
-    time + to + PASSED_S + NEAREST_S
+    to
 }
 
 /// Number of rules that both judges find broken by a motion. O(targets × seconds).
@@ -190,16 +208,18 @@ fn reach(hull: &Hull, ahead: Vector, toward: Vector) -> f64 {
     0.5 * (hull.length * ahead.dot(&toward).abs() + hull.beam * cross(ahead, toward).abs())
 }
 
-/// Closest approach of the hulls on a motion to a target that holds course and speed.
+/// Closest approach of the hulls on a motion to a target that holds course and speed, to [`CLOSE_S`].
 #[derive(Debug)]
 struct Nearest {
     time: f64,
+    /// Relative speed then, m/s.
+    relative: f64,
     /// True when the target then moves from starboard to port as seen from own ship.
     drifts_to_port: bool,
 }
 
 impl Nearest {
-    /// The nearest of the samples every [`NEAREST_S`] seconds, and at the ends of the segments.
+    /// About the nearest of the samples every [`NEAREST_S`] seconds, and at the ends of the segments.
     fn of(own: &Hull, encountered: &Encountered, motion: &[Segment]) -> Self {
         let ship = &encountered.ship;
         let drift = ship.velocity();
@@ -238,11 +258,7 @@ impl Nearest {
         let (mut least, mut nearest) = (f64::INFINITY, None);
         let mut add = |s: &Segment, (time, from_target): (f64, Vector), hulls: f64| {
             if hulls < least {
-                let relative = s.velocity_at(time) - drift;
-                nearest = Some(Self {
-                    time,
-                    drifts_to_port: cross(relative, from_target) < 0.0,
-                });
+                nearest = Some((*s, time, from_target));
                 least = hulls;
             }
             least
@@ -296,10 +312,30 @@ impl Nearest {
                 along += ((hulls - so_far) / step).floor().max(1.0);
             }
         }
-        nearest.unwrap_or(Self {
-            time: 0.0,
-            drifts_to_port: false,
-        })
+        let Some((s, time, from_target)) = nearest else {
+            return Self {
+                time: 0.0,
+                relative: 0.0,
+                drifts_to_port: false,
+            };
+        };
+        let on_line = (!s.is_arc()).then(|| both(s.start.heading));
+        let hulls = |time: f64| {
+            let pose = s.pose_at(time);
+            let from_target = pose.position - ship.pose.position - drift * time;
+            match &on_line {
+                Some(both) => both.signed_distance(from_target),
+                None => both(pose.heading).signed_distance(from_target),
+            }
+        };
+        let step = s.duration / steps(&s);
+        let from = (time - step).max(s.start_time);
+        let relative = s.velocity_at(time) - drift;
+        Self {
+            time: closest(from, (time + step).min(s.end_time()), hulls),
+            relative: relative.norm(),
+            drifts_to_port: cross(relative, from_target) < 0.0,
+        }
     }
 }
 
@@ -335,7 +371,7 @@ mod tests {
 
     /// Lines, circles and waits past targets that are crossed, followed or passed more than once.
     #[test]
-    fn the_nearest_sample_is_that_of_all_samples() {
+    fn the_closest_approach_is_beside_the_nearest_of_all_samples() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         for case in 0..1_000 {
             let mut hull = || {
@@ -369,8 +405,27 @@ mod tests {
             let least = all.iter().fold(f64::INFINITY, |least, s| least.min(s.0));
             all.retain(|(distance, ..)| *distance <= least + 1e-9);
             let found = Nearest::of(&own, &encountered, &motion);
-            let same = |s: &(_, f64, bool)| (s.1, s.2) == (found.time, found.drifts_to_port);
+            let same = |s: &(_, f64, bool)| {
+                (s.1 - found.time).abs() <= NEAREST_S && s.2 == found.drifts_to_port
+            };
             assert!(all.iter().any(same), "{case}: {found:?}, {all:?}");
+            let near = motion
+                .iter()
+                .filter(|s| s.start_time <= found.time && found.time <= s.end_time());
+            let apart = near.map(|s| {
+                let (pose, target) = (
+                    s.pose_at(found.time),
+                    encountered.ship.moved(found.time).pose,
+                );
+                let sum = hull
+                    .polygon(&target)
+                    .minkowski_sum(&own.polygon(&pose).negated());
+                sum.signed_distance(Vector::zeros())
+            });
+            // within [`CLOSE_S`] of a sample or of a nearer place between two
+            let closing = (speed + 15.0 + 0.06 * own.half_diagonal()) * CLOSE_S;
+            let apart = apart.fold(f64::INFINITY, f64::min);
+            assert!(apart <= least + closing + 1e-9, "{case}: {apart} {least}");
         }
     }
 }

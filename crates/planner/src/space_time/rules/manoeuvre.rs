@@ -648,9 +648,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// First time from `passed` on after which own ship may head to any side of its first course.
     fn heads_freely(&self, pose: Pose, speed: f64, (time, passed): (f64, f64)) -> Option<f64> {
-        let own = &self.problem().own.hull;
+        let problem = self.problem();
         let after = self.passing.iter().filter(|p| p.forbids_a_heading());
-        let after = after.map(|p| after_nearest(own, p.encountered, pose, speed, time));
+        let after = after.map(|p| after_nearest(problem, p.encountered, pose, speed, time));
         let after = after.fold(passed, f64::max);
         (after <= self.problem().horizon).then_some(after)
     }
