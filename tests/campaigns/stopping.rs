@@ -217,5 +217,32 @@ pub fn run(seeds: Seeds) -> Report {
             format!("{name}: only {} of {all} end short", short.len())
         });
     }
+    lawful_by_stops(seeds);
     report
+}
+
+/// Prints how many scenes among ships are planned by the rules with stops and without them.
+fn lawful_by_stops(seeds: Seeds) {
+    let all = seeds.clone().into_par_iter();
+    let lawful = all.map(|seed| {
+        let scenario = Scenario {
+            compliance: Compliance::Rules,
+            ..among_ships(seed)
+        };
+        let mut moving = scenario.clone();
+        moving.own_ship.speeds.retain(|speed| *speed > 0.0);
+        [scenario, moving].map(|scenario| {
+            let run = pipeline::run(scenario);
+            run.planned.outcome.plan().is_some() && run.relaxations.is_empty()
+        })
+    });
+    let lawful: Vec<[bool; 2]> = lawful.collect();
+    let of = |which: fn(&[bool; 2]) -> bool| lawful.iter().filter(|l| which(l)).count();
+    println!(
+        "among ships, by the rules: {} of {} solved, {} of them only with a stop, {} only without",
+        of(|l| l[0]),
+        lawful.len(),
+        of(|l| l[0] && !l[1]),
+        of(|l| l[1] && !l[0]),
+    );
 }

@@ -22,6 +22,7 @@ fn no_rule_is_broken_where_none_need_be() {
         include_str!("../faults/rules-length-of-one.toml"),
         include_str!("../faults/rules-slow-turn.toml"),
         include_str!("../faults/rules-starboard-to-starboard.toml"),
+        include_str!("../faults/stop-by-the-rules.toml"),
     ] {
         let run = run(text);
         let title = &run.scenario.title;
@@ -32,6 +33,23 @@ fn no_rule_is_broken_where_none_need_be() {
             assert!(broken.is_empty(), "{title}: {broken:?}");
         }
     }
+}
+
+/// A ship that cannot turn in time may stop where that is among its speeds.
+#[test]
+fn a_stop_lets_a_crosser_pass_where_no_turn_does() {
+    let mut scenario = parsed(include_str!("../faults/stop-by-the-rules.toml"));
+    let stops = pipeline::run(scenario.clone());
+    let plan = stops.planned.outcome.plan().expect("a plan");
+    assert_eq!(plan.method, PlanMethod::Rules);
+    let segments = plan.trajectory.segments();
+    assert!(
+        segments
+            .iter()
+            .any(|s| s.speed == 0.0 && s.duration > 100.0)
+    );
+    scenario.own_ship.speeds.retain(|speed| *speed > 0.0);
+    assert!(!pipeline::run(scenario).relaxations.is_empty());
 }
 
 /// The turn is made at the speed of its leg, 12 kn, though the mission ends with a leg of 6 kn.

@@ -6,6 +6,7 @@
 #[path = "../../model/src/ship_fixtures.rs"]
 mod ship_fixtures;
 
+mod between_hulls;
 pub mod compliance;
 mod domain;
 mod encounter;
@@ -13,6 +14,7 @@ mod role;
 mod rules;
 mod thresholds;
 
+pub use between_hulls::BetweenHulls;
 pub use domain::{ShipDomain, ship_domain, sweep};
 pub use encounter::least_risk_distance;
 pub use encounter::{Encounter, Risk, TargetMemory, encounter, first_risk, sweep_distance};

@@ -1,8 +1,9 @@
 //! Samples of an encounter of own ship and one target: the only input of the assessment.
 
+use crate::between_hulls::BetweenHulls;
 use crate::encounter::{NO_RELATIVE_SPEED, state_at};
 use crate::{Risk, SteadyShip, TargetMemory, Thresholds};
-use searoom_geometry::frame::{Pose, Vector, relative_bearing, to_port, wrap};
+use searoom_geometry::frame::{Pose, Vector, relative_bearing, wrap};
 use searoom_geometry::tolerance;
 use searoom_model::target::ShipTrack;
 use searoom_model::trajectory::{GroundSegment, Segment, Trajectory};
@@ -325,7 +326,7 @@ impl OwnSamples {
     ) -> EncounterSample {
         let ((time, own), ahead) = (self.ships[index], self.ahead[index]);
         let offset = target.pose.position - own.pose.position;
-        let between = Between::new(offset, (&self.hull, ahead), (hull, target_ahead));
+        let between = BetweenHulls::new(offset, (&self.hull, ahead), (hull, target_ahead));
         let apart = between.distance();
         let closing = ahead * own.speed - target_ahead * target.speed;
         // negated on purpose: a NaN is a meeting
@@ -360,7 +361,7 @@ impl OwnSamples {
             let there = target.pose_at(*time);
             let offset = there.position - own.pose.position;
             let own = (&self.hull, self.ahead[index]);
-            Between::new(offset, own, (&target.hull, there.ahead())).distance()
+            BetweenHulls::new(offset, own, (&target.hull, there.ahead())).distance()
         };
         let mut best = (0, apart(0));
         let mut open = vec![(0, self.ships.len() - 1)];
@@ -402,90 +403,6 @@ fn sampled<S: Copy + Into<GroundSegment>>(sailed: &[S]) -> Vec<(f64, SteadyShip)
         })
     });
     samples.collect()
-}
-
-/// Minkowski sum of two hulls about the offset of their centres: the intersection of four strips.
-struct Between {
-    offset: Vector,
-    /// Half of own length and beam and of the target's, each with its axis.
-    halves: [(Vector, f64); 4],
-}
-
-impl Between {
-    /// From the offset, and from both hulls with the directions ahead of them.
-    fn new(offset: Vector, own: (&Hull, Vector), target: (&Hull, Vector)) -> Self {
-        let axes = |(hull, ahead): (&Hull, Vector)| {
-            let (long, wide) = (0.5 * hull.length, 0.5 * hull.beam);
-            [(ahead, long), (to_port(ahead), wide)]
-        };
-        let ([a1, a2], [b1, b2]) = (axes(own), axes(target));
-        Self {
-            offset,
-            halves: [a1, a2, b1, b2],
-        }
-    }
-
-    /// Half-width of the sum along a normal.
-    fn half(&self, normal: &Vector) -> f64 {
-        self.halves
-            .iter()
-            .map(|(axis, half)| half * normal.dot(axis).abs())
-            .sum()
-    }
-
-    /// Metres between the hulls, negative in overlap.
-    fn distance(&self) -> f64 {
-        let beyond = self
-            .halves
-            .iter()
-            .map(|(n, _)| n.dot(&self.offset).abs() - self.half(n));
-        let most = beyond.fold(f64::NEG_INFINITY, |most, next| {
-            // negated on purpose: a NaN is taken over and stays
-            if next <= most || most.is_nan() {
-                most
-            } else {
-                next
-            }
-        });
-        if !(most > 0.0) {
-            return most;
-        }
-        // the nearest points are a corner of one hull and a point of the other
-        let [a, b] = [&self.halves[..2], &self.halves[2..]];
-        let corners = |of: &[(Vector, f64)]| {
-            let (ahead, aside) = (of[0].0 * of[0].1, of[1].0 * of[1].1);
-            [ahead + aside, ahead - aside, aside - ahead, -ahead - aside]
-        };
-        let away = |of: &[(Vector, f64)], point: Vector| {
-            let beyond = |(axis, half): &(Vector, f64)| (axis.dot(&point).abs() - half).max(0.0);
-            Vector::new(beyond(&of[0]), beyond(&of[1]))
-        };
-        let theirs = corners(b).map(|corner| away(a, self.offset + corner));
-        let ours = corners(a).map(|corner| away(b, corner - self.offset));
-        let ways = theirs.into_iter().chain(ours);
-        let squares = ways.map(|way| way.norm_squared());
-        squares.fold(f64::INFINITY, f64::min).sqrt()
-    }
-
-    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it
-    /// never is.
-    fn seconds_to(&self, velocity: Vector) -> f64 {
-        let (mut from, mut until) = (0.0_f64, f64::INFINITY);
-        for (axis, _) in &self.halves {
-            for normal in [*axis, -axis] {
-                let rate = normal.dot(&velocity);
-                let room = normal.dot(&self.offset) + self.half(axis);
-                if rate > 0.0 {
-                    until = until.min(room / rate);
-                } else if rate < 0.0 {
-                    from = from.max(room / rate);
-                } else if room < 0.0 {
-                    return f64::INFINITY;
-                }
-            }
-        }
-        if from > until { f64::INFINITY } else { from }
-    }
 }
 
 /// An uninterrupted turn to one side.
@@ -582,7 +499,8 @@ mod tests {
             let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
             let sum = (other.polygon(&b.pose)).minkowski_sum(&own.polygon(&a.pose).negated());
             let offset = b.pose.position - a.pose.position;
-            let between = Between::new(offset, (&own, a.pose.ahead()), (&other, b.pose.ahead()));
+            let between =
+                BetweenHulls::new(offset, (&own, a.pose.ahead()), (&other, b.pose.ahead()));
             let exact = sum.signed_distance(Vector::zeros());
             assert!((between.distance() - exact).abs() < 1e-9, "{exact}");
             met += usize::from(exact < 0.0);

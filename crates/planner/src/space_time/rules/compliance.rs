@@ -4,7 +4,9 @@
 use crate::Problem;
 use crate::space_time::manoeuvre::motion::until as motion_until;
 use searoom_colregs::compliance::{ComplianceReport, OwnSamples};
-use searoom_colregs::{Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory};
+use searoom_colregs::{
+    BetweenHulls, Encountered, MOST_SMALL_TURNS, ON_COURSE, Risk, SMALL_TURN, TargetMemory,
+};
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_model::target::ShipTrack;
 use searoom_model::trajectory::{Mover, Segment, Trajectory};
@@ -78,10 +80,11 @@ pub(super) fn after_nearest(
     if !(nearest + about > 0.0) {
         return time;
     }
-    let origin = |heading| Pose::new(Vector::zeros(), heading);
-    let hull = encountered.hull.polygon(&origin(ship.pose.heading));
-    let hulls = hull.minkowski_sum(&own.polygon(&origin(pose.heading)).negated());
-    let distance = |after: f64| hulls.signed_distance(closing * after - apart);
+    let hulls = [(own, pose.ahead()), (&encountered.hull, ship.pose.ahead())];
+    let distance = |after: f64| {
+        let [own, target] = hulls;
+        BetweenHulls::new(apart - closing * after, own, target).distance()
+    };
     let nearest = closest((nearest - about).max(0.0), nearest + about, distance);
     time + nearest + passed_after(problem, closing.norm())
 }
@@ -252,9 +255,11 @@ impl Nearest {
         let long = own.half_diagonal() + encountered.hull.half_diagonal();
         let wide = [own, &encountered.hull].map(|hull| 0.5 * hull.length.min(hull.beam));
         let most = centres + long - wide.iter().sum::<f64>();
-        let origin = |heading| Pose::new(Vector::zeros(), heading);
-        let hull = encountered.hull.polygon(&origin(ship.pose.heading));
-        let both = |heading| hull.minkowski_sum(&own.polygon(&origin(heading)).negated());
+        let course = ship.pose.ahead();
+        let hulls_apart = |from_target: Vector, ahead: Vector| {
+            let target = (&encountered.hull, course);
+            BetweenHulls::new(-from_target, (own, ahead), target).distance()
+        };
         let (mut least, mut nearest) = (f64::INFINITY, None);
         let mut add = |s: &Segment, (time, from_target): (f64, Vector), hulls: f64| {
             if hulls < least {
@@ -263,7 +268,6 @@ impl Nearest {
             }
             least
         };
-        let course = ship.pose.ahead();
         let near = |s: &&Segment| centres_on(s) <= most;
         // lines first, because they leave few samples of arcs
         let (arcs, lines): (Vec<&Segment>, Vec<&Segment>) =
@@ -271,13 +275,13 @@ impl Nearest {
         let mut so_far = f64::INFINITY;
         for s in lines {
             // the heading is that of its start, and the distance of the hulls convex in time
-            let (sum, velocity) = (both(s.start.heading), s.velocity_at(s.start_time));
+            let (ahead, velocity) = (s.start.ahead(), s.velocity_at(s.start_time));
             let from_target = |k: usize| {
                 let time = sample(s, k as f64);
                 let place = s.start.position + velocity * (time - s.start_time);
                 (time, place - ship.pose.position - drift * time)
             };
-            let hulls = |k: usize| sum.signed_distance(from_target(k).1);
+            let hulls = |k: usize| hulls_apart(from_target(k).1, ahead);
             let (mut first, mut last) = (0, steps(s) as usize);
             while first < last {
                 let middle = (first + last) / 2;
@@ -306,7 +310,7 @@ impl Nearest {
                 let mut hulls = range - reaches;
                 // negated on purpose: a NaN, at no range, is not far
                 if !(hulls >= so_far) {
-                    hulls = both(s.pose_at(time).heading).signed_distance(from_target);
+                    hulls = hulls_apart(from_target, ahead);
                     so_far = add(s, (time, from_target), hulls);
                 }
                 along += ((hulls - so_far) / step).floor().max(1.0);
@@ -319,14 +323,10 @@ impl Nearest {
                 drifts_to_port: false,
             };
         };
-        let on_line = (!s.is_arc()).then(|| both(s.start.heading));
         let hulls = |time: f64| {
             let pose = s.pose_at(time);
             let from_target = pose.position - ship.pose.position - drift * time;
-            match &on_line {
-                Some(both) => both.signed_distance(from_target),
-                None => both(pose.heading).signed_distance(from_target),
-            }
+            hulls_apart(from_target, pose.ahead())
         };
         let step = s.duration / steps(&s);
         let from = (time - step).max(s.start_time);
