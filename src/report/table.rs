@@ -111,7 +111,9 @@ impl Grid {
 
     /// [`Grid::text`], and the header of the columns that are left.
     pub fn text_and_columns(self, display: Display) -> (String, Vec<&'static str>) {
-        let width = display.width.unwrap_or(usize::MAX);
+        let Some(width) = display.width else {
+            return (self.table(display).trim_fmt(), self.header);
+        };
         if width < CARD_WIDTH && self.width(display) > width {
             let grid = self.brief();
             return (grid.cards(display), grid.header);
@@ -135,9 +137,6 @@ impl Grid {
 
     /// The table with lines broken so that it fits; itself where it is too wide for that.
     fn fitted(self, width: usize, display: Display) -> Result<Self, Self> {
-        if width == usize::MAX {
-            return Ok(self);
-        }
         let mut broken = self.clone();
         for (name, least) in &self.breaking {
             let excess = broken.width(display).saturating_sub(width);

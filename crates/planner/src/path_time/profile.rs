@@ -242,7 +242,7 @@ impl Profile {
                 let place = scene.tracks[leg].at(a.distance);
                 if segments.is_empty() && wrap(facing - start.heading).abs() > tolerance::JOINT_RAD
                 {
-                    // where the leg begins, which need not be own position to the last digit
+                    // where own ship moves off, which need not be its position to the last digit
                     segments.push(still(Pose::new(place, start.heading)));
                 }
                 segments.push(Segment::straight(

@@ -205,7 +205,7 @@ fn add_of<S: Shape>(
             let to = sample(fraction, position, Some(from.slack.face));
             let mut piece = Chord::new(shape, leg, &from, &to);
             if segment.is_arc() && piece.least.is_mixed() {
-                piece.least.fraction = piece.onto_arc(shape, l, [&from, &to]);
+                piece.move_onto_arc(shape, l, [&from, &to]);
                 let place = l.along(piece.least.fraction).0;
                 let at = sample(piece.least.fraction, place, Some(to.slack.face));
                 piece.least.slack = at.slack.value;
@@ -455,25 +455,31 @@ impl<F: Copy> Chord<F> {
         }
     }
 
-    /// Weighs the two faces of a mixed minimum for the velocity on the arc, so that the slack's rate
-    /// along the arc vanishes, not that along the chord; returns the fraction at which they meet there.
-    fn onto_arc<S: Shape<Face = F>>(&mut self, shape: &S, arc: &Leg, ends: [&Sample<F>; 2]) -> f64 {
+    /// Moves a mixed minimum of the chord to where its two faces meet on the arc, to first order, and weighs
+    /// them for the velocity there, so that the slack's rate along the arc vanishes. Where one falls and the
+    /// other rises on the chord alone, the weights stay.
+    fn move_onto_arc<S: Shape<Face = F>>(&mut self, shape: &S, arc: &Leg, ends: [&Sample<F>; 2]) {
         let [from, to] = ends;
         let least = &mut self.least;
         let share = (least.fraction - from.fraction) / (to.fraction - from.fraction);
         let (place, ahead) = arc.along(least.fraction);
         let off = place - from.position.lerp(&to.position, share);
-        let velocity = ahead * arc.segment.speed;
-        let [fall, rise] = least.faces.map(|(face, _)| {
-            let (normal, speed) = shape.plane(face);
-            (normal.dot(&velocity) - speed, normal.dot(&off))
-        });
-        if !(fall.0 < 0.0 && rise.0 > 0.0) {
-            return least.fraction;
+        let faces = least.faces.map(|(face, _)| shape.plane(face));
+        let rates = |ahead: Vector| {
+            let velocity = ahead * arc.segment.speed;
+            faces.map(|(normal, speed)| normal.dot(&velocity) - speed)
+        };
+        let [fall, rise] = rates(ahead);
+        if !(fall < 0.0 && rise > 0.0) {
+            return;
         }
-        let weight = rise.0 / (rise.0 - fall.0);
-        [least.faces[0].1, least.faces[1].1] = [weight, 1.0 - weight];
-        let later = (fall.1 - rise.1) / (rise.0 - fall.0);
-        (least.fraction + later / arc.segment.duration).clamp(from.fraction, to.fraction)
+        let [falling, rising] = faces.map(|(normal, _)| normal.dot(&off));
+        let later = (falling - rising) / (rise - fall) / arc.segment.duration;
+        least.fraction = (least.fraction + later).clamp(from.fraction, to.fraction);
+        let [fall, rise] = rates(arc.along(least.fraction).1);
+        if fall < 0.0 && rise > 0.0 {
+            let weight = rise / (rise - fall);
+            [least.faces[0].1, least.faces[1].1] = [weight, 1.0 - weight];
+        }
     }
 }

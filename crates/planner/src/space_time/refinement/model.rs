@@ -298,20 +298,21 @@ pub(crate) mod tests {
     /// before the manoeuvre.
     #[test]
     fn rates_match_differences() {
-        at_manoeuvres(|context, guess| assert!(contacts_with_right_rates(context, guess) > 0));
+        at_manoeuvres(|context, guess| assert!(checked_contacts(context, guess) > 0));
         let points = [0.0, 100.0, 2500.0].map(|x| Vector::new(x, 0.0));
         let desired = DesiredTrajectory::new(&points, &[2.5, 5.0]).expect("valid");
         at_manoeuvres_along(&desired, |context, guess| {
             let mut guess = guess.clone();
-            assert!(contacts_with_right_rates(context, &guess) > 0);
+            assert!(checked_contacts(context, &guess) > 0);
             let run = &mut guess.structure.variables[0];
             *run = SegmentVariable::Run { speed: run.speed() };
-            contacts_with_right_rates(context, &guess);
+            // at one speed own ship is too early for a contact
+            checked_contacts(context, &guess);
         });
     }
 
     /// Number of contact rows, after every rate was compared.
-    fn contacts_with_right_rates(context: &Context, guess: &InitialGuess) -> usize {
+    fn checked_contacts(context: &Context, guess: &InitialGuess) -> usize {
         let goal = matches!(guess.structure.ending, Ending::Goal { .. });
         let here = context
             .model(&guess.structure, &guess.lengths)

@@ -3,12 +3,13 @@
 //!
 //! ```text
 //! Route ─► Out ─┬► direct ──────────┬► Passed ─► back at an angle, or to the end ─► End
-//!               └► parallel ─► wider┘
+//!               └► parallel, wider ─┘
 //! Route ─► Out at half speed or less ──► along the route again ──► End
 //! ```
 //!
 //! The cost is J by [`FirstAlteration::price`]. The judge decides on an end when it leaves the queue, so
-//! the first goal is the cheapest lawful manoeuvre of the graph.
+//! the first goal is the cheapest lawful manoeuvre of the graph. A wider parallel course is a successor of
+//! the next narrower one where it is sure to cost more ([`Manoeuvres::leads_off`]).
 
 use std::cell::RefCell;
 
@@ -65,11 +66,24 @@ impl Space for Graph<'_, '_, '_> {
                         .for_each(add);
                 }
                 FirstAlteration::Turn { .. } => {
-                    outward(self.manoeuvres, state).for_each(add);
+                    for passed in outward(self.manoeuvres, state) {
+                        // where a wider course may be cheaper, it does not wait for the narrower one
+                        let mut next = match self.manoeuvres.leads_off(state) {
+                            true => None,
+                            false => wider(self.manoeuvres, &passed),
+                        };
+                        add(passed);
+                        while let Some(found) = next {
+                            next = wider(self.manoeuvres, &found);
+                            add(found);
+                        }
+                    }
                 }
             },
             Phase::Passed => {
-                wider(self.manoeuvres, state).into_iter().for_each(&mut add);
+                if self.manoeuvres.leads_off(state) {
+                    wider(self.manoeuvres, state).into_iter().for_each(&mut add);
+                }
                 ways_back(self.manoeuvres, state, self.angles, f64::INFINITY).for_each(add);
             }
             Phase::End => {}
@@ -120,8 +134,8 @@ pub(super) fn ways_back<'m>(
     ways.filter_map(move |way| manoeuvres.back(passed, way, COARSE_S, below))
 }
 
-/// The least ways to go on after a turn until the targets are passed: straight, and on the nearest
-/// parallel course.
+/// The ways to go on after a turn until the targets are passed: straight, and on the nearest parallel
+/// course.
 pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> impl Iterator<Item = Partial> {
     let begun = manoeuvres.problem().under_way;
     let may_turn_back = begun.is_none_or(|begun| begun.may_turn_back());
@@ -130,16 +144,16 @@ pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> impl Iterator<I
     manoeuvres.direct(out).into_iter().chain(parallel)
 }
 
-/// The next parallel course with more room than one; it costs more, as it leads farther off the route.
+/// The next wider parallel course after this one. Where it leads off the route, it costs more.
 pub(super) fn wider(manoeuvres: &Manoeuvres, passed: &Partial) -> Option<Partial> {
     let Outward::Parallel { spare } = passed.outward else {
         return None;
     };
-    let wider = ROOM_S.map(|room| room * manoeuvres.unit);
-    let mut wider = wider.into_iter().filter(|room| *room > spare);
-    let spare = wider.find(|room| !manoeuvres.goes_on(passed, *room))?;
+    let rooms = ROOM_S.map(|room| room * manoeuvres.unit);
+    let mut rooms = rooms.into_iter().filter(|room| *room > spare);
+    let room = rooms.find(|room| !manoeuvres.goes_on(passed, *room))?;
     let out = manoeuvres.out(passed.leave, passed.first)?;
-    manoeuvres.parallel(&out, spare, COARSE_S, Some(passed))
+    manoeuvres.parallel(&out, room, COARSE_S, Some(passed))
 }
 
 impl Manoeuvres<'_, '_> {
@@ -165,7 +179,7 @@ impl Manoeuvres<'_, '_> {
     /// and no faster than the leg.
     fn until_passed(&self, out: &Partial) -> f64 {
         let problem = self.problem();
-        let ([leg], FirstAlteration::Turn { turn, speed }) = (problem.desired.legs(), out.first)
+        let ([leg], FirstAlteration::Turn { speed, .. }) = (problem.desired.legs(), out.first)
         else {
             return 0.0;
         };
@@ -173,17 +187,11 @@ impl Manoeuvres<'_, '_> {
         let offset = pose.position - leg.start;
         let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
         let lag = leg.speed * (time - leg.start_time) - along;
-        let from = match (problem.under_way, out.before) {
-            (Some(_), _) => return 0.0,
-            (None, 0) => problem.own.pose.ahead(),
-            (None, before) => out.motion[before - 1].end().ahead(),
-        };
-        let outward = across * turn >= 0.0;
         // on its first course own ship keeps its offset
-        let on_leg = cross(leg.direction, from).abs() <= 1e-9 && leg.direction.dot(&from) > 0.0;
-        if !outward || !on_leg {
+        if !self.leads_off(out) {
             return 0.0;
         }
+        let from = self.departs_from(out).ahead();
         let mut passed = 0.0_f64;
         for e in self.passing.iter().map(|p| p.encountered) {
             let target = e.ship.velocity();
@@ -269,7 +277,14 @@ impl Explored {
                 })
             });
             index_of[index] = Some(added);
-            let Some((parent, before)) = node.parent.and_then(|p| Some((p, index_of[p]?))) else {
+            // a wider course branches off where the narrower one does
+            let mut parent = node.parent;
+            while let Some(p) = parent
+                && (state.phase, nodes[p].state.phase) == (Phase::Passed, Phase::Passed)
+            {
+                parent = nodes[p].parent;
+            }
+            let Some((parent, before)) = parent.and_then(|p| Some((p, index_of[p]?))) else {
                 continue;
             };
             let (_, since) = nodes[parent].state.end(own);

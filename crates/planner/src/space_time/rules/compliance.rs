@@ -15,18 +15,22 @@ use searoom_model::vessel::Hull;
 /// Samples per segment for the position relative to a target.
 const ARC_SAMPLES: u32 = 32;
 
-/// Seconds after the closest approach of the hulls at which a target counts as passed: those in which
-/// the range opens by so many metres, so that no way back is nearer again by the judges' samples, but no
-/// fewer than these and no more than those. For a horizon above so many seconds the samples have longer
-/// steps.
-const OPENED_M: f64 = 20.0;
+/// Relative way after the closest approach of the hulls at which a target counts as passed, metres, and
+/// the least and the most seconds for it. Measured: with less, some way back of a stand-on ship is nearer
+/// again by the samples of the judges.
+const PASSED_M: f64 = 20.0;
 const LEAST_PASSED_S: f64 = 1.5;
 const MOST_PASSED_S: f64 = 4.0;
+
+/// Seconds up to which the judges sample every second; a longer trajectory has longer steps.
 const SECONDWISE_S: f64 = 5_000.0;
 
 /// Seconds to which the closest approach is found, and the most steps for it.
 const CLOSE_S: f64 = 0.25;
 const MOST_THIRDS: usize = 60;
+
+/// Metres by which distances differ at least: parallel hulls keep theirs for some seconds.
+const SAME_M: f64 = 1e-6;
 
 /// Greatest time between two samples for the closest approach, seconds.
 const NEAREST_S: f64 = 1.0;
@@ -45,23 +49,29 @@ pub(super) fn complies(problem: &Problem, motion: &[Segment], off_route: &[Segme
         }
         let nearest = Nearest::of(&problem.own.hull, encountered, motion);
         let passes = nearest.drifts_to_port || !duties.port_to_port;
-        let until = nearest.time + passed_after(problem, nearest.relative);
+        let end = motion.last().map_or(0.0, Segment::end_time);
+        let until = nearest.time + passing_time(nearest.relative, end);
         let off = |side| keeps_off(problem, off_route, side, until);
         let heads = duties.no_heading_to.is_none_or(off);
-        let plain = !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+        let plain = !duties.keeps_clear || small_turns(motion, nearest.sample) <= MOST_SMALL_TURNS;
         passes && heads && plain
     })
 }
 
 /// Seconds after the closest approach of the hulls at which a target counts as passed, for a relative
-/// speed in m/s.
-fn passed_after(problem: &Problem, relative: f64) -> f64 {
-    // a NaN, without relative motion, is the most
-    let opened = (OPENED_M / relative).min(MOST_PASSED_S).max(LEAST_PASSED_S);
-    opened * (problem.horizon / SECONDWISE_S).max(1.0)
+/// speed in m/s; the most without relative motion. `duration` is that of the motion that is judged.
+fn passing_time(relative: f64, duration: f64) -> f64 {
+    let passed = PASSED_M / relative;
+    // a NaN gives the most, too
+    let passed = if passed < MOST_PASSED_S {
+        passed.max(LEAST_PASSED_S)
+    } else {
+        MOST_PASSED_S
+    };
+    passed * (duration / SECONDWISE_S).max(1.0)
 }
 
-/// Seconds at which own ship on a straight course may head to any side again: a little
+/// Time at which own ship on a straight course may head to any side again, seconds: [`passing_time`]
 /// after the closest approach of the hulls, or at once where the target is passed already.
 pub(super) fn after_nearest(
     problem: &Problem,
@@ -86,19 +96,20 @@ pub(super) fn after_nearest(
         BetweenHulls::new(apart - closing * after, own, target).distance()
     };
     let nearest = closest((nearest - about).max(0.0), nearest + about, distance);
-    time + nearest + passed_after(problem, closing.norm())
+    // the motion is not known yet, and judged when it is
+    time + nearest + passing_time(closing.norm(), problem.desired.duration())
 }
 
-/// Latest time at which a distance that is convex in time may be least, to [`CLOSE_S`].
+/// Latest time at which a distance that is convex in time is least, but for [`SAME_M`], to [`CLOSE_S`].
 fn closest(mut from: f64, mut to: f64, distance: impl Fn(f64) -> f64) -> f64 {
-    // the third with the greater distance at its inner end is cut off; with hardly any relative motion a
-    // third may be less than rounding
+    // the third with the greater distance at its inner end is cut off, the first where both are the same;
+    // with hardly any relative motion a third may be less than rounding
     for _ in 0..MOST_THIRDS {
         if !(to - from > CLOSE_S) {
             break;
         }
         let third = (to - from) / 3.0;
-        if distance(from + third) < distance(to - third) {
+        if distance(from + third) < distance(to - third) - SAME_M {
             to -= third;
         } else {
             from += third;
@@ -211,11 +222,14 @@ fn reach(hull: &Hull, ahead: Vector, toward: Vector) -> f64 {
     0.5 * (hull.length * ahead.dot(&toward).abs() + hull.beam * cross(ahead, toward).abs())
 }
 
-/// Closest approach of the hulls on a motion to a target that holds course and speed, to [`CLOSE_S`].
+/// Closest approach of the hulls on a motion to a target that holds course and speed.
 #[derive(Debug)]
 struct Nearest {
+    /// Time of the nearest sample, seconds.
+    sample: f64,
+    /// Latest time of the least distance between the samples beside it on its segment, seconds.
     time: f64,
-    /// Relative speed then, m/s.
+    /// Relative speed at the sample, m/s.
     relative: f64,
     /// True when the target then moves from starboard to port as seen from own ship.
     drifts_to_port: bool,
@@ -318,6 +332,7 @@ impl Nearest {
         }
         let Some((s, time, from_target)) = nearest else {
             return Self {
+                sample: 0.0,
                 time: 0.0,
                 relative: 0.0,
                 drifts_to_port: false,
@@ -332,6 +347,7 @@ impl Nearest {
         let from = (time - step).max(s.start_time);
         let relative = s.velocity_at(time) - drift;
         Self {
+            sample: time,
             time: closest(from, (time + step).min(s.end_time()), hulls),
             relative: relative.norm(),
             drifts_to_port: cross(relative, from_target) < 0.0,
@@ -348,6 +364,7 @@ mod tests {
     use crate::geometry_fixtures::random_vector;
     use crate::ship_fixtures::chain;
     use searoom_colregs::{Role, SteadyShip};
+    use searoom_geometry::frame::{direction, to_port};
 
     /// Distance of the hulls, time and drift to port, every second of a motion.
     fn every_sample(own: &Hull, e: &Encountered, motion: &[Segment]) -> Vec<(f64, f64, bool)> {
@@ -371,7 +388,7 @@ mod tests {
 
     /// Lines, circles and waits past targets that are crossed, followed or passed more than once.
     #[test]
-    fn the_closest_approach_is_beside_the_nearest_of_all_samples() {
+    fn the_nearest_sample_is_that_of_all_samples() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         for case in 0..1_000 {
             let mut hull = || {
@@ -405,9 +422,7 @@ mod tests {
             let least = all.iter().fold(f64::INFINITY, |least, s| least.min(s.0));
             all.retain(|(distance, ..)| *distance <= least + 1e-9);
             let found = Nearest::of(&own, &encountered, &motion);
-            let same = |s: &(_, f64, bool)| {
-                (s.1 - found.time).abs() <= NEAREST_S && s.2 == found.drifts_to_port
-            };
+            let same = |s: &(_, f64, bool)| (s.1, s.2) == (found.sample, found.drifts_to_port);
             assert!(all.iter().any(same), "{case}: {found:?}, {all:?}");
             let near = motion
                 .iter()
@@ -426,6 +441,27 @@ mod tests {
             let closing = (speed + 15.0 + 0.06 * own.half_diagonal()) * CLOSE_S;
             let apart = apart.fold(f64::INFINITY, f64::min);
             assert!(apart <= least + closing + 1e-9, "{case}: {apart} {least}");
+        }
+    }
+
+    /// Ships on parallel courses are nearest for as long as their hulls are beside each other.
+    #[test]
+    fn the_closest_approach_of_parallel_courses_is_the_latest() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        for _ in 0..2_000 {
+            let course = rng.random_range(-3.0..3.0);
+            let (ahead, beam) = (direction(course), to_port(direction(course)));
+            let (own, target) = (Hull::new(40.0, 8.0), Hull::new(90.0, 12.0));
+            let meets = rng.random_range(30.0..60.0);
+            let apart = |time: f64| {
+                let offset = ahead * (10.0 * (meets - time)) + beam * 50.0;
+                BetweenHulls::new(offset, (&own, ahead), (&target, -ahead)).distance()
+            };
+            let (half, found) = (0.5 * (40.0 + 90.0) / 10.0, closest(0.0, 100.0, apart));
+            assert!(
+                (found - meets - half).abs() < 2.0 * CLOSE_S,
+                "{found} {meets}"
+            );
         }
     }
 }

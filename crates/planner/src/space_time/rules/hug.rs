@@ -87,14 +87,15 @@ impl HeldTurn {
 }
 
 /// What a hold leads to.
-pub(super) enum Trial<T> {
+pub(super) enum Held<T> {
     Clear(T),
+    /// Own ship meets something, cannot return, or breaks a rule.
     Blocked,
     /// It is clear and costs too much, as every longer hold does.
     TooDear,
 }
 
-impl<T> From<Option<T>> for Trial<T> {
+impl<T> From<Option<T>> for Held<T> {
     fn from(found: Option<T>) -> Self {
         found.map_or(Self::Blocked, Self::Clear)
     }
@@ -111,7 +112,7 @@ pub(super) fn least_clear<T>(
     (least, most): (f64, f64),
     mut touching: Vec<f64>,
     (unit, close, gaps): (f64, f64, bool),
-    mut trial: impl FnMut(f64) -> Trial<T>,
+    mut trial: impl FnMut(f64) -> Held<T>,
 ) -> Option<T> {
     // a NaN has no hold
     if !(least <= most) {
@@ -121,16 +122,15 @@ pub(super) fn least_clear<T>(
     touching.sort_by(f64::total_cmp);
     let close = close * unit;
     match trial(least) {
-        Trial::Clear(found) => return Some(found),
-        Trial::TooDear => return None,
-        Trial::Blocked => {}
+        Held::Clear(found) => return Some(found),
+        Held::TooDear => return None,
+        Held::Blocked => {}
     }
     let mut blocked = least;
     for &hold in touching.iter().filter(|_| !gaps) {
         match trial(hold) {
-            Trial::Clear(found) => return Some(sooner(blocked, (hold, found), close, trial)),
-            Trial::TooDear => return None,
-            Trial::Blocked => blocked = hold,
+            Held::Blocked => blocked = hold,
+            clear => return sooner(blocked, (hold, clear), close, trial),
         }
     }
     touching.insert(0, least);
@@ -146,9 +146,8 @@ pub(super) fn least_clear<T>(
             .take_while(|hold| *hold < next)
         {
             match trial(hold) {
-                Trial::Clear(found) => return Some(sooner(blocked, (hold, found), close, trial)),
-                Trial::TooDear => return None,
-                Trial::Blocked => blocked = hold,
+                Held::Blocked => blocked = hold,
+                clear => return sooner(blocked, (hold, clear), close, trial),
             }
         }
         blocked = blocked.max(from);
@@ -156,23 +155,27 @@ pub(super) fn least_clear<T>(
     None
 }
 
-/// The least clear hold after one that is blocked and at most one that is clear: that one where a little
-/// sooner is blocked, as before a line that touches, else by bisection.
+/// What the least clear hold leads to after one that is blocked and at most at one that is clear: that one
+/// where a little sooner is blocked, as before a line that touches, else by bisection. Nothing where it is
+/// too dear.
 fn sooner<T>(
     mut blocked: f64,
-    mut clear: (f64, T),
+    mut clear: (f64, Held<T>),
     close: f64,
-    mut trial: impl FnMut(f64) -> Trial<T>,
-) -> T {
+    mut trial: impl FnMut(f64) -> Held<T>,
+) -> Option<T> {
     let mut next = clear.0 - close;
     while clear.0 - blocked > close {
         match trial(next) {
-            Trial::Clear(found) => clear = (next, found),
-            Trial::Blocked | Trial::TooDear => blocked = next,
+            Held::Blocked => blocked = next,
+            found => clear = (next, found),
         }
         next = 0.5 * (blocked + clear.0);
     }
-    clear.1
+    match clear.1 {
+        Held::Clear(found) => Some(found),
+        Held::Blocked | Held::TooDear => None,
+    }
 }
 
 #[cfg(test)]
@@ -270,7 +273,8 @@ mod tests {
                     || more > 0.0 && hold > last - 1.0 && hold < last + more
             };
             let close = [FINE_S, COARSE_S][case % 3 % 2];
-            let trial = |hold: f64| Trial::from((!blocked(hold)).then_some(hold));
+            let trial = |hold: f64| Held::from((!blocked(hold)).then_some(hold));
+            let again = touching.clone();
             let found = least_clear((3.0, 400.0), touching, (1.0, close, gaps), trial);
             let found = found.expect("all is clear in the end");
             assert!(found >= 3.0 && !blocked(found));
@@ -283,6 +287,15 @@ mod tests {
                 found < least + close + 0.02,
                 "{found} {least} {blocks:?} {more}"
             );
+            // from a hold on it is too dear
+            let below = rng.random_range(3.0..200.0);
+            let trial = |hold: f64| match blocked(hold) {
+                true => Held::Blocked,
+                false if hold < below => Held::Clear(hold),
+                false => Held::TooDear,
+            };
+            let cheap = least_clear((3.0, 400.0), again, (1.0, close, gaps), trial);
+            assert_eq!(cheap, Some(found).filter(|found| *found < below));
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::space_time::proxy::Proxy;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::{after_nearest, complies};
-use crate::space_time::rules::hug::{HeldTurn, Trial, least_clear};
+use crate::space_time::rules::hug::{Held, HeldTurn, least_clear};
 use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::APPARENT_TIME;
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
@@ -390,8 +390,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         in_time.then_some(partial)
     }
 
-    /// The least further hold after which a way back is clear, to the end of the route, and costs less
-    /// than `below`.
+    /// A way back to the end of the route after the least further hold after which it is clear, where it
+    /// costs less than `below`.
     pub(super) fn back(
         &self,
         passed: &Partial,
@@ -436,6 +436,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             radius: problem.own.turning_radius,
         };
         let most = self.clear_for(pose, speed, time);
+        let leads_off = self.leads_off(passed);
         let trial = |hold: f64| {
             let line = Segment::straight(pose, time, hold, speed);
             let (pose, time) = (line.end(), line.end_time());
@@ -444,18 +445,20 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             let returned =
                 legs.find_map(|leg| motion_back(problem, route, (&pose, time), leg, angle));
             let Some(back) = returned else {
-                return Trial::Blocked;
+                return Held::Blocked;
             };
             // on to the same side it would be a circle
             let circles = || back[0].is_arc() && back[0].turn_rate * turn > 0.0;
             let Some(joined) = self.joining_time(&back).filter(|_| !circles()) else {
-                return Trial::Blocked;
+                return Held::Blocked;
             };
             let back = (&back[..], WayBack::At(angle));
             match self.ended(passed, (time, joined), hold, back) {
-                Some(end) if end.cost < below => Trial::from(self.judged(end)),
-                Some(_) => Trial::TooDear,
-                None => Trial::Blocked,
+                Some(end) if end.cost < below => Held::from(self.judged(end)),
+                // a longer hold may be cheaper, where it leads toward the route or leaves a longer change
+                // of speed
+                Some(end) if leads_off && self.plain_cost(&end) >= below => Held::TooDear,
+                _ => Held::Blocked,
             }
         };
         let holds = (0.0, most);
@@ -508,7 +511,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 (end.cost < below).then(|| self.judged(end))?
             });
             // a longer hold may be cheaper, as it may end without a circle
-            Trial::from(ends.min_by(|a, b| a.cost.total_cmp(&b.cost)))
+            Held::from(ends.min_by(|a, b| a.cost.total_cmp(&b.cost)))
         };
         // a hold that is clear by a circle leads to a shorter one without
         let found = least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)?;
@@ -626,7 +629,35 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             _ => false,
         };
         let short_price = if is_short { SHORT_PRICE } else { 1.0 };
-        self.problem().error_to_end(motion) * whole.first.price() * short_price
+        self.plain_cost(whole) * short_price
+    }
+
+    /// The cost without the price of a short change of speed.
+    fn plain_cost(&self, whole: &Partial) -> f64 {
+        self.problem().error_to_end(&whole.motion) * whole.first.price()
+    }
+
+    /// Pose at which the route is left.
+    pub(super) fn departs_from(&self, partial: &Partial) -> Pose {
+        match partial.before {
+            0 => self.problem().own.pose,
+            before => partial.motion[before - 1].end(),
+        }
+    }
+
+    /// True where a turn leads off the one leg of the mission along which own ship departs: then each
+    /// longer hold, and each wider course, is farther from it and later.
+    pub(super) fn leads_off(&self, partial: &Partial) -> bool {
+        let problem = self.problem();
+        let ([leg], FirstAlteration::Turn { turn, .. }, None) =
+            (problem.desired.legs(), partial.first, problem.under_way)
+        else {
+            return false;
+        };
+        let from = self.departs_from(partial);
+        let along = cross(leg.direction, from.ahead()).abs() <= 1e-9
+            && leg.direction.dot(&from.ahead()) > 0.0;
+        along && cross(leg.direction, from.position - leg.start) * turn >= 0.0
     }
 
     /// Time from which on a return follows the route: after an arc, a line and an arc at most.

@@ -10,7 +10,6 @@
 //! where nothing else is clear.
 
 use std::f64::consts::FRAC_PI_2;
-use std::iter::successors;
 use std::ops::RangeInclusive;
 
 use crate::UnderWay;
@@ -259,9 +258,14 @@ impl Manoeuvres<'_, '_> {
                     let returns =
                         |passed: &Partial| ways_back(self, passed, &angles, below).any(is_escape);
                     outward(self, &out).any(|passed| {
-                        let all = successors(Some(passed), |narrower| wider(self, narrower));
-                        all.take_while(|passed| passed.cost < below)
-                            .any(|p| returns(&p))
+                        let mut next = Some(passed);
+                        while let Some(passed) = next {
+                            if passed.cost < below && returns(&passed) {
+                                return true;
+                            }
+                            next = wider(self, &passed);
+                        }
+                        false
                     })
                 }
             }
