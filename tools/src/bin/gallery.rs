@@ -42,6 +42,9 @@ const COMPARED: (&str, [f64; 4]) = ("colregs/give-way", [0.0, 0.1, 0.2, 0.4]);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| FOLDER.to_owned());
+    if folder.starts_with('-') {
+        return Err("usage: cargo gallery [FOLDER]".into());
+    }
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
     let read = |name: &str| {
