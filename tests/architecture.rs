@@ -653,3 +653,13 @@ fn what_is_allowed_passes() {
         assert_eq!(faults(path, text), Vec::<String>::new());
     }
 }
+
+/// cargo drops `strip` of a profile for a package with an override there
+/// (findings/cargo-strip-and-package-override.sh).
+#[test]
+fn the_program_is_stripped_as_its_profile_says() {
+    let text = include_str!("../Cargo.toml");
+    let manifest: toml::Table = text.parse().expect("a manifest");
+    let release = &manifest["profile"]["release"];
+    assert_eq!(release["strip"], release["package"]["searoom"]["strip"]);
+}
