@@ -45,10 +45,11 @@ const SAME_REDUCTION_M: f64 = 1.0;
 /// Seconds between the next plan and the end of a remainder that is kept until then.
 const BEFORE_END_S: f64 = 2.0;
 
-/// Seconds off its schedule from which on a manoeuvre by the rules is compared with a plan that is none,
-/// and the ratio of the costs from which on that one is taken: an alteration should be bold, but no detour
-/// of a quarter of an hour where a bend breaks no rule.
+/// Seconds off its schedule, and own lengths off its path in the mean, from which on a manoeuvre by the rules
+/// is compared with other lawful plans, and the ratio of the costs from which on such a plan is taken: an alteration should be bold, but no detour of
+/// a quarter of an hour where a bend breaks no rule, or where a domain need only be a little smaller.
 const FAR_OFF_TIME_S: f64 = 300.0;
+const FAR_OFF_LENGTHS: f64 = 20.0;
 const MANY_TIMES: f64 = 10.0;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
@@ -496,24 +497,42 @@ impl Relaxer<'_> {
         (!found.is_infeasible()).then_some(found)
     }
 
-    /// A plan of the whole request that is no manoeuvre by the rules, but breaks none either, where such a
-    /// manoeuvre brings own ship minutes off its schedule and costs many times as much.
+    /// A lawful plan that costs a tenth of a manoeuvre by the rules that is a long way off the path: one of
+    /// the rest of the last plan, or of the whole request but no such manoeuvre, or else one in smaller
+    /// domains. During a manoeuvre only the first.
     fn much_cheaper_than(&self, first: &Attempt) -> Option<Attempt> {
         let plan = first.planned.outcome.plan()?;
-        let off_time = plan.trajectory.end_time() - self.scenario.desired.duration();
-        let is_dear = plan.method == PlanMethod::Rules && off_time.abs() > FAR_OFF_TIME_S;
-        if !is_dear || self.scenario.memory.under_way.is_some() || self.time_left().is_zero() {
+        let is_dear = plan.method == PlanMethod::Rules && self.is_far_off(plan);
+        if !is_dear || self.time_left().is_zero() {
             return None;
         }
-        let other = self.clear_of_domains(true)?;
-        let found = other.planned.outcome.plan()?;
-        let is_better = found.arrives()
-            && MANY_TIMES * found.cost <= plan.cost
-            && rules::breaks(self.scenario, &found.trajectory) == 0;
-        is_better.then_some(Attempt {
+        let is_better = |other: &Attempt| {
+            other.planned.outcome.plan().is_some_and(|found| {
+                found.arrives()
+                    && MANY_TIMES * found.cost <= plan.cost
+                    && rules::breaks(self.scenario, &found.trajectory) == 0
+            })
+        };
+        let rest = self.remainder_by_the_rules(true).filter(is_better);
+        if rest.is_some() || self.scenario.memory.under_way.is_some() {
+            return rest;
+        }
+        let bend = self.clear_of_domains(true).map(|other| Attempt {
             level: first.level,
             ..other
-        })
+        });
+        let smaller = || self.by_the_rules(true).filter(is_better);
+        bend.filter(is_better).or_else(smaller)
+    }
+
+    /// True for a plan minutes off its schedule, or farther off its path in the mean than twenty lengths and
+    /// than any ship domain is wide.
+    fn is_far_off(&self, plan: &Plan) -> bool {
+        let off_time = plan.trajectory.end_time() - self.scenario.desired.duration();
+        let (_, domains) = self.asked(&self.scales(0.0));
+        let far = FAR_OFF_LENGTHS * self.scenario.own_ship.hull.length;
+        let far = domains.into_iter().fold(far, f64::max);
+        off_time.abs() > FAR_OFF_TIME_S || plan.cost > far * far
     }
 
     /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets, or against halved domains,

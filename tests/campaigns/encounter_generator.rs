@@ -130,9 +130,44 @@ pub fn random_traffic(count: usize, seed: u64, placement: Placement) -> Option<R
     )
 }
 
+/// When each of up to three ships is met that are passed one after another, seconds from the start to the
+/// closest approach.
+const ONE_AFTER_ANOTHER: [RangeInclusive<f64>; 3] = [120.0..=200.0, 520.0..=640.0, 950.0..=1050.0];
+
+/// Own ship and up to three targets of random kinds on a path of 7 km, the closest approaches some
+/// 400 s apart. Equal arguments give equal scenes.
+pub fn random_sequence(count: usize, seed: u64, placement: Placement) -> Option<RandomEncounter> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream((2 * TRAFFIC.len() + count) as u64);
+    let kinds: Vec<EncounterKind> = (0..count)
+        .map(|_| TRAFFIC[rng.random_range(0..TRAFFIC.len())])
+        .collect();
+    let meeting = Meeting {
+        path_length: 7_000.0,
+        horizon: 3_000.0,
+        ..Meeting::NEAR
+    };
+    let title = format!("{count} targets one after another {seed}");
+    let times = ONE_AFTER_ANOTHER.iter().take(count).cloned();
+    scene_at(title, kinds, times, placement, &meeting, &mut rng)
+}
+
 fn scene(
     title: String,
     kinds: Vec<EncounterKind>,
+    placement: Placement,
+    meeting: &Meeting,
+    rng: &mut ChaCha8Rng,
+) -> Option<RandomEncounter> {
+    let times = std::iter::repeat(meeting.time.clone());
+    scene_at(title, kinds, times, placement, meeting, rng)
+}
+
+/// A scene with a target of each kind, met at these times.
+fn scene_at(
+    title: String,
+    kinds: Vec<EncounterKind>,
+    times: impl Iterator<Item = RangeInclusive<f64>>,
     placement: Placement,
     meeting: &Meeting,
     rng: &mut ChaCha8Rng,
@@ -148,9 +183,9 @@ fn scene(
     };
     let mut rejected = 0;
     let mut ships = Vec::with_capacity(kinds.len());
-    for &kind in &kinds {
+    for (&kind, time) in kinds.iter().zip(times) {
         let encounter = Encounter {
-            tcpa: Distribution::Uniform(*meeting.time.start(), *meeting.time.end()),
+            tcpa: Distribution::Uniform(*time.start(), *time.end()),
             ..Encounter::of(kind, OWN_SPEED)
         };
         let (ship, replaced) = encounter.draw(&own_ship, rng)?;

@@ -11,6 +11,7 @@ pub mod encounter_generator;
 pub mod forces;
 pub mod path_time;
 pub mod plans;
+pub mod scene_file;
 pub mod statistics;
 pub mod stopping;
 pub mod wild;

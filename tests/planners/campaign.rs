@@ -1,11 +1,16 @@
 //! Each campaign with few scenes; `cargo campaign` runs more.
 
 use crate::campaigns::closed_loop::replanning::{self, Behaviour, How};
-use crate::campaigns::encounter_generator::Meeting;
+use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
+use crate::campaigns::plans::several::Which;
 use crate::campaigns::plans::{
-    asked, compliance, encounters, harbour, invariance, mutations, tidiness,
+    asked, compliance, encounters, harbour, invariance, mutations, several, tidiness,
 };
-use crate::campaigns::{dense_search, forces, path_time, wild};
+use crate::campaigns::{dense_search, forces, meeting, path_time, scene_file, wild};
+use searoom::frame::wrap;
+use searoom::pipeline;
+use searoom::scenario::Scenario;
+use searoom::target::ShipTrack;
 
 #[test]
 fn plans_of_random_encounters_are_clear_of_whatever_the_target_may_do() {
@@ -31,7 +36,75 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
 
 #[test]
 fn plans_keep_to_the_rules() {
-    compliance::run(0..60, &Meeting::NEAR, None).assert_met();
+    compliance::run(0..60, &Meeting::NEAR, None, None).assert_met();
+}
+
+#[test]
+fn a_scene_that_is_kept_as_a_file_is_read_as_it_was() {
+    for seed in 0..20 {
+        let scene = Which::by_the_rules(3, seed % 2 == 0)
+            .scene(seed)
+            .expect("drawn");
+        let text = scene_file::text(&scene);
+        let read = Scenario::parse(&text).expect("valid");
+        assert_eq!(read.compliance, scene.compliance);
+        assert_eq!(read.own_ship.speeds, scene.own_ship.speeds);
+        for (a, b) in read.targets.iter().zip(&scene.targets) {
+            let (a, b) = (a.ship().expect("a ship"), b.ship().expect("a ship"));
+            assert!((a.pose.position - b.pose.position).norm() < 1e-9);
+            assert!(wrap(a.pose.heading - b.pose.heading).abs() < 1e-9);
+            let spreads =
+                |s: &ShipTrack| [s.speed, s.speed_spread, s.course_spread, s.position_std];
+            for (a, b) in spreads(a).iter().zip(spreads(b)) {
+                assert!((a - b).abs() < 1e-9, "{a} {b}");
+            }
+        }
+        let plan = |scene| {
+            let run = pipeline::run(scene);
+            run.planned.outcome.plan().map(|plan| plan.cost)
+        };
+        let (a, b) = (plan(read), plan(scene));
+        let same = a.zip(b).is_some_and(|(a, b)| (a / b - 1.0).abs() < 1e-6);
+        assert!(same, "{seed}: {a:?} {b:?}");
+    }
+}
+
+/// Three ships one after another: one manoeuvre toward all would cost 200 times as much.
+#[test]
+fn a_manoeuvre_toward_all_is_not_made_where_several_are_cheaper() {
+    let scene = Which::by_the_rules(3, true).scene(1119).expect("drawn");
+    let run = pipeline::run(scene);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert!(run.relaxations.is_empty() && run.planned.manoeuvres.len() > 1);
+    assert!(plan.cost < 160_000.0, "{}", plan.cost);
+}
+
+/// A give-way ship would slow down for ten minutes, 900 m off its schedule in the mean: a bend that breaks no
+/// rule costs an eighteenth.
+#[test]
+fn a_lawful_bend_is_taken_where_a_manoeuvre_is_many_times_as_dear() {
+    let scene = meeting(EncounterKind::GiveWay, 50_158, &Meeting::NEAR);
+    let run = pipeline::run(scene);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert!(run.evaluation.is_some_and(|e| e.verified() && e.safe()));
+    assert!(plan.cost < 60_000.0, "{}", plan.cost);
+}
+
+/// A stand-on ship that kept a length off the other turned 81° at once for it, at eleven times the price of
+/// less speed when it may act.
+#[test]
+fn no_length_is_kept_at_any_price() {
+    let scene = meeting(EncounterKind::StandOn, 50_278, &Meeting::NEAR);
+    let run = pipeline::run(scene);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert!(run.evaluation.is_some_and(|e| e.verified() && e.safe()));
+    assert!(plan.cost < 2_000.0, "{}", plan.cost);
+}
+
+#[test]
+fn plans_among_several_targets_keep_to_the_rules() {
+    several::run(0..30, &Which::by_the_rules(2, true), None, None).assert_met();
+    several::run(0..30, &Which::by_the_rules(3, false), None, None).assert_met();
 }
 
 #[test]

@@ -115,22 +115,21 @@ fn a_plan_that_ends_at_once_is_not_sailed() {
     assert!(checked[0].violations.is_empty(), "{checked:?}");
 }
 
-/// The first plans reduce domains, and those after them break a rule toward a yacht. At 440 s a plan that
-/// breaks fewer costs 78 times as much: the remainder is kept.
+/// The first plans reduce domains. From 120 s on there is a manoeuvre in whole domains that costs 500 times
+/// as much, and later one that breaks fewer rules for 78 times as much: neither is taken.
 #[test]
-fn no_rule_is_kept_at_any_price_on_the_way() {
+fn neither_a_rule_nor_a_domain_is_kept_at_any_price_on_the_way() {
     let mut scenario = parsed(&fault("westbound-among-six.toml"));
     scenario.simulation.duration = Some(600.0);
     let sailed = sail(scenario);
     assert!(sailed.safe && sailed.conduct.without_plan == 0);
     let replans = sailed.replans.iter();
-    let whole = replans.skip_while(|replan| !replan.relaxations.is_empty());
-    let costs: Vec<f64> = whole.filter_map(|replan| replan.cost_m2).collect();
+    let costs: Vec<f64> = replans.filter_map(|replan| replan.cost_m2).collect();
     let [first, later @ ..] = &costs[..] else {
-        panic!("plans without relaxations");
+        panic!("plans");
     };
     assert!(
-        later.len() > 10 && later.iter().all(|cost| *cost < 10.0 * first),
+        later.len() > 20 && later.iter().all(|cost| *cost < 10.0 * first),
         "{costs:?}"
     );
 }

@@ -12,7 +12,7 @@ use searoom::pipeline::{self, Run};
 
 use crate::campaigns::encounter_generator::{EncounterKind, Meeting};
 use crate::campaigns::statistics::{quantiles, share_cells};
-use crate::campaigns::{Report, Seeds, meetings};
+use crate::campaigns::{Report, Seeds, meetings, scene_file};
 
 /// Least share of plans with which both judges are content, of encounters that begin near. Measured
 /// with 3,000 of each kind: 100, 99.4, 99.6, 100 and 100 %.
@@ -85,8 +85,9 @@ fn seen(run: &Run) -> Seen {
 }
 
 /// Encounters with one target: `seeds` of each kind. The plans go to `rows` too, where that is a
-/// file: a line of CSV each, by which two versions can be compared scene by scene.
-pub fn run(seeds: Seeds, meeting: &Meeting, rows: Option<&Path>) -> Report {
+/// file: a line of CSV each, by which two versions can be compared scene by scene; the scenes to a `folder`,
+/// where that is given, so that another version can plan them.
+pub fn run(seeds: Seeds, meeting: &Meeting, rows: Option<&Path>, folder: Option<&Path>) -> Report {
     let mut report = Report::default();
     let mut lines = String::from(
         "kind,seed,price_m2,cost_m2,milliseconds,begins_s,returns_s,joins_s,turn_deg,broken\n",
@@ -100,6 +101,15 @@ pub fn run(seeds: Seeds, meeting: &Meeting, rows: Option<&Path>) -> Report {
     println!("|{}", " --- |".repeat(13));
     for kind in EncounterKind::ALL {
         one_kind(kind, seeds.clone(), meeting, &mut report, &mut lines);
+        for seed in seeds.clone().filter(|_| folder.is_some()) {
+            let name = format!("{}-{seed}.toml", kind.name().replace(' ', "-"));
+            let kept = scene_file::keep(
+                folder,
+                &name,
+                &crate::campaigns::meeting(kind, seed, meeting),
+            );
+            report.missed.extend(kept.missed);
+        }
     }
     println!();
     if let Some(file) = rows

@@ -7,4 +7,5 @@ pub mod harbour;
 pub mod invariance;
 pub mod mutations;
 pub mod relations;
+pub mod several;
 pub mod tidiness;

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
 use campaigns::plans::{
-    asked, compliance, encounters, harbour, invariance, mutations, relations, tidiness,
+    asked, compliance, encounters, harbour, invariance, mutations, relations, several, tidiness,
 };
 use campaigns::{Report, dense_search, forces, path_time, stopping, wild};
 use clap::{Args, Parser, Subcommand};
@@ -59,6 +59,29 @@ enum Campaign {
         /// CSV file with a line for each plan, to compare two versions scene by scene
         #[arg(long)]
         rows: Option<PathBuf>,
+        /// Folder for the scenes, which another version can plan
+        #[arg(long)]
+        keep: Option<PathBuf>,
+    },
+    /// Plans among several targets, and what both judges say
+    Several {
+        #[command(flatten)]
+        scenes: Scenes<200>,
+        /// Targets, up to three where they are met one after another
+        #[arg(long, default_value_t = 2)]
+        targets: usize,
+        /// Targets that are met some 400 s one after another on 7 km, not all within 220 s
+        #[arg(long)]
+        apart: bool,
+        /// What own ship plans by: none, shape or rules
+        #[arg(long, default_value = "rules", value_parser = compliance_level)]
+        compliance: Compliance,
+        /// CSV file with a line for each plan, to compare two versions scene by scene
+        #[arg(long)]
+        rows: Option<PathBuf>,
+        /// Folder for the scenes, which another version can plan
+        #[arg(long)]
+        keep: Option<PathBuf>,
     },
     /// Encounters planned again and again, a fifth of each kind; the sailed motion is judged
     Replanning {
@@ -197,9 +220,34 @@ fn run(campaign: Campaign) -> Report {
         Campaign::DenseSearch { scenes, targets } => {
             dense_search::run_among(targets, scenes.of_each(1))
         }
-        Campaign::Compliance { scenes, far, rows } => {
+        Campaign::Compliance {
+            scenes,
+            far,
+            rows,
+            keep,
+        } => {
             let meeting = if far { Meeting::FAR } else { Meeting::NEAR };
-            compliance::run(scenes.of_each(5), &meeting, rows.as_deref())
+            compliance::run(
+                scenes.of_each(5),
+                &meeting,
+                rows.as_deref(),
+                keep.as_deref(),
+            )
+        }
+        Campaign::Several {
+            scenes,
+            targets,
+            apart,
+            compliance,
+            rows,
+            keep,
+        } => {
+            let which = several::Which {
+                targets,
+                apart,
+                compliance,
+            };
+            several::run(scenes.of_each(1), &which, rows.as_deref(), keep.as_deref())
         }
         Campaign::Replanning {
             scenes,

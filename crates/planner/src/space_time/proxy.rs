@@ -2,6 +2,7 @@
 
 use crate::Problem;
 use crate::space_time::piece::Piece;
+use searoom_geometry::ConvexPolygon;
 use searoom_geometry::frame::{Pose, Vector, cross, to_port};
 use searoom_geometry::tolerance::TOUCH_M;
 use searoom_model::trajectory::Segment;
@@ -93,6 +94,19 @@ impl<'a> Proxy<'a> {
         let least = least.max(from).min(to);
         // negated on purpose: a NaN is within reach
         ![from, least, to].into_iter().all(|t| spare(t) > REACH_M)
+    }
+
+    /// True where a polytope that lasts for ever contains a body at every time: its initial set all places
+    /// of the other's, and its velocities all of the other's.
+    pub(crate) fn contains_body(&self, body: &PolytopeObstacle) -> bool {
+        let inside = |outer: &ConvexPolygon, inner: &ConvexPolygon| {
+            let mut vertices = inner.vertices().iter();
+            vertices.all(|vertex| outer.signed_distance(*vertex) <= 0.0)
+        };
+        self.window.is_none()
+            && self.ellipsoid.is_none()
+            && inside(self.body.velocity(), body.velocity())
+            && inside(self.body.initial(), body.initial())
     }
 
     /// Enclosing disc at a time, metres; `None` outside the time window.

@@ -40,6 +40,8 @@ pub(super) struct Graph<'g, 's, 'a> {
     pub departures: Vec<(f64, FirstAlteration)>,
     /// Angles of the returns, radians.
     pub angles: &'g [f64],
+    /// Only manoeuvres that cost less are of use, m².
+    pub below: f64,
 }
 
 impl Space for Graph<'_, '_, '_> {
@@ -91,9 +93,13 @@ impl Space for Graph<'_, '_, '_> {
     }
 
     fn bound(&mut self, state: &Partial) -> f64 {
-        match self.manoeuvres.problem().search {
+        let to_go = match self.manoeuvres.problem().search {
             SearchKind::Dijkstra => 0.0,
             _ => self.manoeuvres.to_go(state),
+        };
+        match state.cost + to_go < self.below {
+            true => to_go,
+            false => f64::INFINITY,
         }
     }
 

@@ -1,9 +1,9 @@
 //! What a manoeuvre by the rules keeps clear of: sets and land, a length around each hull, and the
 //! water ahead of a bow. All but land are hugged; from land the exact contact test keeps clear.
 
-use crate::Problem;
+use crate::space_time::context::Context;
 use crate::space_time::land;
-use crate::space_time::proxy::first_met;
+use crate::space_time::proxy::{Proxy, first_met};
 use crate::space_time::rules::hug::HeldTurn;
 use crate::space_time::rules::manoeuvre::Manoeuvres;
 use searoom_colregs::Encountered;
@@ -22,8 +22,9 @@ const BOW_SPARE_M: f64 = 0.5;
 /// A target that own ship must not pass nearer than a length.
 pub(super) struct Passing<'a> {
     pub encountered: &'a Encountered,
-    /// The nominal hull, grown by own half-diagonal and the longer ship's length.
-    within_a_length: PolytopeObstacle,
+    /// The nominal hull, grown by own half-diagonal and the longer ship's length; `None` where a set
+    /// covers it, so that own ship keeps off it anyway.
+    within_a_length: Option<PolytopeObstacle>,
     /// The nominal hull, grown by own hull on its first course.
     pub hulls: PolytopeObstacle,
     /// The line ahead of the target that own ship must not cross, where there is one and own ship
@@ -32,7 +33,8 @@ pub(super) struct Passing<'a> {
 }
 
 impl<'a> Passing<'a> {
-    pub(super) fn new(problem: &Problem, encountered: &'a Encountered) -> Self {
+    pub(super) fn new(context: &Context, encountered: &'a Encountered) -> Self {
+        let problem = context.problem;
         let (own, ship) = (&problem.own.hull, &encountered.ship);
         let hull = encountered.hull.polygon(&ship.pose);
         let around = own.half_diagonal() + own.length.max(encountered.hull.length);
@@ -49,10 +51,13 @@ impl<'a> Passing<'a> {
             ConvexPolygon::hull(&[from + across, from - across, to + across, to - across])
         });
         let ahead = ahead.and_then(Result::ok).map(moving);
+        let within_a_length = moving(hull.minkowski_sum(&disc));
+        let covers = |proxy: &Proxy| proxy.contains_body(&within_a_length);
+        let is_covered = context.proxies.iter().any(covers);
         let begins_there = |o: &PolytopeObstacle| o.contains(problem.own.pose.position, 0.0);
         Self {
             encountered,
-            within_a_length: moving(hull.minkowski_sum(&disc)),
+            within_a_length: (!is_covered).then_some(within_a_length),
             hulls: moving(hull.minkowski_sum(&own.polygon(&course).negated())),
             ahead: ahead.filter(|line| !begins_there(line)),
         }
@@ -67,9 +72,15 @@ impl<'a> Passing<'a> {
         self.encountered.role.duties().no_heading_to.is_some()
     }
 
+    /// True where a length off this target is more than the sets ask for.
+    pub(super) fn asks_for_a_length(&self) -> bool {
+        self.within_a_length.is_some()
+    }
+
     /// True for a place more than a length away.
     pub(super) fn is_a_length_off(&self, place: Vector, time: f64) -> bool {
-        self.within_a_length.slack(place, time).value > 0.0
+        let mut bodies = self.within_a_length.iter();
+        bodies.all(|body| body.slack(place, time).value > 0.0)
     }
 }
 
@@ -93,12 +104,17 @@ impl Manoeuvres<'_, '_> {
             .iter()
             .filter_map(|p| p.first_contact(&line));
         let land = problem.land_obstacle.first_contact(&line, TOUCH_M);
-        let lengths = self.kept_off().map(|p| &p.within_a_length);
+        let lengths = self.lengths();
         let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
         let bodies = lengths.chain(ahead);
         let bodies = bodies.filter_map(|body| contact::first_contact(body, &line, TOUCH_M));
         let first = sets.chain(land).chain(bodies).reduce(f64::min);
         first.unwrap_or(problem.horizon) - time
+    }
+
+    /// What is within a length of the targets that are kept off.
+    fn lengths(&self) -> impl Iterator<Item = &PolytopeObstacle> {
+        self.kept_off().filter_map(|p| p.within_a_length.as_ref())
     }
 
     fn crosses_no_bow(&self, segments: &[Segment]) -> bool {
@@ -108,15 +124,17 @@ impl Manoeuvres<'_, '_> {
     }
 
     pub(super) fn keeps_lengths(&self, segments: &[Segment]) -> bool {
-        let near = |s, p: &Passing| contact::meets(&p.within_a_length, s, TOUCH_M);
-        !segments.iter().any(|s| self.kept_off().any(|p| near(s, p)))
+        let near = |s, body| contact::meets(body, s, TOUCH_M);
+        !segments
+            .iter()
+            .any(|s| self.lengths().any(|body| near(s, body)))
     }
 
     /// Holds of a range after which the line of a turn touches a body other than land.
     pub(super) fn touching(&self, turn: &HeldTurn, range: (f64, f64)) -> Vec<f64> {
         let sets = self.context.proxies.iter();
         let sets = sets.map(|proxy| (proxy.body.moving_vertices(), proxy.start()));
-        let lengths = self.kept_off().map(|p| &p.within_a_length);
+        let lengths = self.lengths();
         let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
         let others = lengths
             .chain(ahead)

@@ -240,7 +240,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             encountered.any(|e| obstacle.contains(e.ship.moved(e.tcpa).pose.position, e.tcpa))
         };
         let obstacles = problem.obstacles.iter();
-        let passing = problem.encountered.iter().map(|e| Passing::new(problem, e));
+        let passing = problem.encountered.iter().map(|e| Passing::new(context, e));
         let turn_s = problem.own.turning_radius / context.speeds.normal;
         Self {
             context,
@@ -745,9 +745,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         &motion[motion.partition_point(|s| s.start_time < self.from)..]
     }
 
-    /// The targets that are not passed nearer than a length.
+    /// The targets that are not passed nearer than a length, where the sets do not ask for more.
     pub(super) fn kept_off(&self) -> impl Iterator<Item = &Passing<'s>> {
-        self.passing.iter().filter(|p| (self.keeps_a_length)(p))
+        let asked = self.passing.iter().filter(|p| p.asks_for_a_length());
+        asked.filter(|p| (self.keeps_a_length)(p))
     }
 
     /// Distance along the route at a time at which the nominal motion follows it, metres.

@@ -80,6 +80,9 @@ const LATE_PRICE: f64 = 4.0;
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
 
+/// Ratio of the costs up to which a length off a ship is kept. *J* is squared: three times the distance.
+const LENGTH_PRICE: f64 = 10.0;
+
 /// The numbers of a manoeuvre that no contact decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Numbers {
@@ -114,7 +117,7 @@ impl Manoeuvres<'_, '_> {
                 speed: begun.speed,
             },
         };
-        self.relaxed(|search| search.best_of(vec![(0.0, first)], 0.0..=0.0))
+        self.relaxed(|search, below| search.best_of(vec![(0.0, first)], 0.0..=0.0, below))
     }
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
@@ -122,7 +125,7 @@ impl Manoeuvres<'_, '_> {
     pub(super) fn giving_way(&mut self, contact: f64) -> Option<Manoeuvre> {
         let from = self.from;
         let latest = self.ample_time().min(contact).max(from);
-        self.relaxed(|search| search.best(from..=latest))
+        self.relaxed(|search, below| search.best(from..=latest, below))
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
@@ -153,7 +156,7 @@ impl Manoeuvres<'_, '_> {
         }
         let mut latest = latest?;
         self.most_turn = LARGEST_TURN;
-        if latest < may && may < contact && self.best(may..=may).is_some() {
+        if latest < may && may < contact && self.best(may..=may, f64::INFINITY).is_some() {
             latest = may;
         }
         let mut wanted = latest - SPARE_S;
@@ -163,17 +166,18 @@ impl Manoeuvres<'_, '_> {
         }
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
-        self.relaxed(|search| {
-            let found = search.best(leave..=leave);
+        self.relaxed(|search, below| {
+            let found = search.best(leave..=leave, below);
             let latest = search.tidy_time(latest);
-            found.or_else(|| search.best(latest..=latest))
+            found.or_else(|| search.best(latest..=latest, below))
         })
     }
 
-    /// The first manoeuvre that is found: with a length off all targets, off those that own ship
-    /// keeps clear of, off none; of each with turns at the ordered speed, then at half or less. Where there
-    /// is none, also with stops.
-    fn relaxed(&mut self, find: impl Fn(&Self) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
+    /// The manoeuvre that is found with a length off all targets, off those that own ship keeps clear of,
+    /// or off none: the first of these, unless a later one costs a tenth. Of each with turns at the ordered
+    /// speed, or else at half or less. Where there is none, also with stops. It is told the cost, m², below
+    /// which a manoeuvre is of use.
+    fn relaxed(&mut self, find: impl Fn(&Self, f64) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
         let may_stop = self.problem().own.speeds.contains(&0.0);
         let stops: &[bool] = if may_stop { &[false, true] } else { &[false] };
         stops.iter().find_map(|stops| {
@@ -182,10 +186,13 @@ impl Manoeuvres<'_, '_> {
         })
     }
 
-    fn of_the_levels(&mut self, find: &impl Fn(&Self) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
+    fn of_the_levels(
+        &mut self,
+        find: &impl Fn(&Self, f64) -> Option<Manoeuvre>,
+    ) -> Option<Manoeuvre> {
         let problem = self.problem();
         let may_slow = problem.duty().may_slow && problem.under_way.is_none();
-        let speeds: &[bool] = if may_slow { &[false, true] } else { &[false] };
+        let mut best: Option<Manoeuvre> = None;
         let mut tried = usize::MAX;
         let levels: [fn(&Passing) -> bool; 3] = [|_| true, |p| p.keeps_clear(), FROM_NONE];
         for keeps_a_length in levels {
@@ -195,15 +202,22 @@ impl Manoeuvres<'_, '_> {
                 continue;
             }
             tried = number;
-            for slows_to_turn in speeds {
+            let below =
+                (best.as_ref()).map_or(f64::INFINITY, |best| best.whole.cost / LENGTH_PRICE);
+            let slows: &[bool] = match may_slow && best.is_none() {
+                true => &[false, true],
+                false => &[false],
+            };
+            let found = slows.iter().find_map(|slows_to_turn| {
                 self.slows_to_turn = *slows_to_turn;
-                let found = find(self);
-                if found.is_some() || self.effort.clock.is_up() {
-                    return found;
-                }
+                find(self, below)
+            });
+            best = found.or(best);
+            if self.effort.clock.is_up() {
+                break;
             }
         }
-        None
+        best
     }
 
     /// The latest time from which there is an escape: a lawful manoeuvre with a turn of at most
@@ -214,7 +228,7 @@ impl Manoeuvres<'_, '_> {
         let may = self.tidy_time(may.clamp(self.from, contact));
         // what is sailed before both is no part of the price
         let before = self.problem().error_of(&until(self.nominal_motion, may));
-        let early = self.best(may..=may);
+        let early = self.best(may..=may, f64::INFINITY);
         let below = early.map_or(f64::INFINITY, |early| {
             let before = before * early.whole.first.price();
             before + LATE_PRICE * (early.whole.cost - before)
@@ -272,10 +286,10 @@ impl Manoeuvres<'_, '_> {
         })
     }
 
-    /// The cheapest manoeuvre with a departure in a window.
-    fn best(&self, window: RangeInclusive<f64>) -> Option<Manoeuvre> {
+    /// The cheapest manoeuvre with a departure in a window, where it costs less than `below`.
+    fn best(&self, window: RangeInclusive<f64>, below: f64) -> Option<Manoeuvre> {
         let departures = self.first_alterations(window.clone(), true);
-        self.best_of(departures, window)
+        self.best_of(departures, window, below)
     }
 
     /// The cheapest manoeuvre that begins with one of some first alterations, improved within a window
@@ -284,6 +298,7 @@ impl Manoeuvres<'_, '_> {
         &self,
         departures: Vec<(f64, FirstAlteration)>,
         window: RangeInclusive<f64>,
+        below: f64,
     ) -> Option<Manoeuvre> {
         let problem = self.problem();
         let mut angles = self.angles();
@@ -294,6 +309,7 @@ impl Manoeuvres<'_, '_> {
             manoeuvres: self,
             departures,
             angles: &angles,
+            below,
         };
         let mut search = Search::new(Partial::start());
         let begun = problem.under_way;
