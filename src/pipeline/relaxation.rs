@@ -1,6 +1,7 @@
 //! Relaxation levels: which requirements are given up, in order, so that there is always an answer.
 //!
-//! A level is tried when the levels above it gave no plan. A planner may find a way around a larger
+//! A level is tried when the levels above it gave no plan, or one that costs many times as much as a lawful
+//! plan of a level below. A planner may find a way around a larger
 //! set and miss it for a smaller one. So some levels also plan against more than they require.
 
 use std::cell::Cell;
@@ -45,11 +46,15 @@ const SAME_REDUCTION_M: f64 = 1.0;
 /// Seconds between the next plan and the end of a remainder that is kept until then.
 const BEFORE_END_S: f64 = 2.0;
 
-/// Seconds off its schedule, and own lengths off its path in the mean, from which on a manoeuvre by the rules
-/// is compared with other lawful plans, and the ratio of the costs from which on such a plan is taken: an alteration should be bold, but no detour of
-/// a quarter of an hour where a bend breaks no rule, or where a domain need only be a little smaller.
+/// Seconds by which a manoeuvre by the rules arrives off its schedule, from which on it is compared with
+/// other lawful plans.
 const FAR_OFF_TIME_S: f64 = 300.0;
+
+/// The same in own lengths of the root mean square of its space-time error.
 const FAR_OFF_LENGTHS: f64 = 20.0;
+
+/// Ratio of the costs from which on such a plan is taken. An alteration should be bold, but no detour of a
+/// quarter of an hour where a bend breaks no rule, or where a domain need only be a little smaller.
 const MANY_TIMES: f64 = 10.0;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
@@ -275,7 +280,7 @@ impl Relaxer<'_> {
             }
             first.why = match &first.planned.outcome {
                 Outcome::Infeasible(why) if kept.broken > 0 => Some(why.clone()),
-                _ => None,
+                _ => first.why.take(),
             };
             let is_late = matches!(first.planned.outcome, Outcome::Deadline(None));
             first.planned = kept.planned;
@@ -475,6 +480,11 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Rules`]: a plan by the rules that is clear of the hard sets, and of the
     /// ship domains as far as it happens to be.
     fn by_the_rules(&self, _: bool) -> Option<Attempt> {
+        self.by_the_rules_where(|_| true)
+    }
+
+    /// [`Self::by_the_rules`] in the largest domains for which the plan is `accepted`.
+    fn by_the_rules_where(&self, accepted: impl Fn(&Attempt) -> bool) -> Option<Attempt> {
         if !self.are_rules_asked() || !self.has_domains() {
             return None;
         }
@@ -482,7 +492,7 @@ impl Relaxer<'_> {
         SCALES_BY_THE_RULES.into_iter().find_map(|scale| {
             let found = self.attempt(level, &self.scales(scale), risk);
             let retained = self.retained_along(found.trajectory()?, risk);
-            Some(self.clear_of(&found, &retained, level))
+            Some(self.clear_of(&found, &retained, level)).filter(&accepted)
         })
     }
 
@@ -497,9 +507,9 @@ impl Relaxer<'_> {
         (!found.is_infeasible()).then_some(found)
     }
 
-    /// A lawful plan that costs a tenth of a manoeuvre by the rules that is a long way off the path: one of
-    /// the rest of the last plan, or of the whole request but no such manoeuvre, or else one in smaller
-    /// domains. During a manoeuvre only the first.
+    /// A lawful plan that costs a tenth of a manoeuvre by the rules that is far off its schedule: one of the
+    /// whole request that is no such manoeuvre, the rest of the last plan, or a manoeuvre in smaller
+    /// domains. During a manoeuvre only the rest of the last plan.
     fn much_cheaper_than(&self, first: &Attempt) -> Option<Attempt> {
         let plan = first.planned.outcome.plan()?;
         let is_dear = plan.method == PlanMethod::Rules && self.is_far_off(plan);
@@ -513,25 +523,29 @@ impl Relaxer<'_> {
                     && rules::breaks(self.scenario, &found.trajectory) == 0
             })
         };
-        let rest = self.remainder_by_the_rules(true).filter(is_better);
-        if rest.is_some() || self.scenario.memory.under_way.is_some() {
-            return rest;
+        let rest = || self.remainder_by_the_rules(true).filter(is_better);
+        let found = match self.scenario.memory.under_way {
+            Some(_) => rest(),
+            None => (self.clear_of_domains(true).filter(is_better))
+                .or_else(rest)
+                .or_else(|| self.by_the_rules_where(is_better)),
+        };
+        let mut found = found?;
+        if found.reductions.iter().all(|metres| *metres == 0.0) {
+            found.level = first.level;
         }
-        let bend = self.clear_of_domains(true).map(|other| Attempt {
-            level: first.level,
-            ..other
-        });
-        let smaller = || self.by_the_rules(true).filter(is_better);
-        bend.filter(is_better).or_else(smaller)
+        let other = found.planned.outcome.plan().map_or(f64::NAN, |p| p.cost);
+        let cost = plan.cost;
+        found.why = Some(NoPlan::OutOfProportion { cost, other });
+        Some(found)
     }
 
-    /// True for a plan minutes off its schedule, or farther off its path in the mean than twenty lengths and
-    /// than any ship domain is wide.
+    /// True for a plan minutes off its schedule, or one whose space-time error is, in the root mean square,
+    /// more than some lengths and than any ship domain reaches beyond its hard set.
     fn is_far_off(&self, plan: &Plan) -> bool {
         let off_time = plan.trajectory.end_time() - self.scenario.desired.duration();
-        let (_, domains) = self.asked(&self.scales(0.0));
         let far = FAR_OFF_LENGTHS * self.scenario.own_ship.hull.length;
-        let far = domains.into_iter().fold(far, f64::max);
+        let far = self.sets.iter().map(|s| s.shape_reach).fold(far, f64::max);
         off_time.abs() > FAR_OFF_TIME_S || plan.cost > far * far
     }
 

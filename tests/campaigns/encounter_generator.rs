@@ -135,7 +135,7 @@ pub fn random_traffic(count: usize, seed: u64, placement: Placement) -> Option<R
 const ONE_AFTER_ANOTHER: [RangeInclusive<f64>; 3] = [120.0..=200.0, 520.0..=640.0, 950.0..=1050.0];
 
 /// Own ship and up to three targets of random kinds on a path of 7 km, the closest approaches some
-/// 400 s apart. Equal arguments give equal scenes.
+/// 400 s apart. Equal arguments give equal scenes. `None` for more targets.
 pub fn random_sequence(count: usize, seed: u64, placement: Placement) -> Option<RandomEncounter> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream((2 * TRAFFIC.len() + count) as u64);
@@ -148,7 +148,7 @@ pub fn random_sequence(count: usize, seed: u64, placement: Placement) -> Option<
         ..Meeting::NEAR
     };
     let title = format!("{count} targets one after another {seed}");
-    let times = ONE_AFTER_ANOTHER.iter().take(count).cloned();
+    let times = ONE_AFTER_ANOTHER.get(..count)?.iter().cloned();
     scene_at(title, kinds, times, placement, &meeting, &mut rng)
 }
 

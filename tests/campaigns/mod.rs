@@ -60,6 +60,14 @@ impl Report {
         }
     }
 
+    /// Requires that a file was written.
+    pub fn written(&mut self, result: std::io::Result<()>, file: &std::path::Path) {
+        let file = file.display();
+        self.require(result.is_ok(), || {
+            format!("cannot write {file}: {result:?}")
+        });
+    }
+
     /// Prints in how many of `all` scenes something fails, with the 95 % upper bound and the first
     /// seeds, and requires at most this share of them.
     pub fn at_most(&mut self, name: &str, what: &str, share: f64, failing: &[u64], all: usize) {

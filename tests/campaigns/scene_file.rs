@@ -4,11 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use searoom::frame::{Pose, Vector, deg_from_radians};
+use searoom::planner::SearchKind;
 use searoom::scenario::{Compliance, Scenario};
 
-use crate::campaigns::Report;
-
-/// The file of a scene of [`super::encounter_generator`].
+/// The file of a scene of [`super::encounter_generator`]. Panics for one that has more than those.
 pub fn text(scenario: &Scenario) -> String {
     let mut text = String::new();
     let mut line = |line: String| writeln!(text, "{line}").expect("text grows");
@@ -21,6 +20,12 @@ pub fn text(scenario: &Scenario) -> String {
         own.hull.length, own.hull.beam, own.turning_radius, own.speeds, own.safety_margin
     ));
     let legs = scenario.desired.legs();
+    let of_the_generator = legs.len() == 1
+        && scenario.land.is_none()
+        && scenario.max_risk == 0.0
+        && scenario.search == SearchKind::AStar
+        && own.tracking_margin == 0.0;
+    assert!(of_the_generator, "more than is written");
     let corners = legs.iter().map(|leg| leg.start);
     let corners = corners.chain([scenario.desired.end()]).map(place);
     let corners: Vec<String> = corners.collect();
@@ -32,9 +37,7 @@ pub fn text(scenario: &Scenario) -> String {
         scenario.time_weight
     ));
     for target in &scenario.targets {
-        let Some(track) = target.ship() else {
-            continue;
-        };
+        let track = target.ship().expect("the generator draws ships");
         line(format!("\n[[targets]]\nname = {:?}", target.name));
         line(ship(track.pose, track.speed));
         line(format!(
@@ -49,17 +52,10 @@ pub fn text(scenario: &Scenario) -> String {
     text
 }
 
-/// Writes a scene to a folder, where one is given.
-pub fn keep(folder: Option<&Path>, name: &str, scenario: &Scenario) -> Report {
-    let mut report = Report::default();
-    if let Some(folder) = folder {
-        let made = std::fs::create_dir_all(folder);
-        let written = made.and_then(|()| std::fs::write(folder.join(name), text(scenario)));
-        report.require(written.is_ok(), || {
-            format!("{}: {written:?}", folder.display())
-        });
-    }
-    report
+/// Writes the file of a scene to a folder.
+pub fn write(folder: &Path, name: &str, scenario: &Scenario) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    std::fs::write(folder.join(name), text(scenario))
 }
 
 fn word(compliance: Compliance) -> &'static str {

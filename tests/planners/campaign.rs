@@ -7,6 +7,8 @@ use crate::campaigns::plans::{
     asked, compliance, encounters, harbour, invariance, mutations, several, tidiness,
 };
 use crate::campaigns::{dense_search, forces, meeting, path_time, scene_file, wild};
+use searoom::colregs::Thresholds;
+use searoom::colregs::compliance::{ComplianceReport, EncounterSamples};
 use searoom::frame::wrap;
 use searoom::pipeline;
 use searoom::scenario::Scenario;
@@ -49,6 +51,10 @@ fn a_scene_that_is_kept_as_a_file_is_read_as_it_was() {
         let read = Scenario::parse(&text).expect("valid");
         assert_eq!(read.compliance, scene.compliance);
         assert_eq!(read.own_ship.speeds, scene.own_ship.speeds);
+        assert_eq!(read.own_ship.hull, scene.own_ship.hull);
+        assert_eq!(read.horizon, scene.horizon);
+        assert_eq!(read.time_weight, scene.time_weight);
+        assert_eq!(read.targets.len(), scene.targets.len());
         for (a, b) in read.targets.iter().zip(&scene.targets) {
             let (a, b) = (a.ship().expect("a ship"), b.ship().expect("a ship"));
             assert!((a.pose.position - b.pose.position).norm() < 1e-9);
@@ -69,6 +75,36 @@ fn a_scene_that_is_kept_as_a_file_is_read_as_it_was() {
     }
 }
 
+/// Six ships head-on, one after another: many sequences break a rule at the next ship, and one manoeuvre
+/// toward all does not.
+#[test]
+fn a_long_sequence_is_lawful_where_one_manoeuvre_is() {
+    let mut text = String::from(
+        "title = \"six in a row\"\nhorizon_s = 4500.0\n\
+         mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 0, north_m = 15000 }], speed_mps = 5.0 }\n\
+         [own_ship]\nposition = { east_m = 0, north_m = 0 }\ncourse_deg = 0.0\nspeed_mps = 5.0\nlength_m = 30.0\n\
+         beam_m = 8.0\nturning_radius_m = 100.0\nspeeds_mps = [2.5, 5.0, 6.0]\nsafety_margin_m = 20.0\n",
+    );
+    for ship in 0..6 {
+        let north = 10.0 * (200.0 + 450.0 * f64::from(ship));
+        text += &format!(
+            "[[targets]]\nname = \"ship {ship}\"\nposition = {{ east_m = 0, north_m = {north} }}\ncourse_deg = 180.0\n\
+             speed_mps = 5.0\nlength_m = 60.0\nbeam_m = 12.0\nspeed_spread_mps = 0.1\ncourse_spread_deg = 1.0\n"
+        );
+    }
+    let run = pipeline::run(Scenario::parse(&text).expect("valid"));
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert!(run.relaxations.is_empty());
+    let own = &run.scenario.own_ship;
+    let ships = run.scenario.targets.iter().filter_map(|t| t.ship());
+    let samples: Vec<EncounterSamples> = ships
+        .map(|ship| EncounterSamples::along(&plan.trajectory, own, ship))
+        .collect();
+    let reports = ComplianceReport::of_all(samples.iter(), Thresholds::standard());
+    let broken: Vec<_> = reports.iter().flat_map(|report| report.broken()).collect();
+    assert!(broken.is_empty(), "{broken:?}");
+}
+
 /// Three ships one after another: one manoeuvre toward all would cost 200 times as much.
 #[test]
 fn a_manoeuvre_toward_all_is_not_made_where_several_are_cheaper() {
@@ -86,7 +122,12 @@ fn a_lawful_bend_is_taken_where_a_manoeuvre_is_many_times_as_dear() {
     let scene = meeting(EncounterKind::GiveWay, 50_158, &Meeting::NEAR);
     let run = pipeline::run(scene);
     let plan = run.planned.outcome.plan().expect("a plan");
-    assert!(run.evaluation.is_some_and(|e| e.verified() && e.safe()));
+    let evaluation = run.evaluation.as_ref().expect("judged");
+    assert!(evaluation.verified() && evaluation.safe() && run.relaxations.is_empty());
+    let ship = run.scenario.targets[0].ship().expect("a ship");
+    let meeting = EncounterSamples::along(&plan.trajectory, &run.scenario.own_ship, ship);
+    let report = ComplianceReport::judge(&meeting, Thresholds::standard());
+    assert_eq!(report.broken().count(), 0);
     assert!(plan.cost < 60_000.0, "{}", plan.cost);
 }
 
@@ -97,7 +138,12 @@ fn no_length_is_kept_at_any_price() {
     let scene = meeting(EncounterKind::StandOn, 50_278, &Meeting::NEAR);
     let run = pipeline::run(scene);
     let plan = run.planned.outcome.plan().expect("a plan");
-    assert!(run.evaluation.is_some_and(|e| e.verified() && e.safe()));
+    let evaluation = run.evaluation.as_ref().expect("judged");
+    assert!(evaluation.verified() && evaluation.safe() && run.relaxations.is_empty());
+    let ship = run.scenario.targets[0].ship().expect("a ship");
+    let meeting = EncounterSamples::along(&plan.trajectory, &run.scenario.own_ship, ship);
+    let report = ComplianceReport::judge(&meeting, Thresholds::standard());
+    assert_eq!(report.broken().count(), 0);
     assert!(plan.cost < 2_000.0, "{}", plan.cost);
 }
 

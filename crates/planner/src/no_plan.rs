@@ -137,6 +137,16 @@ pub enum NoPlan {
         /// Time of the contact, seconds.
         time: f64,
     },
+    /// What plans of the whole request cost is out of all proportion to a lawful one that keeps less.
+    #[error(
+        "a plan clear of whole ship domains costs {cost:.0} m², many times the {other:.0} m² of this one, which breaks no rule"
+    )]
+    OutOfProportion {
+        /// *J* of the plan of the whole request, m².
+        cost: f64,
+        /// *J* of the plan that is taken, m².
+        other: f64,
+    },
     /// The search produced no candidate, although the nominal motion meets no set.
     #[error(
         "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: rounding errors are too large for these numbers"
@@ -202,6 +212,7 @@ impl NoPlan {
             | Self::OutOfTime { .. }
             | Self::Locked { .. }
             | Self::Lost { .. }
+            | Self::OutOfProportion { .. }
             | Self::Unsolved { .. } => true,
             Self::StartInside { .. }
             | Self::StartOnLand { .. }

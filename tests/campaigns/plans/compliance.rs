@@ -101,22 +101,17 @@ pub fn run(seeds: Seeds, meeting: &Meeting, rows: Option<&Path>, folder: Option<
     println!("|{}", " --- |".repeat(13));
     for kind in EncounterKind::ALL {
         one_kind(kind, seeds.clone(), meeting, &mut report, &mut lines);
-        for seed in seeds.clone().filter(|_| folder.is_some()) {
-            let name = format!("{}-{seed}.toml", kind.name().replace(' ', "-"));
-            let kept = scene_file::keep(
-                folder,
-                &name,
-                &crate::campaigns::meeting(kind, seed, meeting),
-            );
-            report.missed.extend(kept.missed);
+        if let Some(folder) = folder {
+            for seed in seeds.clone() {
+                let name = format!("{}-{seed}.toml", kind.name().replace(' ', "-"));
+                let scene = crate::campaigns::meeting(kind, seed, meeting);
+                report.written(scene_file::write(folder, &name, &scene), folder);
+            }
         }
     }
     println!();
-    if let Some(file) = rows
-        && let Err(error) = std::fs::write(file, lines)
-    {
-        let file = file.display();
-        report.require(false, || format!("cannot write {file}: {error}"));
+    if let Some(file) = rows {
+        report.written(std::fs::write(file, lines), file);
     }
     report
 }

@@ -20,6 +20,7 @@ const CONTENT: f64 = 0.9;
 /// Observations of one plan; of a scene without one only the outcome.
 struct Seen {
     solved: bool,
+    safe: bool,
     verified: bool,
     /// Rules and monitors that are broken.
     broken: Vec<&'static str>,
@@ -42,6 +43,7 @@ fn seen(run: &Run) -> Seen {
     let reports = ComplianceReport::of_all(samples.iter(), Thresholds::standard());
     Seen {
         solved: plan.is_some() && run.relaxations.is_empty(),
+        safe: run.evaluation.as_ref().is_some_and(|e| e.safe()),
         verified: run.evaluation.as_ref().is_none_or(|e| e.verified()),
         broken: reports.iter().flat_map(|report| report.broken()).collect(),
         cost: plan.map_or(f64::INFINITY, |plan| plan.cost),
@@ -89,11 +91,11 @@ impl Which {
 /// `folder`, where that is given.
 pub fn run(seeds: Seeds, which: &Which, rows: Option<&Path>, folder: Option<&Path>) -> Report {
     let mut report = Report::default();
-    for scene in seeds.clone().filter_map(|seed| which.scene(seed)) {
-        let name = format!("{}.toml", scene.title.replace(' ', "-"));
-        report
-            .missed
-            .extend(scene_file::keep(folder, &name, &scene).missed);
+    if let Some(folder) = folder {
+        for scene in seeds.clone().filter_map(|seed| which.scene(seed)) {
+            let name = format!("{}.toml", scene.title.replace(' ', "-"));
+            report.written(scene_file::write(folder, &name, &scene), folder);
+        }
     }
     let play = |seed| Some((seed, seen(&pipeline::run(which.scene(seed)?))));
     let all: Vec<(u64, Seen)> = seeds.clone().into_par_iter().filter_map(play).collect();
@@ -105,11 +107,8 @@ pub fn run(seeds: Seeds, which: &Which, rows: Option<&Path>, folder: Option<&Pat
             "{seed},{solved},{cost},{manoeuvres},{nodes},{ms},{broken}\n"
         ));
     }
-    if let Some(file) = rows
-        && let Err(error) = std::fs::write(file, lines)
-    {
-        let file = file.display();
-        report.require(false, || format!("cannot write {file}: {error}"));
+    if let Some(file) = rows {
+        report.written(std::fs::write(file, lines), file);
     }
     let how = if which.apart {
         "one after another"
@@ -124,7 +123,7 @@ pub fn run(seeds: Seeds, which: &Which, rows: Option<&Path>, folder: Option<&Pat
     let number = |holds: &dyn Fn(&Seen) -> bool| all.iter().filter(|(_, s)| holds(s)).count();
     let values =
         |of: &dyn Fn(&Seen) -> f64| -> Vec<f64> { all.iter().map(|(_, s)| of(s)).collect() };
-    let content = number(&|s| s.broken.is_empty() && s.cost.is_finite());
+    let content = number(&|s| s.broken.is_empty() && s.safe);
     let cells = [
         share_cells(content, all.len()),
         number(&|s| s.solved).to_string(),
@@ -139,6 +138,8 @@ pub fn run(seeds: Seeds, which: &Which, rows: Option<&Path>, folder: Option<&Pat
     if which.compliance == Compliance::Rules {
         report.content("several", CONTENT, content, all.len());
     }
+    let drawn = seeds.end - seeds.start == all.len() as u64;
+    report.require(drawn, || "scenes that cannot be drawn".to_owned());
     let unverified = all.len() - number(&|s| s.verified);
     report.require(unverified == 0, || format!("{unverified} not verified"));
     report

@@ -14,6 +14,10 @@ use searoom_sets::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 /// rounding errors.
 const REACH_M: f64 = 1e-3;
 
+/// Rounding of a place and of a velocity that changes nothing, metres and m/s.
+const SAME_M: f64 = 1e-6;
+const SAME_MPS: f64 = 1e-9;
+
 /// Convex piece inside a growing, moving disc.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proxy<'a> {
@@ -96,17 +100,17 @@ impl<'a> Proxy<'a> {
         ![from, least, to].into_iter().all(|t| spare(t) > REACH_M)
     }
 
-    /// True where a polytope that lasts for ever contains a body at every time: its initial set all places
-    /// of the other's, and its velocities all of the other's.
+    /// True only where it contains a body at all times: a polytope without a window, whose initial set and
+    /// velocities contain the body's, but for rounding. O(vertices × vertices).
     pub(crate) fn contains_body(&self, body: &PolytopeObstacle) -> bool {
-        let inside = |outer: &ConvexPolygon, inner: &ConvexPolygon| {
+        let inside = |outer: &ConvexPolygon, inner: &ConvexPolygon, rounding: f64| {
             let mut vertices = inner.vertices().iter();
-            vertices.all(|vertex| outer.signed_distance(*vertex) <= 0.0)
+            vertices.all(|vertex| outer.signed_distance(*vertex) <= rounding)
         };
         self.window.is_none()
             && self.ellipsoid.is_none()
-            && inside(self.body.velocity(), body.velocity())
-            && inside(self.body.initial(), body.initial())
+            && inside(self.body.velocity(), body.velocity(), SAME_MPS)
+            && inside(self.body.initial(), body.initial(), SAME_M)
     }
 
     /// Enclosing disc at a time, metres; `None` outside the time window.
@@ -353,6 +357,40 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use searoom_geometry::frame::direction;
     use searoom_geometry::{ConvexPolygon, outer_disc};
+
+    /// A disc around a ship, and sets that contain it or do not: every place of the disc at any time is in a
+    /// set that is said to contain it.
+    #[test]
+    fn what_contains_a_body_is_met_wherever_the_body_is() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+        let (mut contained, mut others) = (0, 0);
+        for _ in 0..2_000 {
+            let mut near = |most: f64| {
+                let angle: f64 = rng.random_range(-3.1..3.1);
+                direction(angle) * rng.random_range(0.0..most)
+            };
+            let (centre, drift) = (near(500.0), near(8.0));
+            let disc = outer_disc(60.0, 0.0).translated(centre);
+            let body = PolytopeObstacle::new("", disc, ConvexPolygon::point(drift));
+            let around: Vec<Vector> = (0..5).map(|_| drift + near(0.5)).collect();
+            let velocity = ConvexPolygon::hull(&around).expect("finite");
+            let initial = outer_disc(80.0, 0.3).translated(centre + near(40.0));
+            let set = PolytopeObstacle::new("", initial, velocity);
+            let proxy = Proxy::at_rest(0, &set);
+            if !proxy.contains_body(&body) {
+                others += 1;
+                continue;
+            }
+            contained += 1;
+            for time in [0.0, 1.0, 60.0, 1_000.0] {
+                for vertex in body.initial().vertices() {
+                    let slack = set.slack(*vertex + drift * time, time).value;
+                    assert!(slack <= SAME_M + SAME_MPS * time, "{slack} at {time}");
+                }
+            }
+        }
+        assert!(contained > 100 && others > 100, "{contained} {others}");
+    }
 
     /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with
     /// time windows.

@@ -40,7 +40,7 @@ pub(super) struct Graph<'g, 's, 'a> {
     pub departures: Vec<(f64, FirstAlteration)>,
     /// Angles of the returns, radians.
     pub angles: &'g [f64],
-    /// Only manoeuvres that cost less are of use, m².
+    /// Only manoeuvres that cost less before they are improved are of use, m².
     pub below: f64,
 }
 
@@ -86,7 +86,7 @@ impl Space for Graph<'_, '_, '_> {
                 if self.manoeuvres.leads_off(state) {
                     wider(self.manoeuvres, state).into_iter().for_each(&mut add);
                 }
-                ways_back(self.manoeuvres, state, self.angles, f64::INFINITY).for_each(add);
+                ways_back(self.manoeuvres, state, self.angles, self.below).for_each(add);
             }
             Phase::End => {}
         }

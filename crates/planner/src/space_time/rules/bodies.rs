@@ -19,7 +19,7 @@ const BOW_LINE_M: f64 = 0.02;
 /// Metres by which that line is longer than the room that the judge asks for.
 const BOW_SPARE_M: f64 = 0.5;
 
-/// A target that own ship must not pass nearer than a length.
+/// A target, and the bodies that own ship keeps off for its sake.
 pub(super) struct Passing<'a> {
     pub encountered: &'a Encountered,
     /// The nominal hull, grown by own half-diagonal and the longer ship's length; `None` where a set
@@ -72,15 +72,9 @@ impl<'a> Passing<'a> {
         self.encountered.role.duties().no_heading_to.is_some()
     }
 
-    /// True where a length off this target is more than the sets ask for.
-    pub(super) fn asks_for_a_length(&self) -> bool {
-        self.within_a_length.is_some()
-    }
-
-    /// True for a place more than a length away.
-    pub(super) fn is_a_length_off(&self, place: Vector, time: f64) -> bool {
-        let mut bodies = self.within_a_length.iter();
-        bodies.all(|body| body.slack(place, time).value > 0.0)
+    /// What is within a length of this target, where a length is more than the sets ask for.
+    pub(super) fn within_a_length(&self) -> Option<&PolytopeObstacle> {
+        self.within_a_length.as_ref()
     }
 }
 
@@ -104,17 +98,12 @@ impl Manoeuvres<'_, '_> {
             .iter()
             .filter_map(|p| p.first_contact(&line));
         let land = problem.land_obstacle.first_contact(&line, TOUCH_M);
-        let lengths = self.lengths();
+        let lengths = self.kept_off();
         let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
         let bodies = lengths.chain(ahead);
         let bodies = bodies.filter_map(|body| contact::first_contact(body, &line, TOUCH_M));
         let first = sets.chain(land).chain(bodies).reduce(f64::min);
         first.unwrap_or(problem.horizon) - time
-    }
-
-    /// What is within a length of the targets that are kept off.
-    fn lengths(&self) -> impl Iterator<Item = &PolytopeObstacle> {
-        self.kept_off().filter_map(|p| p.within_a_length.as_ref())
     }
 
     fn crosses_no_bow(&self, segments: &[Segment]) -> bool {
@@ -127,14 +116,14 @@ impl Manoeuvres<'_, '_> {
         let near = |s, body| contact::meets(body, s, TOUCH_M);
         !segments
             .iter()
-            .any(|s| self.lengths().any(|body| near(s, body)))
+            .any(|s| self.kept_off().any(|body| near(s, body)))
     }
 
     /// Holds of a range after which the line of a turn touches a body other than land.
     pub(super) fn touching(&self, turn: &HeldTurn, range: (f64, f64)) -> Vec<f64> {
         let sets = self.context.proxies.iter();
         let sets = sets.map(|proxy| (proxy.body.moving_vertices(), proxy.start()));
-        let lengths = self.lengths();
+        let lengths = self.kept_off();
         let ahead = self.passing.iter().filter_map(|p| p.ahead.as_ref());
         let others = lengths
             .chain(ahead)

@@ -1,5 +1,6 @@
 //! Several targets: those that are passed in one manoeuvre, and the manoeuvres one after another.
 
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::search::{Search, Space, Stop};
@@ -19,12 +20,13 @@ use searoom_model::trajectory::Segment;
 /// one would sail it.
 const MOST_COST_RATIO: f64 = 100.0;
 
-/// The same of a plan that breaks fewer rules than the cheapest, but some.
+/// The same of a plan that breaks fewer rules than the cheapest, but some: one rule fewer of many is hardly
+/// a better plan.
 const MOST_UNLAWFUL_COST_RATIO: f64 = 1.5;
 
-/// Most manoeuvres that are looked for, and most plans that the judges are asked for.
-const MOST_EXPANDED: usize = 100;
-const MOST_PLANS: usize = 8;
+/// Most nodes that are expanded: so many for each target, and as many again. Most plans whose rules are judged.
+const EXPANDED_PER_TARGET: usize = 3;
+const MOST_PLANS: usize = 24;
 
 /// A plan by the rules.
 pub(crate) struct RulePlan {
@@ -34,11 +36,13 @@ pub(crate) struct RulePlan {
     pub manoeuvres: Vec<PlannedManoeuvre>,
 }
 
-/// The cheapest lawful plan of manoeuvres one after another.
+/// The cheapest lawful plan of manoeuvres one after another, as far as a larger group costs no less than a
+/// smaller one.
 ///
 /// The next manoeuvre begins when own ship is on the route again. Several targets may be passed in
 /// one manoeuvre: of the groupings the cheapest by the rules is taken; where none is, the one that breaks
-/// the fewest, up to a price. `None` where no manoeuvre is found.
+/// the fewest, up to a price. `None` where no manoeuvre is found. A manoeuvre takes about a millisecond; one is
+/// looked for at most some hundred times.
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
@@ -62,7 +66,7 @@ pub(crate) fn by_the_rules(
 }
 
 fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Option<RulePlan> {
-    let root = Sailed {
+    let root = Begun {
         motion: nominal_motion.to_vec(),
         from: 0.0,
         cost: 0.0,
@@ -74,29 +78,50 @@ fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Op
         escape: None,
         manoeuvres: Vec::new(),
     };
-    let mut graph = Sequences { context, effort };
-    let mut search = Search::new(Step::Sailed(Rc::new(root)));
-    let mut best: Option<(usize, Rc<Sailed>)> = None;
+    let root = Rc::new(root);
+    let mut graph = Sequences {
+        context,
+        effort,
+        known: HashMap::new(),
+    };
+    // one plan first: the time may soon be up
+    let first = graph.finished(root.clone(), Group::AtContact);
+    let mut search = Search::new(Step::Begun(root.clone()));
+    let most_expanded = EXPANDED_PER_TARGET * (context.problem.encountered.len() + 1);
+    let mut best: Option<(usize, Rc<Begun>)> = None;
     let mut cheapest: Option<f64> = None;
-    for _ in 0..MOST_PLANS {
-        let Stop::Goal(goal) = search.next_goal(&mut graph, MOST_EXPANDED) else {
-            break;
-        };
-        let Step::Sailed(plan) = &search.nodes()[goal].state else {
-            break;
-        };
+    let mut judge = |plan: &Rc<Begun>| {
+        let cheapest = *cheapest.get_or_insert(plan.cost);
         let broken = broken_rules(context.problem, &plan.motion);
         let most = match broken {
             0 => MOST_COST_RATIO,
             _ => MOST_UNLAWFUL_COST_RATIO,
         };
-        let cheapest = *cheapest.get_or_insert(plan.cost);
-        let better = |(least, _): &(usize, Rc<Sailed>)| broken < *least;
-        if best.as_ref().is_none_or(better) && plan.cost <= most * cheapest {
+        let better = best.as_ref().is_none_or(|(least, _)| broken < *least);
+        if better && plan.cost <= most * cheapest {
             best = Some((broken, plan.clone()));
         }
-        if broken == 0 {
+        // the next ones cost no less
+        broken == 0 || plan.cost > MOST_COST_RATIO * cheapest
+    };
+    let mut is_decided = false;
+    for _ in 0..MOST_PLANS {
+        let Stop::Goal(goal) = search.next_goal(&mut graph, most_expanded) else {
             break;
+        };
+        is_decided = judge(search.nodes()[goal].state.begun());
+        if is_decided {
+            break;
+        }
+    }
+    // where the limits or the time end the search: what is known, and larger groups throughout
+    if !is_decided {
+        let joined = graph.finished(root.clone(), Group::UntilJoined);
+        let all = graph.finished(root.clone(), Group::All);
+        for plan in [first, joined, all].iter().flatten() {
+            if judge(plan) {
+                break;
+            }
         }
     }
     best.map(|(_, plan)| RulePlan {
@@ -106,8 +131,8 @@ fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Op
     })
 }
 
-/// Manoeuvres, and the route again: up to a time a part of a plan.
-struct Sailed {
+/// The beginning of a plan: manoeuvres, until own ship follows the route again.
+struct Begun {
     /// To the end of the route.
     motion: Vec<Segment>,
     /// Seconds from which on the motion follows the route.
@@ -120,40 +145,88 @@ struct Sailed {
     manoeuvres: Vec<PlannedManoeuvre>,
 }
 
+impl Begun {
+    fn is_whole(&self) -> bool {
+        self.contact.is_none()
+    }
+}
+
+/// Targets toward which a manoeuvre is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Group {
+    /// Those whose risk has begun when the next set would be met.
+    AtContact,
+    /// Those whose risk begins before own ship is on the route again.
+    UntilJoined,
+    All,
+}
+
 /// A node of the graph of sequences.
 enum Step {
-    Sailed(Rc<Sailed>),
-    /// The next manoeuvre, toward all targets whose risk has begun `until` a time: looked for when it
-    /// leaves the queue, as it costs hardly less than the one toward fewer targets.
-    Wider {
-        before: Rc<Sailed>,
+    Begun(Rc<Begun>),
+    /// The next manoeuvre toward a larger group: all targets whose risk has begun `until` a time. It is
+    /// looked for when this node leaves the queue, as it mostly costs no less than that toward the smaller
+    /// group.
+    LargerGroup {
+        before: Rc<Begun>,
         until: f64,
-        /// Cost of the manoeuvre toward fewer targets, m².
-        narrower: f64,
+        /// Cost of the manoeuvre toward the smaller group, m².
+        smaller: f64,
     },
+}
+
+impl Step {
+    /// The beginning of the plan that it is, or goes on with.
+    fn begun(&self) -> &Rc<Begun> {
+        let (Self::Begun(begun) | Self::LargerGroup { before: begun, .. }) = self;
+        begun
+    }
 }
 
 /// The graph of sequences: an edge is a manoeuvre toward some of the targets that are not passed.
 struct Sequences<'c, 'a> {
     context: &'c Context<'a>,
     effort: Effort<'c>,
+    /// The manoeuvres that were looked for, by the beginning that they go on with and the size of the group.
+    known: HashMap<(*const Begun, usize), Option<Rc<Begun>>>,
 }
 
 impl Space for Sequences<'_, '_> {
     type State = Step;
 
     fn successors(&mut self, step: &Step, out: &mut Vec<(Step, f64)>) {
-        match step {
-            Step::Sailed(before) => {
-                if let Some(contact) = before.contact {
-                    self.add_manoeuvres(before, contact, 0.0, out);
-                }
-            }
-            Step::Wider {
+        let (before, until, smaller) = match step {
+            Step::Begun(before) => (before, before.contact, 0.0),
+            Step::LargerGroup {
                 before,
                 until,
-                narrower,
-            } => self.add_manoeuvres(before, *until, *narrower, out),
+                smaller,
+            } => (before, Some(*until), *smaller),
+        };
+        let Some(until) = until else {
+            return;
+        };
+        let (mut cost, mut larger) = (smaller, f64::INFINITY);
+        if let Some(begun) = self.manoeuvre(before, until) {
+            if self.size(before, begun.from) > self.size(before, until) {
+                larger = begun.from;
+            }
+            let own = begun.cost - before.cost;
+            // a NaN is no cost, and not admitted
+            cost = if own < smaller { smaller } else { own };
+            // at the same cost it is the same manoeuvre
+            if own != smaller {
+                out.push((Step::Begun(begun), cost - smaller));
+            }
+        }
+        let all = self.remaining(before).all(|e| has_begun(e, until));
+        if !all && cost.is_finite() {
+            let next = Step::LargerGroup {
+                before: before.clone(),
+                until: larger,
+                smaller: cost,
+            };
+            out.push((next, cost - smaller));
         }
     }
 
@@ -162,7 +235,7 @@ impl Space for Sequences<'_, '_> {
     }
 
     fn is_goal(&self, step: &Step) -> bool {
-        matches!(step, Step::Sailed(sailed) if sailed.contact.is_none())
+        matches!(step, Step::Begun(begun) if begun.is_whole())
     }
 
     fn admits(&mut self, _: &Step) -> bool {
@@ -174,76 +247,94 @@ impl Space for Sequences<'_, '_> {
     }
 }
 
-impl Sequences<'_, '_> {
-    /// Adds the manoeuvre toward the targets whose risk has begun until a time, and the node of that
-    /// toward more of them.
-    fn add_manoeuvres(
-        &self,
-        before: &Rc<Sailed>,
-        until: f64,
-        narrower: f64,
-        out: &mut Vec<(Step, f64)>,
-    ) {
+/// True where a risk has begun by a time. One that begins at no time has.
+fn has_begun(encountered: &Encountered, until: f64) -> bool {
+    // negated on purpose: a NaN is a risk
+    !(encountered.risk_since > until)
+}
+
+impl<'a> Sequences<'_, 'a> {
+    /// A beginning to its end, with a manoeuvre toward such a group at each conflict.
+    fn finished(&mut self, begun: Rc<Begun>, group: Group) -> Option<Rc<Begun>> {
+        let mut last = begun;
+        while let Some(contact) = last.contact {
+            let mut until = match group {
+                Group::All => f64::INFINITY,
+                Group::AtContact | Group::UntilJoined => contact,
+            };
+            let mut next = self.manoeuvre(&last, until)?;
+            while group == Group::UntilJoined
+                && self.size(&last, next.from) > self.size(&last, until)
+            {
+                until = next.from;
+                next = self.manoeuvre(&last, until)?;
+            }
+            last = next;
+        }
+        Some(last)
+    }
+
+    /// Number of targets that are not passed and whose risk has begun by a time.
+    fn size(&self, before: &Begun, until: f64) -> usize {
+        let remaining = self.remaining(before);
+        remaining.filter(|e| has_begun(e, until)).count()
+    }
+
+    /// The manoeuvre under way that a beginning goes on with.
+    fn under_way(&self, before: &Begun) -> Option<UnderWay> {
+        let begun = self.context.problem.under_way;
+        begun.filter(|_| before.manoeuvres.is_empty())
+    }
+
+    /// The targets that are not passed.
+    fn remaining(&self, before: &Begun) -> impl Iterator<Item = &'a Encountered> + use<'a> {
+        let (from, under_way) = (before.from, self.under_way(before).is_some());
+        let all = self.context.problem.encountered.iter();
+        // negated on purpose: a NaN is not past
+        all.filter(move |e| !(e.tcpa <= from) || under_way && e.risk_since <= 0.0)
+    }
+
+    /// A beginning with the next manoeuvre, toward the targets whose risk has begun until a time.
+    fn manoeuvre(&mut self, before: &Rc<Begun>, until: f64) -> Option<Rc<Begun>> {
+        let remaining = self.remaining(before);
+        let group: Vec<Encountered> = remaining.filter(|e| has_begun(e, until)).copied().collect();
+        let key = (Rc::as_ptr(before), group.len());
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let found = self.resolved(before, &group).map(Rc::new);
+        self.known.insert(key, found.clone());
+        found
+    }
+
+    fn resolved(&self, before: &Begun, group: &[Encountered]) -> Option<Begun> {
         let problem = self.context.problem;
         let (from, number) = (before.from, before.manoeuvres.len());
-        let begun = problem.under_way.filter(|_| number == 0);
-        let contact = before.contact.unwrap_or(0.0);
+        let contact = before.contact?;
+        // no target is passed twice, but after a manoeuvre under way
         let most = problem.encountered.len() + usize::from(problem.under_way.is_some());
         // negated on purpose: a NaN is too early
-        if number > most || !(contact >= from) {
-            return;
+        if number >= most || !(contact >= from) {
+            return None;
         }
-        let lasts = |e: &Encountered| begun.is_some() && e.risk_since <= 0.0;
-        // negated on purpose: a NaN is not past
-        let remaining = problem
-            .encountered
-            .iter()
-            .filter(|e| !(e.tcpa <= from) || lasts(e));
-        let toward = |until: f64| remaining.clone().filter(move |e| e.risk_since <= until);
-        let group: Vec<Encountered> = toward(until).copied().collect();
-        let all = group.len() == remaining.clone().count();
-        let motion = (&before.motion[..], from);
-        let found = resolved(
-            self.context,
-            &group,
-            all,
-            motion,
-            contact,
-            begun,
-            self.effort,
-        );
-        let mut cost = narrower;
-        let mut wider = f64::INFINITY;
-        if let Some(found) = found {
-            let joined = found.whole.joined;
-            let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
-            let holds = number == 0 && found.begun.is_none() && can_hold_speed(problem);
-            let escape = (stands_on && holds).then(|| found.escape());
-            let mut manoeuvres = before.manoeuvres.clone();
-            manoeuvres.push(found.planned());
-            let conflict = self.context.first_conflict(&found.whole.motion);
-            cost = self.cost_of(&found, from, conflict.is_none());
-            if toward(joined).count() > group.len() {
-                wider = joined;
-            }
-            let sailed = Sailed {
-                from: joined,
-                cost: before.cost + cost,
-                contact: conflict,
-                escape: before.escape.or(escape),
-                manoeuvres,
-                motion: found.whole.motion,
-            };
-            out.push((Step::Sailed(Rc::new(sailed)), (cost - narrower).max(0.0)));
-        }
-        if !all {
-            let next = Step::Wider {
-                before: before.clone(),
-                until: wider,
-                narrower: cost.max(narrower),
-            };
-            out.push((next, (cost - narrower).max(0.0)));
-        }
+        let all = group.len() == self.remaining(before).count();
+        let (motion, under_way) = ((&before.motion[..], from), self.under_way(before));
+        let effort = self.effort;
+        let found = resolved(self.context, group, all, motion, contact, under_way, effort)?;
+        let stands_on = Duty::of(group.iter().map(|e| e.role)).stands_on;
+        let holds = number == 0 && found.begun.is_none() && can_hold_speed(problem);
+        let escape = (stands_on && holds).then(|| found.escape());
+        let mut manoeuvres = before.manoeuvres.clone();
+        manoeuvres.push(found.planned());
+        let conflict = self.context.first_conflict(&found.whole.motion);
+        Some(Begun {
+            from: found.whole.joined,
+            cost: before.cost + self.cost_of(&found, from, conflict.is_none()),
+            contact: conflict,
+            escape: before.escape.or(escape),
+            manoeuvres,
+            motion: found.whole.motion,
+        })
     }
 
     /// Cost of a manoeuvre from where the route was sailed before, m²: until own ship is on it again, or

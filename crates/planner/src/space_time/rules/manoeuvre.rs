@@ -26,7 +26,7 @@ use searoom_colregs::APPARENT_TIME;
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
-use searoom_sets::{Obstacle, SpaceTimeObstacle};
+use searoom_sets::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Seconds in which a harbour vessel sails its turning radius.
 const NORMAL_TURN_S: f64 = 20.0;
@@ -687,7 +687,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     }
 
     /// First time at which every target is past and clear on a straight course: on its first
-    /// course own ship would have it behind, the range opens, and it is more than a length away.
+    /// course own ship would have it behind, the range opens, and it is more than a length away, where its set
+    /// does not ask for more.
     fn passed(&self, position: Vector, velocity: Vector, time: f64) -> Option<f64> {
         const STEP_S: f64 = 5.0;
         let mut passed = time;
@@ -707,7 +708,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         }
         while passed <= self.problem().horizon {
             let there = position + velocity * (passed - time);
-            let clear = |p: &Passing| p.is_a_length_off(there, passed);
+            let clear = |body: &PolytopeObstacle| body.slack(there, passed).value > 0.0;
             if self.kept_off().all(clear) {
                 return Some(passed);
             }
@@ -745,10 +746,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         &motion[motion.partition_point(|s| s.start_time < self.from)..]
     }
 
-    /// The targets that are not passed nearer than a length, where the sets do not ask for more.
-    pub(super) fn kept_off(&self) -> impl Iterator<Item = &Passing<'s>> {
-        let asked = self.passing.iter().filter(|p| p.asks_for_a_length());
-        asked.filter(|p| (self.keeps_a_length)(p))
+    /// What is within a length of the targets that are not passed nearer than that, but for those whose
+    /// sets ask for more.
+    pub(super) fn kept_off(&self) -> impl Iterator<Item = &PolytopeObstacle> {
+        let kept = self.passing.iter().filter(|p| (self.keeps_a_length)(p));
+        kept.filter_map(Passing::within_a_length)
     }
 
     /// Distance along the route at a time at which the nominal motion follows it, metres.

@@ -6,9 +6,10 @@
 //! ```
 //!
 //! A ship that keeps clear departs in ample time; one that stands on holds until its escape is due.
-//! Each is tried with a length off all targets, then off fewer, and with turns at half speed or less
-//! where nothing else is clear.
+//! Each is tried with a length off all targets, then off fewer where that is the only way or costs a tenth,
+//! and with turns at half speed or less where nothing else is clear.
 
+use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
@@ -80,8 +81,13 @@ const LATE_PRICE: f64 = 4.0;
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
 
-/// Ratio of the costs up to which a length off a ship is kept. *J* is squared: three times the distance.
+/// Ratio of the costs, by which manoeuvres are compared, up to which a length off a ship is kept. *J* is
+/// squared: three times the distance.
 const LENGTH_PRICE: f64 = 10.0;
+
+/// Own lengths of the root mean square of the space-time error above which a length off a ship is given up for
+/// that.
+const FAR_OFF_LENGTHS: f64 = 20.0;
 
 /// The numbers of a manoeuvre that no contact decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,9 +149,15 @@ impl Manoeuvres<'_, '_> {
             (LARGEST_TURN, keeps_a_length),
             (LARGEST_TURN, FROM_NONE),
         ];
-        let mut latest: Option<f64> = None;
+        let (mut latest, mut tried): (Option<f64>, Option<f64>) = (None, None);
         for (most_turn, keeps_a_length) in ways {
+            let kept = self.kept_off().count();
             self.keeps_a_length = keeps_a_length;
+            // without a length to give up the escapes are the same
+            if tried == Some(most_turn) && self.kept_off().count() == kept {
+                continue;
+            }
+            tried = Some(most_turn);
             let found = self.latest_escape(contact, may, most_turn);
             if found > latest {
                 latest = found;
@@ -173,10 +185,10 @@ impl Manoeuvres<'_, '_> {
         })
     }
 
-    /// The manoeuvre that is found with a length off all targets, off those that own ship keeps clear of,
-    /// or off none: the first of these, unless a later one costs a tenth. Of each with turns at the ordered
-    /// speed, or else at half or less. Where there is none, also with stops. It is told the cost, m², below
-    /// which a manoeuvre is of use.
+    /// The manoeuvre with a length off all targets; where there is none, off those that own ship keeps clear
+    /// of, or off none. One that keeps it off fewer is also taken where it costs a tenth
+    /// ([`Self::is_worth_a_length`]). Each with turns at the ordered speed, or else at half or less; where there is none, also with
+    /// stops. `find` looks for the manoeuvres of a level that cost less than so many m².
     fn relaxed(&mut self, find: impl Fn(&Self, f64) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
         let may_stop = self.problem().own.speeds.contains(&0.0);
         let stops: &[bool] = if may_stop { &[false, true] } else { &[false] };
@@ -192,6 +204,7 @@ impl Manoeuvres<'_, '_> {
     ) -> Option<Manoeuvre> {
         let problem = self.problem();
         let may_slow = problem.duty().may_slow && problem.under_way.is_none();
+        let sailed = problem.error_of(&until(self.nominal_motion, self.from));
         let mut best: Option<Manoeuvre> = None;
         let mut tried = usize::MAX;
         let levels: [fn(&Passing) -> bool; 3] = [|_| true, |p| p.keeps_clear(), FROM_NONE];
@@ -202,8 +215,11 @@ impl Manoeuvres<'_, '_> {
                 continue;
             }
             tried = number;
-            let below =
-                (best.as_ref()).map_or(f64::INFINITY, |best| best.whole.cost / LENGTH_PRICE);
+            let below = best.as_ref().map_or(f64::INFINITY, |best| {
+                // what was sailed before is no part of the price
+                let since = best.whole.cost - sailed * best.whole.first.price();
+                sailed + since / LENGTH_PRICE
+            });
             let slows: &[bool] = match may_slow && best.is_none() {
                 true => &[false, true],
                 false => &[false],
@@ -212,12 +228,29 @@ impl Manoeuvres<'_, '_> {
                 self.slows_to_turn = *slows_to_turn;
                 find(self, below)
             });
-            best = found.or(best);
+            best = match (best, found) {
+                (Some(best), Some(found)) if !self.is_worth_a_length(&found, &best) => Some(best),
+                (best, found) => found.or(best),
+            };
             if self.effort.clock.is_up() {
                 break;
             }
         }
         best
+    }
+
+    /// True for a manoeuvre at a tenth of the cost that breaks fewer rules than another, or as many where that
+    /// one is far off the path.
+    fn is_worth_a_length(&self, cheaper: &Manoeuvre, other: &Manoeuvre) -> bool {
+        let problem = self.problem();
+        let broken = |of: &Manoeuvre| broken_rules(problem, &of.whole.motion);
+        let far = FAR_OFF_LENGTHS * problem.own.hull.length;
+        let is_far_off = other.whole.cost > far * far;
+        match broken(cheaper).cmp(&broken(other)) {
+            Ordering::Less => true,
+            Ordering::Equal => is_far_off,
+            Ordering::Greater => false,
+        }
     }
 
     /// The latest time from which there is an escape: a lawful manoeuvre with a turn of at most
