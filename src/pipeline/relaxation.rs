@@ -309,24 +309,36 @@ impl Relaxer<'_> {
         }
     }
 
-    /// The plan that satisfies the whole request. Where a risk is accepted, it is the cheaper one of
-    /// a plan around the smaller sets and of a plan that takes no risk: the search may miss the
-    /// latter among the smaller sets.
+    /// The plan that satisfies the whole request.
     pub(super) fn first(&self) -> Attempt {
-        let (level, risk) = (RelaxationLevel::Compliant, self.scenario.max_risk);
-        let scales = &self.first_scales();
-        let mut first = self.attempt(level, scales, risk);
+        self.at_most_the_risk(RelaxationLevel::Compliant, &self.first_scales(), |_| true)
+    }
+
+    /// The cheapest accepted plan of a level; without any, the attempt. Where a risk is accepted, a plan that
+    /// takes none is tried besides one around the smaller sets: the search may miss it among these.
+    fn at_most_the_risk(
+        &self,
+        level: RelaxationLevel,
+        scales: &[f64],
+        accepted: impl Fn(&Attempt) -> bool,
+    ) -> Attempt {
+        let risk = self.scenario.max_risk;
+        let found = self.attempt(level, scales, risk);
         if risk == 0.0 || self.scenario.planner.facts().relaxes_domains_only {
-            return first;
+            return found;
         }
-        let without = self.attempt(level, scales, 0.0).planned;
-        let cost = |planned: &Planned| planned.outcome.plan().map(|plan| plan.cost);
-        if let Some(least) = cost(&without)
-            && cost(&first.planned).is_none_or(|cost| least <= cost)
-        {
-            first.planned = without;
+        let without = Attempt {
+            planned: self.attempt(level, scales, 0.0).planned,
+            ..found.clone()
+        };
+        let cost = |of: &Attempt| {
+            let plan = of.planned.outcome.plan().filter(|_| accepted(of));
+            plan.map_or(f64::INFINITY, |plan| plan.cost)
+        };
+        match cost(&without) {
+            least if least.is_finite() && least <= cost(&found) => without,
+            _ => found,
         }
-        first
     }
 
     /// The answer of the first of [`Self::ATTEMPTS`] that has one.
@@ -499,11 +511,15 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Domains`]: a plan that is clear of the full domains, where the rules were
     /// asked for as well.
     fn clear_of_domains(&self, _: bool) -> Option<Attempt> {
+        self.clear_of_domains_where(|_| true)
+    }
+
+    /// [`Self::clear_of_domains`], an `accepted` plan where there is one.
+    fn clear_of_domains_where(&self, accepted: impl Fn(&Attempt) -> bool) -> Option<Attempt> {
         if !self.are_rules_asked() {
             return None;
         }
-        let (level, risk) = (RelaxationLevel::Domains, self.scenario.max_risk);
-        let found = self.attempt(level, &self.scales(1.0), risk);
+        let found = self.at_most_the_risk(RelaxationLevel::Domains, &self.scales(1.0), accepted);
         (!found.is_infeasible()).then_some(found)
     }
 
@@ -526,7 +542,7 @@ impl Relaxer<'_> {
         let rest = || self.remainder_by_the_rules(true).filter(is_better);
         let found = match self.scenario.memory.under_way {
             Some(_) => rest(),
-            None => (self.clear_of_domains(true).filter(is_better))
+            None => (self.clear_of_domains_where(is_better).filter(is_better))
                 .or_else(rest)
                 .or_else(|| self.by_the_rules_where(is_better)),
         };
