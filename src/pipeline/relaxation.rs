@@ -16,7 +16,8 @@ use crate::numerics::bisected;
 use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
 use crate::parallel;
 use crate::planner::{
-    NoPlan, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner, Problem, SearchKind,
+    FAR_OFF_LENGTHS, MANY_TIMES, NoPlan, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner,
+    Problem, SearchKind,
 };
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
@@ -47,15 +48,9 @@ const SAME_REDUCTION_M: f64 = 1.0;
 const BEFORE_END_S: f64 = 2.0;
 
 /// Seconds by which a manoeuvre by the rules arrives off its schedule, from which on it is compared with
-/// other lawful plans.
+/// other lawful plans. An alteration should be bold, but no detour of a quarter of an hour where a bend breaks no
+/// rule, or where a domain need only be a little smaller.
 const FAR_OFF_TIME_S: f64 = 300.0;
-
-/// The same in own lengths of the root mean square of its space-time error.
-const FAR_OFF_LENGTHS: f64 = 20.0;
-
-/// Ratio of the costs from which on such a plan is taken. An alteration should be bold, but no detour of a
-/// quarter of an hour where a bend breaks no rule, or where a domain need only be a little smaller.
-const MANY_TIMES: f64 = 10.0;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;

@@ -60,9 +60,8 @@ pub fn write(folder: &Path, name: &str, scenario: &Scenario) -> std::io::Result<
 
 fn word(compliance: Compliance) -> &'static str {
     let mut words = Compliance::WORDS.iter();
-    words
-        .find(|(_, level)| *level == compliance)
-        .map_or("", |(word, _)| word)
+    let found = words.find(|(_, level)| *level == compliance);
+    found.expect("every level has a word").0
 }
 
 fn place(at: Vector) -> String {

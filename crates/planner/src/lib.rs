@@ -264,6 +264,15 @@ impl<'a> Problem<'a> {
 /// collision regulations discourage.
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
+/// Ratio of the costs up to which a plan is kept that keeps more than another: a ship domain, a length off a
+/// ship, or a manoeuvre where a bend breaks no rule either. *J* is squared, so this is three times the
+/// distance (docs/rules.md).
+pub const MANY_TIMES: f64 = 10.0;
+
+/// Own lengths. A plan is far off its schedule where the root mean square of its space-time error is more, and
+/// is then compared with others by [`MANY_TIMES`].
+pub const FAR_OFF_LENGTHS: f64 = 20.0;
+
 /// A collision-free trajectory to the end of the desired path.
 #[derive(Debug, Clone)]
 pub struct Plan {

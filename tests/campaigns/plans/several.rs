@@ -30,22 +30,26 @@ struct Seen {
     milliseconds: f64,
 }
 
+/// The rules and monitors that a plan breaks toward the ships among its targets.
+pub fn broken(run: &Run) -> Vec<&'static str> {
+    let Some(plan) = run.planned.outcome.plan() else {
+        return Vec::new();
+    };
+    let own = &run.scenario.own_ship;
+    let ships = run.scenario.targets.iter().filter_map(|t| t.ship());
+    let along = |ship| EncounterSamples::along(&plan.trajectory, own, ship);
+    let samples: Vec<EncounterSamples> = ships.map(along).collect();
+    let reports = ComplianceReport::of_all(samples.iter(), Thresholds::standard());
+    reports.iter().flat_map(|report| report.broken()).collect()
+}
+
 fn seen(run: &Run) -> Seen {
     let plan = run.planned.outcome.plan();
-    let samples = plan.map(|plan| {
-        let own = &run.scenario.own_ship;
-        let ships = run.scenario.targets.iter().filter_map(|t| t.ship());
-        ships
-            .map(|ship| EncounterSamples::along(&plan.trajectory, own, ship))
-            .collect()
-    });
-    let samples: Vec<EncounterSamples> = samples.unwrap_or_default();
-    let reports = ComplianceReport::of_all(samples.iter(), Thresholds::standard());
     Seen {
         solved: plan.is_some() && run.relaxations.is_empty(),
         safe: run.evaluation.as_ref().is_some_and(|e| e.safe()),
         verified: run.evaluation.as_ref().is_none_or(|e| e.verified()),
-        broken: reports.iter().flat_map(|report| report.broken()).collect(),
+        broken: broken(run),
         cost: plan.map_or(f64::INFINITY, |plan| plan.cost),
         manoeuvres: run.planned.manoeuvres.len(),
         nodes: run.planned.stats.map_or(0, |stats| stats.expanded),
@@ -117,7 +121,8 @@ pub fn run(seeds: Seeds, which: &Which, rows: Option<&Path>, folder: Option<&Pat
     };
     println!("{} targets {how}, seeds {seeds:?}\n", which.targets);
     println!(
-        "| both judges | at least | unrelaxed | J 50/90 %, m² | manoeuvres 50/95 %/most | nodes 50/95 % | plan 50/99 %, ms |"
+        "| both judges | at least | unrelaxed | J 50/90 %, m² | manoeuvres 50/95 %/most | nodes 50/95 % | \
+         plan 50/99 %, ms |"
     );
     println!("|{}", " --- |".repeat(7));
     let number = |holds: &dyn Fn(&Seen) -> bool| all.iter().filter(|(_, s)| holds(s)).count();

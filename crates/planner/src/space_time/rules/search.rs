@@ -13,7 +13,6 @@ use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use crate::UnderWay;
 use crate::search::{Search, Stop};
 use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
 use crate::space_time::manoeuvre::motion::{pose_at, until};
@@ -26,6 +25,7 @@ use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
     FirstAlteration, LARGEST_TURN, LEAST_S, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
 };
+use crate::{FAR_OFF_LENGTHS, MANY_TIMES, UnderWay};
 use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN};
 use searoom_geometry::frame::{Side, wrap};
 
@@ -80,14 +80,6 @@ const LATE_PRICE: f64 = 4.0;
 
 /// Range in lengths within which a stand-on ship acts.
 const ACT_LENGTHS: f64 = 6.0;
-
-/// Ratio of the costs, by which manoeuvres are compared, up to which a length off a ship is kept. *J* is
-/// squared: three times the distance.
-const LENGTH_PRICE: f64 = 10.0;
-
-/// Own lengths of the root mean square of the space-time error above which a length off a ship is given up for
-/// that.
-const FAR_OFF_LENGTHS: f64 = 20.0;
 
 /// The numbers of a manoeuvre that no contact decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,8 +179,8 @@ impl Manoeuvres<'_, '_> {
 
     /// The manoeuvre with a length off all targets; where there is none, off those that own ship keeps clear
     /// of, or off none. One that keeps it off fewer is also taken where it costs a tenth
-    /// ([`Self::is_worth_a_length`]). Each with turns at the ordered speed, or else at half or less; where there is none, also with
-    /// stops. `find` looks for the manoeuvres of a level that cost less than so many m².
+    /// ([`Self::is_worth_a_length`]). Each is made with turns at the ordered speed, or else at half or less;
+    /// where there is none, also with stops. `find` looks for manoeuvres of a level that cost less than so many m².
     fn relaxed(&mut self, find: impl Fn(&Self, f64) -> Option<Manoeuvre>) -> Option<Manoeuvre> {
         let may_stop = self.problem().own.speeds.contains(&0.0);
         let stops: &[bool] = if may_stop { &[false, true] } else { &[false] };
@@ -218,7 +210,7 @@ impl Manoeuvres<'_, '_> {
             let below = best.as_ref().map_or(f64::INFINITY, |best| {
                 // what was sailed before is no part of the price
                 let since = best.whole.cost - sailed * best.whole.first.price();
-                sailed + since / LENGTH_PRICE
+                sailed + since / MANY_TIMES
             });
             let slows: &[bool] = match may_slow && best.is_none() {
                 true => &[false, true],
