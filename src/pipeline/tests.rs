@@ -598,7 +598,7 @@ fn a_thorough_search_notes_what_it_found_and_when() {
         run(Scenario {
             compliance: Compliance::Shape,
             search,
-            ..fault("rules-foreseen-role.toml")
+            ..fault("rules-role-on-the-plan.toml")
         })
     };
     let [quick, thorough] = [SearchKind::AStar, SearchKind::Thorough].map(of);

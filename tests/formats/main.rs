@@ -370,10 +370,8 @@ fn every_relaxation_level_answers_some_encounter() {
     assert_eq!(clear_of_hard_sets.level, RelaxationLevel::ReducedDomains);
     assert!(searched(&clear_of_hard_sets));
     // wide detours are not plans of the graph
-    let far = Assumed::default().with(Assumption::SafetyMargin, 500.0);
-    let situation = benchmark("dnv/traffic_situation_49.json").remove(0);
-    let situation = situation.scenario(&far).expect("no faults").scenario;
-    let around = answer(situation, Compliance::Shape);
+    let crowd = random_traffic(10, 27, Placement::Origin).expect("drawn");
+    let around = answer(crowd.scenario, Compliance::Shape);
     assert_eq!(around.level, RelaxationLevel::ReducedDomains);
     assert_eq!(
         around.planned.method(),

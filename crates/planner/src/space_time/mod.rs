@@ -10,10 +10,10 @@
 //! test wins. The graph's own best plan is one of the candidates.
 //!
 //! All steps share `manoeuvre`. Each directory uses only those before it in the order `manoeuvre`,
-//! `graph` and `grid`, `refinement`, `selection`, `fallback`.
+//! `graph` and `grid`, `refinement`, `rules`, `selection`, `fallback`.
 //!
 //! Where own ship has a duty by the collision regulations, `rules` plans instead: it searches a graph
-//! of manoeuvres by the rules.
+//! of manoeuvres by the rules. Tidy plans toward sets without roles are looked for in that graph, too.
 
 mod bound;
 mod context;
@@ -65,7 +65,6 @@ use searoom_sets::{LAND, SpaceTimeObstacle};
 use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::coarse_search::CoarseSearch;
-use selection::conflict_search;
 use similarity::Similarity;
 
 /// Searches a graph, and refines the result.
@@ -311,15 +310,10 @@ fn plan_with(
     if first_conflict.is_some() && clock.is_up() {
         return Planned::of(Outcome::Deadline(None));
     }
-    let mut conflicts: Vec<Conflict> = Vec::new();
-    if first_conflict.is_some() {
-        conflicts = by_obstacle(proxies)
-            .filter_map(|h| Conflict::of(h, &nominal_motion))
-            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
-            .collect();
-        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
-        conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
-    }
+    let conflicts = match first_conflict {
+        Some(_) => conflicts_of(problem, proxies, &nominal_motion),
+        None => Vec::new(),
+    };
     let targets = by_obstacle(proxies).count();
     let budget = SearchBudget::of(targets, others.is_some(), problem.search);
     let best = attempt(&context, budget, &nominal_motion, &conflicts, others, clock);
@@ -336,6 +330,17 @@ fn plan_with(
     }
 }
 
+/// Conflicts of a motion with sets and with land, by their beginning.
+fn conflicts_of(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> Vec<Conflict> {
+    let mut conflicts: Vec<Conflict> = by_obstacle(proxies)
+        .filter_map(|h| Conflict::of(h, motion))
+        .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, motion))
+        .collect();
+    conflicts.extend(land::conflicts(problem.land_obstacle, motion));
+    conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
+    conflicts
+}
+
 /// The cheapest candidate of a search within a budget.
 struct Attempt {
     plan: Option<Plan>,
@@ -345,7 +350,7 @@ struct Attempt {
     explored: ExploredGraph,
 }
 
-/// Searches the graph, and among several targets a grid and the ways of passing them. Refines what
+/// Searches the graph, and among several targets a grid. Refines what
 /// they find and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that
 /// are far apart one after another, unless `others` are asked for.
 fn attempt(
@@ -356,13 +361,22 @@ fn attempt(
     others: Option<&mut Vec<Vec<Segment>>>,
     clock: Clock,
 ) -> Attempt {
-    let mut selection = Selection::new(*context, budget);
+    let mut selection = Selection::new(*context, budget, conflicts);
     selection.others = others.is_some().then(Vec::new);
-    let several = budget.conflict_nodes > 0 && context.first_conflict(nominal_motion).is_some();
-    let (search, stop) = match several {
-        true => searched_among_several(context, budget, nominal_motion, &mut selection, clock),
-        false => searched_graph(context, budget, nominal_motion, clock),
+    let has_grid = budget.searches_grid && context.first_conflict(nominal_motion).is_some();
+    let search_grid = || {
+        let grid = CoarseSearch::new(*context, nominal_motion, clock)?;
+        let along = grid.along_grid(clock);
+        Some((grid, along))
     };
+    let search_graph = || searched_graph(context, budget, nominal_motion, clock);
+    let ((search, stop), grid) = match has_grid {
+        true => parallel::join(search_graph, search_grid),
+        false => (search_graph(), None),
+    };
+    if let Some((grid, along)) = grid {
+        selection.add_coarse_search(grid, along);
+    }
     if let Stop::Goal(goal) = stop {
         let path = node::path_to(&search, goal);
         let cost = search.nodes()[goal].cost;
@@ -391,37 +405,6 @@ fn attempt(
         stats: search.counts(),
         explored: node::explored(search),
     }
-}
-
-/// Searches the graph and a coarse grid, and at the same time the ways of passing the targets.
-fn searched_among_several<'a>(
-    context: &Context<'a>,
-    budget: &SearchBudget,
-    nominal_motion: &'a [Segment],
-    selection: &mut Selection<'a>,
-    clock: Clock,
-) -> (Search<State>, Stop) {
-    let search_grid = || {
-        let grid = CoarseSearch::new(*context, nominal_motion, clock)?;
-        let along = grid.along_grid(clock);
-        Some((grid, along))
-    };
-    let (most, steps) = (budget.conflict_nodes, conflict_search::STEPS);
-    let ((graph, grid), resolved) = parallel::join(
-        || {
-            let graph = searched_graph(context, budget, nominal_motion, clock);
-            (graph, search_grid())
-        },
-        || conflict_search::resolve(context, nominal_motion, most, steps, clock),
-    );
-    for (guess, motion) in resolved {
-        selection.add_initial_guess(guess);
-        selection.add_candidate(motion);
-    }
-    if let Some((grid, along)) = grid {
-        selection.add_coarse_search(grid, along);
-    }
-    graph
 }
 
 /// Searches the graph in the stages of the budget.

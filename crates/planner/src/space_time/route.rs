@@ -30,14 +30,14 @@ const SKIPPED_RADII: f64 = 4.0;
 const SHORTEST_M: f64 = 1e-3;
 
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
-const ALTERNATION_M: f64 = 400.0;
+const ALTERNATION_M: f64 = 130.0;
 
 /// Cycles of a faster and a slower part on one piece, about: with hundreds the refinement is slow.
 const MOST_ALTERNATIONS: f64 = 50.0;
 
 /// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
 /// mixed from thousands of parts.
-const LEAST_ALTERNATION_M: f64 = 50.0;
+const LEAST_ALTERNATION_M: f64 = 17.0;
 
 /// Seconds of the least change of speed where the rules ask for plain manoeuvres.
 pub(crate) const LEAST_CHANGE_S: f64 = 3.0;

@@ -23,17 +23,17 @@ use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_model::vessel::{Hull, OwnShip};
 use searoom_sets::{LandObstacle, Obstacle, SpaceTimeObstacle};
 
-/// Turning radius (metres) and desired speed (m/s) of a normalised problem.
-const NORMAL_TURN_M: f64 = 300.0;
+/// Turning radius (metres) and desired speed (m/s) of a normalised problem: those of a harbour vessel.
+const NORMAL_TURN_M: f64 = 100.0;
 const NORMAL_MPS: f64 = 5.0;
 
 /// Radii in metres at that size. Where the first set met has a radius at contact outside this
 /// interval, the set determines the size.
-const SMALLEST_M: f64 = 30.0;
-const LARGEST_M: f64 = 640.0;
+const SMALLEST_M: f64 = 10.0;
+const LARGEST_M: f64 = 210.0;
 
 /// Normalised radius of such sets, metres.
-const NORMAL_SET_M: f64 = 130.0;
+const NORMAL_SET_M: f64 = 43.0;
 
 /// Grids at that size are powers of two, so that grid numbers are exact. They are for positions of
 /// sets (0.06 mm), waypoints, on which plans must end, velocities (m/s), and times (s).
@@ -59,7 +59,7 @@ const DIGITS: i32 = 40;
 const LARGEST_ON_GRID: f64 = 1e7;
 
 /// Metres at that size. Sets with less room around their centre are not rounded.
-const LEAST_ROOM_M: f64 = 1.0;
+const LEAST_ROOM_M: f64 = 0.33;
 
 /// The size by a set is a power of this times the size by the turning radius.
 const STEP: f64 = std::f64::consts::SQRT_2;

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use crate::Problem;
 use crate::clock::Clock;
 use crate::space_time::context::Context;
-use crate::space_time::manoeuvre::conflict::Conflict;
+use crate::space_time::manoeuvre::conflict::{Conflict, far_apart};
 use crate::space_time::manoeuvre::motion::{pose_at, shifted, until as motion_until};
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, first_contact, within_reach};
@@ -20,20 +20,16 @@ use searoom_model::trajectory::Segment;
 use searoom_model::vessel::OwnShip;
 use searoom_sets::Obstacle;
 
-/// Seconds. Conflicts that all begin within this time are left to one manoeuvre.
-const APART_S: f64 = 120.0;
-
 /// Largest lead of a departure before a conflict, seconds.
-const LEAD_S: f64 = 200.0;
+const LEAD_S: f64 = 67.0;
 
 /// Seconds after the beginning of a conflict until which its plan is clear of all sets. Sets that
 /// are met later are the next conflict.
-const CLEAR_S: f64 = 300.0;
+const CLEAR_S: f64 = 100.0;
 
 /// True when conflicts, ordered by start, do not all begin together.
 pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
-    let ends = conflicts.first().zip(conflicts.last());
-    ends.is_some_and(|(first, last)| last.from > first.from + APART_S)
+    far_apart(conflicts) > 1
 }
 
 /// Motion to the last waypoint whose conflicts before `resolved_until` are resolved.

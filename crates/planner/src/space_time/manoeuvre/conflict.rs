@@ -5,6 +5,9 @@ use crate::space_time::proxy::Proxy;
 use searoom_geometry::frame::{Side, to_port};
 use searoom_model::trajectory::Segment;
 
+/// Seconds. Conflicts that all begin within this time are left to one manoeuvre.
+const APART_S: f64 = 120.0;
+
 /// Samples of a conflict's width.
 const CONFLICT_SAMPLES: usize = 24;
 
@@ -88,4 +91,18 @@ impl Conflict {
         conflict.through = sailed_between(nominal_motion, conflict.from, conflict.to);
         Some(conflict)
     }
+}
+
+/// Number of conflicts, ordered by start, that are far apart; those that begin together are one. At least 1.
+pub(crate) fn far_apart(conflicts: &[Conflict]) -> usize {
+    let mut first = f64::NEG_INFINITY;
+    let begin = conflicts.iter().map(|conflict| conflict.from);
+    let apart = begin.filter(|from| {
+        let is_apart = *from > first + APART_S;
+        if is_apart {
+            first = *from;
+        }
+        is_apart
+    });
+    apart.count().max(1)
 }

@@ -3,7 +3,6 @@
 
 pub(crate) mod chain;
 pub(crate) mod conflict;
-pub(crate) mod corner;
 pub(crate) mod ending;
 pub(crate) mod interceptor;
 pub(crate) mod motion;

@@ -7,7 +7,7 @@
 //! Route ─► Out at half speed or less ──► along the route again ──► End
 //! ```
 //!
-//! The cost is J by [`FirstAlteration::price`]. The judge decides on an end when it leaves the queue, so
+//! The cost is J by [`Manoeuvres::price`]. The judge decides on an end when it leaves the queue, so
 //! the first goal is the cheapest lawful manoeuvre of the graph. A wider parallel course is a successor of
 //! the next narrower one where it is sure to cost more ([`Manoeuvres::leads_off`]).
 
@@ -172,7 +172,7 @@ impl Manoeuvres<'_, '_> {
         };
         let (pose, time) = partial.end(self.problem().own.pose);
         let free = self.bound.cost_to_go(&pose, time);
-        free.max(held) * partial.first.price()
+        free.max(held) * self.price(partial.first)
     }
 
     /// Lower bound of the space-time error from the line after a turn to the end, m²: until every target

@@ -2,7 +2,7 @@
 //! before it may act, and not after its last escape.
 
 use crate::Problem;
-use crate::space_time::rules::manoeuvre::{LEAST_S, Manoeuvres};
+use crate::space_time::rules::manoeuvre::Manoeuvres;
 use searoom_colregs::{Encountered, MayAct, Role, SMALL_TURN};
 use searoom_geometry::frame::{heading_of, wrap};
 use searoom_geometry::tolerance;
@@ -37,7 +37,7 @@ impl Manoeuvres<'_, '_> {
 
     /// A time that leaves no short segment before it.
     pub(super) fn tidy_time(&self, time: f64) -> f64 {
-        if time < self.from + LEAST_S {
+        if time < self.from + self.family.least {
             self.from
         } else {
             time

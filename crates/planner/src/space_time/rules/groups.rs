@@ -10,7 +10,7 @@ use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::can_hold_speed;
-use crate::space_time::rules::manoeuvre::{Manoeuvre, Manoeuvres};
+use crate::space_time::rules::manoeuvre::{Family, Manoeuvre, Manoeuvres};
 use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::{Duty, Encountered};
 use searoom_model::trajectory::Segment;
@@ -349,7 +349,7 @@ impl<'a> Sequences<'_, 'a> {
             true => problem.error_to_end(&sailed),
             false => problem.error_of(&sailed),
         };
-        error * whole.first.price()
+        error * found.price
     }
 }
 
@@ -374,7 +374,8 @@ fn resolved(
         speeds: ManoeuvreSpeeds::at(&problem, contact),
         ..*context
     };
-    let mut manoeuvres = Manoeuvres::new(&context, motion, all, effort);
+    let family = Family::by_the_rules(group);
+    let mut manoeuvres = Manoeuvres::new(&context, motion, all, family, effort);
     if let Some(begun) = under_way {
         let gone_on = manoeuvres.going_on(&begun);
         if begun.is_returning {

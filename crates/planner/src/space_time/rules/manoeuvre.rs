@@ -9,6 +9,8 @@
 //! A [`Partial`] manoeuvre is built part by part: each part is the shortest one whose line is clear
 //! ([`hug`](super::hug)), so only the departure, the course, and the way back are chosen.
 
+use std::f64::consts::PI;
+
 use crate::space_time::bound::Heuristic;
 use crate::space_time::context::Context;
 use crate::space_time::land;
@@ -21,8 +23,8 @@ use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::{after_nearest, complies};
 use crate::space_time::rules::hug::{Held, HeldTurn, least_clear};
-use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
-use searoom_colregs::APPARENT_TIME;
+use crate::{Escape, PlannedManoeuvre, Problem, Tidiness, UnderWay};
+use searoom_colregs::{APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered};
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
@@ -31,20 +33,34 @@ use searoom_sets::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 /// Seconds in which a harbour vessel sails its turning radius.
 const NORMAL_TURN_S: f64 = 20.0;
 
+/// First turns by the rules, as multiples of the least readily apparent turn of 30°.
+const TURNS: [f64; 6] = [1.0, 1.5, 2.2, 3.0, 4.0, 5.0];
+
+/// First turns by the rules from a given departure, as multiples of that turn: every 15°.
+const ALL_TURNS: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5];
+
+/// First turns without roles, as multiples of 30°.
+const PLAIN_TURNS: [f64; 4] = [0.3, 0.8, 1.5, 3.0];
+
 /// Largest first turn, radians: with a little more own ship would turn about.
 pub(super) const LARGEST_TURN: f64 = 3.0;
 
 /// Largest turn toward the last waypoint, radians: with more own ship would circle.
 const LARGEST_LAST: f64 = 2.5;
 
-/// Seconds of the least segment.
-pub(super) const LEAST_S: f64 = 3.0;
+/// Seconds of the least segment of a manoeuvre by the rules.
+const LEAST_S: f64 = 3.0;
+
+/// Greatest lower speed of a manoeuvre without roles, as a fraction of the ordered one.
+const PLAIN_SLOW: f64 = 0.98;
+
+/// Least turn of a manoeuvre without roles, radians.
+const PLAIN_TURN: f64 = PI / 60.0;
 
 /// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
 const SPEED_PRICE: f64 = 2.0;
 
-/// Ratio of the costs above which own ship is on time again by a change of speed for less than
-/// [`LEAST_S`].
+/// Ratio of the costs above which own ship is on time again by a change of speed that is too short.
 const SHORT_PRICE: f64 = 2.0;
 
 /// The first alteration of a manoeuvre.
@@ -57,14 +73,6 @@ pub(super) enum FirstAlteration {
 }
 
 impl FirstAlteration {
-    /// Factor of the cost.
-    pub(super) fn price(&self) -> f64 {
-        match self {
-            Self::Slow { .. } => SPEED_PRICE,
-            Self::Turn { .. } => 1.0,
-        }
-    }
-
     pub(super) fn speed(&self) -> f64 {
         let (Self::Turn { speed, .. } | Self::Slow { speed }) = *self;
         speed
@@ -162,6 +170,8 @@ pub(super) struct Manoeuvre {
     /// The manoeuvre that it goes on with.
     pub begun: Option<UnderWay>,
     pub whole: Partial,
+    /// Factor of its cost.
+    pub price: f64,
 }
 
 impl Manoeuvre {
@@ -199,6 +209,54 @@ impl Manoeuvre {
     }
 }
 
+/// What a manoeuvre is made of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Family {
+    /// Least first turn, radians.
+    pub least_turn: f64,
+    /// First turns, where there are several departures, and where there is one, as multiples of 30°.
+    pub turns: [&'static [f64]; 2],
+    /// Greatest of the lower speeds, as a fraction of the ordered one.
+    pub most_slow: f64,
+    /// Least time at a lower speed, seconds.
+    pub least_slow: f64,
+    /// Least duration of a segment, seconds.
+    pub least: f64,
+    /// Ratio of the costs above which less speed replaces a turn.
+    pub speed_price: f64,
+    /// True where own ship may also speed up.
+    pub may_speed_up: bool,
+}
+
+impl Family {
+    /// By the rules toward these targets: an alteration is readily apparent (Rule 8).
+    pub(super) fn by_the_rules(encountered: &[Encountered]) -> Self {
+        let mut encountered = encountered.iter();
+        Self {
+            least_turn: APPARENT_TURN,
+            turns: [&TURNS, &ALL_TURNS],
+            most_slow: APPARENT_SPEED,
+            least_slow: APPARENT_TIME,
+            least: LEAST_S,
+            speed_price: SPEED_PRICE,
+            may_speed_up: encountered.any(|e| e.role.duties().may_speed_up),
+        }
+    }
+
+    /// Without roles: any turn and any speed.
+    pub(super) fn without_roles(tidy: &Tidiness) -> Self {
+        Self {
+            least_turn: PLAIN_TURN,
+            turns: [&PLAIN_TURNS, &PLAIN_TURNS],
+            most_slow: PLAIN_SLOW,
+            least_slow: tidy.speed_time,
+            least: tidy.segment_time,
+            speed_price: 1.0,
+            may_speed_up: true,
+        }
+    }
+}
+
 /// The manoeuvres of one problem.
 pub(super) struct Manoeuvres<'s, 'a> {
     pub context: &'s Context<'a>,
@@ -209,6 +267,7 @@ pub(super) struct Manoeuvres<'s, 'a> {
     /// ship is on the route again.
     to_the_end: Vec<bool>,
     pub passing: Vec<Passing<'s>>,
+    pub family: Family,
     /// True for a target that is not passed nearer than a length, Rule 8(d).
     pub keeps_a_length: fn(&Passing) -> bool,
     /// True where turns are made at half speed or less.
@@ -232,6 +291,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         context: &'s Context<'a>,
         (nominal_motion, from): (&'s [Segment], f64),
         all: bool,
+        family: Family,
         effort: Effort<'s>,
     ) -> Self {
         let problem = context.problem;
@@ -248,6 +308,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             from,
             to_the_end: obstacles.map(|o| all || has_target(o)).collect(),
             passing: passing.collect(),
+            family,
             keeps_a_length: |_| true,
             slows_to_turn: false,
             stops: false,
@@ -261,6 +322,14 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     pub(super) fn problem(&self) -> &'s Problem<'s> {
         self.context.problem
+    }
+
+    /// Factor of the cost.
+    pub(super) fn price(&self, first: FirstAlteration) -> f64 {
+        match first {
+            FirstAlteration::Slow { .. } => self.family.speed_price,
+            FirstAlteration::Turn { .. } => 1.0,
+        }
     }
 
     /// A motion on the route until `leave`, and the first alteration there. `None` where the turn only
@@ -283,7 +352,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             }
             motion.extend(chain.segments);
         }
-        let cost = self.problem().error_of(&motion) * first.price();
+        let cost = self.problem().error_of(&motion) * self.price(first);
         Some(Partial {
             phase: Phase::Out,
             leave,
@@ -302,7 +371,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let speed = out.first.speed();
         let passed = self.guard(pose, speed, time)?;
         // a straight part between two turns, also where the target is passed at once
-        let line = Segment::straight(pose, time, (passed - time).max(LEAST_S), speed);
+        let line = Segment::straight(pose, time, (passed - time).max(self.family.least), speed);
         if !self.is_clear(&[line]) {
             return None;
         }
@@ -334,7 +403,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             radius: own.turning_radius,
         };
         // on a course that is sailed already there is no least time
-        let least = if begun.is_some() { 0.0 } else { LEAST_S };
+        let least = if begun.is_some() {
+            0.0
+        } else {
+            self.family.least
+        };
         let narrower = than.and_then(|than| than.motion.get(out.motion.len()));
         let narrower = narrower
             .filter(|line| !line.is_arc())
@@ -347,7 +420,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             chain.arc(back * own.turning_radius);
             let (pose, time) = (chain.pose, chain.time);
             let passed = self.passed(pose.position, pose.ahead() * speed, time)?;
-            let on = |until: f64| Segment::straight(pose, time, (until - time).max(LEAST_S), speed);
+            let on = |until: f64| {
+                Segment::straight(pose, time, (until - time).max(self.family.least), speed)
+            };
             if !self.is_clear(&[on(passed + spare)]) || !self.is_clear(&chain.segments) {
                 return None;
             }
@@ -384,7 +459,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let mut partial = out.clone();
         partial.phase = Phase::Passed;
         partial.outward = outward;
-        partial.cost += self.problem().error_of(added) * out.first.price();
+        partial.cost += self.problem().error_of(added) * self.price(out.first);
         partial.motion.extend_from_slice(added);
         let in_time = partial.motion.last()?.end_time() <= self.problem().horizon;
         in_time.then_some(partial)
@@ -531,7 +606,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
     ) -> Option<Partial> {
         let problem = self.problem();
         // the route has segments of its own, as short as its corners are
-        let tidy = |s: &Segment| s.start_time >= joined || s.duration >= LEAST_S;
+        let tidy = |s: &Segment| s.start_time >= joined || s.duration >= self.family.least;
         let in_time = back.last()?.end_time() <= problem.horizon;
         let joins = back.partition_point(|s| s.start_time < joined);
         let clear = in_time
@@ -566,8 +641,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let along = self.along_at(leave);
         let (on, _) = route.pose_at(along);
         let passed = self.passed(on.position, on.ahead() * speed, leave)?;
-        let least = APPARENT_TIME + begun.map_or(0.0, |begun| begun.begins);
-        let hold = (passed - leave).max(least).max(LEAST_S);
+        let least = self.family.least_slow + begun.map_or(0.0, |begun| begun.begins);
+        let hold = (passed - leave).max(least).max(self.family.least);
         let held = HeldTurn {
             pose: on,
             time: leave,
@@ -597,7 +672,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
                 .is_some_and(|s| s.end_time() <= problem.horizon);
             let tidy = motion[out.before..slow]
                 .iter()
-                .all(|s| s.duration >= LEAST_S);
+                .all(|s| s.duration >= self.family.least);
             let clear = in_time
                 && (tidy || begun.is_some())
                 && self.is_clear(&motion[out.before..slow])
@@ -625,7 +700,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let (motion, joined) = (&whole.motion, whole.joined);
         let on_route = motion.partition_point(|s| s.start_time < joined - tolerance::TIME_S);
         let is_short = match &motion[on_route..] {
-            [now, next, ..] => now.duration < LEAST_S && now.speed != next.speed,
+            [now, next, ..] => now.duration < self.family.least && now.speed != next.speed,
             _ => false,
         };
         let short_price = if is_short { SHORT_PRICE } else { 1.0 };
@@ -634,7 +709,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     /// The cost without the price of a short change of speed.
     fn plain_cost(&self, whole: &Partial) -> f64 {
-        self.problem().error_to_end(&whole.motion) * whole.first.price()
+        self.problem().error_to_end(&whole.motion) * self.price(whole.first)
     }
 
     /// Pose at which the route is left.

@@ -1,5 +1,6 @@
 //! Manoeuvres by the collision regulations: what one is, when it begins, which one is taken,
-//! several one after another, and the further requirements on a motion.
+//! several one after another, and the further requirements on a motion. The same graph has tidy
+//! manoeuvres without roles.
 
 pub(crate) mod automaton;
 mod bodies;
@@ -8,4 +9,4 @@ mod departure;
 pub(crate) mod groups;
 mod hug;
 mod manoeuvre;
-mod search;
+pub(crate) mod search;

@@ -14,26 +14,22 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
 use crate::search::{Search, Stop};
+use crate::space_time::context::Context;
 use crate::space_time::manoeuvre::interceptor::{Interceptor, Limits};
 use crate::space_time::manoeuvre::motion::{pose_at, until};
 use crate::space_time::manoeuvre::speeds::{ManoeuvreSpeeds, due_leg};
-use crate::space_time::rules::automaton::{Graph, outward, ways_back, wider};
+use crate::space_time::rules::automaton::{Effort, Graph, outward, ways_back, wider};
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
 use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
-    FirstAlteration, LARGEST_TURN, LEAST_S, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
+    Family, FirstAlteration, LARGEST_TURN, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
 };
-use crate::{FAR_OFF_LENGTHS, MANY_TIMES, UnderWay};
-use searoom_colregs::{APPARENT_SPEED, APPARENT_TURN};
+use crate::{FAR_OFF_LENGTHS, MANY_TIMES, Problem, Tidiness, UnderWay};
+use searoom_colregs::APPARENT_TURN;
 use searoom_geometry::frame::{Side, wrap};
-
-/// Turns, as multiples of the least readily apparent turn of 30°.
-const TURNS: [f64; 6] = [1.0, 1.5, 2.2, 3.0, 4.0, 5.0];
-
-/// Turns from a given departure, as multiples of that turn: every 15°.
-const ALL_TURNS: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5];
+use searoom_model::trajectory::Segment;
 
 /// Angles between the return line and the route, radians.
 const ANGLES: [f64; 3] = [0.35, 0.65, 1.05];
@@ -102,6 +98,30 @@ impl Numbers {
 }
 
 const FROM_NONE: fn(&Passing) -> bool = |_| false;
+
+/// The cheapest manoeuvre toward obstacles without roles whose segments are not short ([`Family`]). It departs
+/// before the nominal motion meets one after `contact` seconds. About a millisecond among a few sets.
+pub(crate) fn without_roles(
+    context: &Context,
+    nominal_motion: &[Segment],
+    contact: f64,
+    tidy: &Tidiness,
+    effort: Effort,
+) -> Option<Vec<Segment>> {
+    let problem = Problem {
+        encountered: &[],
+        under_way: None,
+        ..*context.problem
+    };
+    let context = Context {
+        problem: &problem,
+        ..*context
+    };
+    let (motion, family) = ((nominal_motion, 0.0), Family::without_roles(tidy));
+    let manoeuvres = Manoeuvres::new(&context, motion, true, family, effort);
+    let found = manoeuvres.best(0.0..=contact.max(0.0), f64::INFINITY);
+    found.map(|found| found.whole.motion)
+}
 
 impl Manoeuvres<'_, '_> {
     /// The cheapest end of the manoeuvre that is under way.
@@ -209,7 +229,7 @@ impl Manoeuvres<'_, '_> {
             tried = number;
             let below = best.as_ref().map_or(f64::INFINITY, |best| {
                 // what was sailed before is no part of the price
-                let since = best.whole.cost - sailed * best.whole.first.price();
+                let since = best.whole.cost - sailed * best.price;
                 sailed + since / MANY_TIMES
             });
             let slows: &[bool] = match may_slow && best.is_none() {
@@ -255,7 +275,7 @@ impl Manoeuvres<'_, '_> {
         let before = self.problem().error_of(&until(self.nominal_motion, may));
         let early = self.best(may..=may, f64::INFINITY);
         let below = early.map_or(f64::INFINITY, |early| {
-            let before = before * early.whole.first.price();
+            let before = before * early.price;
             before + LATE_PRICE * (early.whole.cost - before)
         });
         self.most_turn = most_turn;
@@ -359,7 +379,11 @@ impl Manoeuvres<'_, '_> {
             }
         }
         self.effort.explored.borrow_mut().add(self, search);
-        best.map(|(_, whole)| Manoeuvre { begun, whole })
+        best.map(|(_, whole)| Manoeuvre {
+            begun,
+            price: self.price(whole.first),
+            whole,
+        })
     }
 
     /// Number of rules that the judges find broken by a manoeuvre that departs before a risk has begun:
@@ -496,12 +520,12 @@ impl Manoeuvres<'_, '_> {
     ) {
         let problem = self.problem();
         let duty = problem.duty();
-        // half of the ordered speed, also where the ship cannot keep just that
-        let most = APPARENT_SPEED * ordered.wanted.min(ordered.normal) * (1.0 + 1e-9);
+        // a fraction of the ordered speed, also where the ship cannot keep just that
+        let most = self.family.most_slow * ordered.wanted.min(ordered.normal) * (1.0 + 1e-9);
         let slow = problem.own.speeds.iter().copied();
         let slow = slow.filter(|u| duty.may_slow && *u <= most && (*u > 0.0 || self.stops));
-        let may_speed_up = (problem.encountered.iter()).any(|e| e.role.duties().may_speed_up);
-        let faster = (may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
+        let faster =
+            (self.family.may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
         let speeds: Vec<f64> = match self.slows_to_turn {
             true => slow.clone().filter(|u| *u > 0.0).collect(),
             false => std::iter::once(ordered.normal).chain(faster).collect(),
@@ -513,9 +537,10 @@ impl Manoeuvres<'_, '_> {
             .collect();
         for &speed in &speeds {
             for side in &sides {
-                let turns: &[f64] = match with_tangents && times.len() == 1 {
-                    true => &ALL_TURNS,
-                    false => &TURNS,
+                let [of_several, of_one] = self.family.turns;
+                let turns = match with_tangents && times.len() == 1 {
+                    true => of_one,
+                    false => of_several,
                 };
                 let least = self.least_turn(speed);
                 let turns = turns.iter().map(|turn| (turn * APPARENT_TURN).max(least));
@@ -523,6 +548,9 @@ impl Manoeuvres<'_, '_> {
                 let mut turns: Vec<f64> = turns.map(|turn| turn * side.turn_sign()).collect();
                 turns.dedup();
                 for &time in times {
+                    if self.effort.clock.is_up() {
+                        return;
+                    }
                     let tangents = match with_tangents {
                         true => self.tangents(time, speed, *side),
                         false => Vec::new(),
@@ -545,9 +573,12 @@ impl Manoeuvres<'_, '_> {
         }
     }
 
-    /// The least turn: readily apparent, and of [`LEAST_S`] seconds, radians.
+    /// The least turn: of the family, and long enough for a segment, radians.
     fn least_turn(&self, speed: f64) -> f64 {
-        APPARENT_TURN.max(SPARE * LEAST_S * speed / self.problem().own.turning_radius)
+        let Family {
+            least_turn, least, ..
+        } = self.family;
+        least_turn.max(SPARE * least * speed / self.problem().own.turning_radius)
     }
 
     /// Angles of the returns, radians.
@@ -557,10 +588,10 @@ impl Manoeuvres<'_, '_> {
         angles
     }
 
-    /// The least angle of a return, whose last turn takes [`LEAST_S`] seconds, radians.
+    /// The least angle of a return, whose last turn is long enough for a segment, radians.
     fn least_angle(&self) -> f64 {
         let own = self.problem().own;
-        SPARE * LEAST_S * own.max_speed() / own.turning_radius
+        SPARE * self.family.least * own.max_speed() / own.turning_radius
     }
 
     /// The turns to a side from a departure, to lines that touch a set on its far side, radians.

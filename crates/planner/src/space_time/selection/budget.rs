@@ -20,9 +20,8 @@ pub(crate) struct SearchBudget {
     pub leader_margin: f64,
     /// True where the best of them may get a second insertion.
     pub insert_twice: bool,
-    /// Largest number of nodes of the conflict search, half as many for a second one where nothing
-    /// is clear; 0 for neither these nor the grid.
-    pub conflict_nodes: usize,
+    /// True where a coarse grid is searched, too.
+    pub searches_grid: bool,
     /// Where conflicts are resolved one after another: largest number of motions that have no way
     /// past their next conflict.
     pub dead_ends: usize,
@@ -39,31 +38,30 @@ impl SearchBudget {
         leaders: 8,
         leader_margin: 0.3,
         insert_twice: true,
-        conflict_nodes: 0,
+        searches_grid: false,
         dead_ends: 3,
         more_conflicts: 3,
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
-    /// conflict are less often clear of all; the coarse and the conflict search find what they
-    /// miss. A graph plan that is not optimal is usually as good an initial guess. The first stage
-    /// is short; the later ones weight the heuristic less.
+    /// conflict are less often clear of all; the coarse search finds what they miss. A graph plan that is
+    /// not optimal is usually as good an initial guess. The first stage is short; the later ones weight the
+    /// heuristic less.
     pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
-        conflict_nodes: 64,
+        searches_grid: true,
         ..Self::ONE_TARGET
     };
 
     /// Budget for some of several targets, which are resolved one after another.
     pub(crate) const PART_OF_SEVERAL: Self = Self {
-        conflict_nodes: 0,
+        searches_grid: false,
         ..Self::SEVERAL_TARGETS
     };
 
     /// Budget of a thorough search among several targets.
     pub(crate) const THOROUGH: Self = Self {
         stages: &[(2_000, 1.0), (4_000, 1.5)],
-        conflict_nodes: 256,
         dead_ends: 4,
         more_conflicts: 4,
         ..Self::SEVERAL_TARGETS

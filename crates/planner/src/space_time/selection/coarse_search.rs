@@ -8,9 +8,8 @@ use crate::clock::Clock;
 use crate::space_time::context::Context;
 use crate::space_time::grid::cost_to_go::CostToGoGrid;
 use crate::space_time::grid::hybrid_a_star;
-use crate::space_time::manoeuvre::corner::Corner;
 use crate::space_time::refinement::Refinement;
-use crate::space_time::selection::conflict_search::{MAX_CORNERS, SHORTEST_M, through};
+use crate::space_time::selection::corners::{Corner, Corners, MAX_CORNERS, SHORTEST_M};
 use crate::space_time::selection::warm_start::initial_guess_from;
 use crate::{Problem, SearchKind};
 use searoom_geometry::frame::Vector;
@@ -152,7 +151,13 @@ impl<'a> CoarseSearch<'a> {
         }
         ways.into_iter()
             .filter_map(|(corners, to_goal)| {
-                through(&self.context, self.nominal_motion, corners, to_goal)
+                let nominal_motion = self.nominal_motion;
+                let through = Corners {
+                    nominal_motion,
+                    corners,
+                    to_goal,
+                };
+                through.refinement(&self.context)
             })
             .collect()
     }

@@ -3,7 +3,7 @@
 
 pub(crate) mod budget;
 pub(crate) mod coarse_search;
-pub(crate) mod conflict_search;
+mod corners;
 pub(crate) mod initial_guess;
 mod tidy;
 pub(crate) mod warm_start;
@@ -112,14 +112,18 @@ pub(crate) struct Selection<'a> {
 }
 
 impl<'a> Selection<'a> {
-    pub(crate) fn new(context: Context<'a>, search_budget: &'a SearchBudget) -> Self {
+    pub(crate) fn new(
+        context: Context<'a>,
+        search_budget: &'a SearchBudget,
+        conflicts: &[Conflict],
+    ) -> Self {
         Self {
             context,
             search_budget,
             guesses: Vec::new(),
             best: None,
             graph_cost: None,
-            prices: Prices::of(context.problem, context.route),
+            prices: Prices::of(context.problem, context.route, conflicts),
             coarse_search: None,
             along_grid: Vec::new(),
             others: None,
@@ -146,9 +150,8 @@ impl<'a> Selection<'a> {
     }
 
     /// Refines the manoeuvres added and the predefined ones around the conflicts of the nominal
-    /// motion. Among several targets another conflict search follows where nothing is clear, with
-    /// more steps and fewer nodes, and a hybrid A* for a cheaper motion. True when the deadline was
-    /// reached.
+    /// motion. Among several targets a hybrid A* follows for a cheaper motion. True when the deadline
+    /// was reached.
     pub(crate) fn refine(
         &mut self,
         nominal_motion: &[Segment],
@@ -220,15 +223,6 @@ impl<'a> Selection<'a> {
             }
         });
         running.append(&mut self.along_grid);
-        let most = self.search_budget.conflict_nodes;
-        if most > 0 && !self.least(&running).is_finite() {
-            let (most, steps) = (most / 2, conflict_search::MORE_STEPS);
-            let resolved = conflict_search::resolve(&context, nominal_motion, most, steps, clock);
-            for (guess, motion) in resolved {
-                running.extend(Refinement::fitting(&context, guess));
-                self.add_candidate(motion);
-            }
-        }
         let (grid, least) = (self.coarse_search.take(), self.least(&running));
         if let Some((motions, along)) = grid.map(|g| g.along_hybrid(least, clock)) {
             for motion in motions {
@@ -237,7 +231,13 @@ impl<'a> Selection<'a> {
             running.extend(along);
         }
         if let Some((tidy, guesses)) = tidy {
-            self.add_tidy(&tidy, &running, &guesses, clock);
+            self.add_tidy(
+                &tidy,
+                (nominal_motion, conflicts),
+                &running,
+                &guesses,
+                clock,
+            );
         } else {
             let pruned = self.insert_and_prune(&mut running, clock);
             self.collect(pruned.iter().chain(ranked(&running)));
@@ -288,9 +288,8 @@ impl<'a> Selection<'a> {
             running.extend(again);
         }
         if self.search_budget.insert_twice && gained > MIN_INSERTION_GAIN {
-            let again = best
-                .as_ref()
-                .and_then(|s| self.with_insertions(s, then, clock));
+            let guess = best.as_ref();
+            let again = guess.and_then(|guess| self.with_insertions(guess, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
             running.extend(again);
         }

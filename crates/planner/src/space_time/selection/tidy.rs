@@ -1,20 +1,27 @@
 //! Tidy manoeuvres: few turns, few changes of speed, no short segments.
 //!
-//! A refined manoeuvre is simplified: one speed, no short segment variables, few turns. It is
+//! Where the conflicts are near together, the graph of manoeuvres by the rules has one, without roles.
+//! Besides, a refined manoeuvre is simplified: one speed, no short segment variables, few turns. It is
 //! refined again with a least time for each segment variable. Candidates are ranked by their cost
 //! with the [`Prices`] of their alterations. So the manoeuvre as it was wins where the simpler one
 //! is too dear or not clear.
 
+use std::cell::RefCell;
+
 use super::{Selection, leaders, refined};
 use crate::clock::Clock;
 use crate::space_time::context::Context;
+use crate::space_time::manoeuvre::conflict::{Conflict, far_apart};
 use crate::space_time::manoeuvre::ending::Ending;
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::refinement::quadratic::MAX_VARIABLES;
 use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::refinement::{InitialGuess, Refinement};
 use crate::space_time::route::Route;
-use crate::{Problem, Tidiness};
+use crate::space_time::rules::automaton::Effort;
+use crate::space_time::rules::search::without_roles;
+use crate::{AGAINST_THE_RULES, Problem, Tidiness};
+use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;
 
@@ -28,7 +35,7 @@ const EXCESS_PRICE: f64 = 6.0;
 const MOST_EXCESS: usize = 2;
 
 /// Changes of speed and turns of a tidy plan, at most.
-const MOST_SPEED_CHANGES: usize = 2;
+const MOST_SPEED_CHANGES: usize = 3;
 const MOST_TURNS: usize = 4;
 
 /// Least change of speed as a fraction of own speed, and least turn in radians (2°).
@@ -43,8 +50,8 @@ const DROPPED: f64 = 0.5;
 const LEADERS: usize = 2;
 const LEADER_MARGIN: f64 = 0.5;
 
-/// Priced cost of a tidy manoeuvre over that of a refinement, below which it is not simplified: six
-/// alterations, and a little.
+/// Priced cost of a tidy manoeuvre over that of a refinement, below which it is not simplified: that of
+/// as many alterations as a tidy plan has.
 const ENOUGH: f64 = 1.35;
 
 /// Steps of a refinement after simplifying.
@@ -56,13 +63,15 @@ pub(super) struct Prices {
     /// `None` where tidiness is not asked for.
     tidy: Option<Tidiness>,
     own_speed: f64,
+    /// Manoeuvres that a plan is expected to have: conflicts that are far apart have one each.
+    manoeuvres: usize,
     /// Alterations of the nominal motion: corners, legs of different speeds, returns to schedule;
     /// but only those short times that own ship cannot avoid.
     nominal: Alterations,
 }
 
 impl Prices {
-    pub(super) fn of(problem: &Problem, route: &Route) -> Self {
+    pub(super) fn of(problem: &Problem, route: &Route, conflicts: &[Conflict]) -> Self {
         let (tidy, own_speed) = (problem.tidy, problem.own.speed);
         let nominal = tidy.map(|tidy| {
             let of = |route: &Route| Alterations::of(own_speed, &route.follow(0.0, 0.0), &tidy);
@@ -74,6 +83,7 @@ impl Prices {
         Self {
             tidy,
             own_speed,
+            manoeuvres: far_apart(conflicts),
             nominal: nominal.unwrap_or_default(),
         }
     }
@@ -87,7 +97,7 @@ impl Prices {
         let found = Alterations::of(self.own_speed, motion, &tidy);
         let number = found.speed_changes + found.turns;
         let excess = self.excess(&found).min(MOST_EXCESS);
-        1.0 + PRICE * number as f64 + EXCESS_PRICE * excess as f64
+        1.0 + PRICE * number as f64 / self.manoeuvres as f64 + EXCESS_PRICE * excess as f64
     }
 
     /// True for a motion with no more alterations than a tidy plan has, and without short times.
@@ -96,12 +106,18 @@ impl Prices {
         self.tidy.is_none_or(|tidy| self.excess(&found(tidy)) == 0)
     }
 
+    /// True where a plan needs several manoeuvres one after another.
+    fn is_for_several(&self) -> bool {
+        self.manoeuvres > 1
+    }
+
     /// Number of alterations too many and of times too short, beyond those of the nominal motion.
     fn excess(&self, found: &Alterations) -> usize {
         let nominal = &self.nominal;
-        let speed_changes = MOST_SPEED_CHANGES + nominal.speed_changes;
+        let speed_changes = MOST_SPEED_CHANGES * self.manoeuvres + nominal.speed_changes;
+        let turns = MOST_TURNS * self.manoeuvres + nominal.turns;
         found.speed_changes.saturating_sub(speed_changes)
-            + found.turns.saturating_sub(MOST_TURNS + nominal.turns)
+            + found.turns.saturating_sub(turns)
             + found.short.saturating_sub(nominal.short)
     }
 }
@@ -141,12 +157,13 @@ impl Alterations {
 }
 
 impl Selection<'_> {
-    /// Adds the best clear candidate of the refinements and of tidy ones. Tidy ones are the best
-    /// refinements simplified, or, where these are not tidy or too dear, the simplified initial
-    /// guesses. Each candidate makes good the time it has lost, or does not.
+    /// Adds the best clear candidate of the refinements and of tidy ones. Tidy ones are the manoeuvre of
+    /// [`without_roles`] and the best refinements simplified, or, where these are not tidy or too dear, the
+    /// simplified initial guesses. Each of the refinements makes good the time it has lost, or does not.
     pub(super) fn add_tidy(
         &mut self,
         tidy: &Tidiness,
+        (nominal_motion, conflicts): (&[Segment], &[Conflict]),
         running: &[Refinement],
         guesses: &[InitialGuess],
         clock: Clock,
@@ -167,6 +184,21 @@ impl Selection<'_> {
         };
         for refinement in running {
             pool.add_refined(refinement);
+        }
+        if let [conflict, ..] = conflicts
+            && !self.prices.is_for_several()
+            && !clock.is_up()
+        {
+            let explored = RefCell::default();
+            let effort = Effort {
+                clock,
+                explored: &explored,
+            };
+            let contact = conflict.from;
+            let found = without_roles(&pool.on_time, nominal_motion, contact, tidy, effort);
+            if let Some(motion) = found {
+                pool.add(handicap(self.context.problem, &motion), motion);
+            }
         }
         let speeds = self.context.speeds;
         for (guess, rank) in leaders(running, LEADERS, LEADER_MARGIN) {
@@ -200,6 +232,16 @@ impl Selection<'_> {
                 return;
             }
         }
+    }
+}
+
+/// Factor on the cost of a motion when it is ranked among others, as that of a refinement: its first turn is
+/// better to the preferred side.
+fn handicap(problem: &Problem, motion: &[Segment]) -> f64 {
+    let first = motion.iter().find_map(|s| Side::of_turn(s.turn_rate));
+    match (first, problem.first_turn) {
+        (Some(first), Some(preferred)) if first != preferred => 1.0 + AGAINST_THE_RULES,
+        _ => 1.0,
     }
 }
 

@@ -6,7 +6,6 @@ use crate::space_time::land;
 use crate::space_time::manoeuvre::ending::Ending;
 use crate::space_time::manoeuvre::motion::merged;
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
-use crate::space_time::plan_normalised;
 use crate::space_time::proxy::{Proxy, first_contact};
 use crate::space_time::refinement::InitialGuess;
 use crate::space_time::refinement::quadratic::MAX_VARIABLES;
@@ -15,6 +14,7 @@ use crate::space_time::route::Route;
 use crate::space_time::selection::Selection;
 use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::initial_guess::InitialGuessBuilder;
+use crate::space_time::{conflicts_of, plan_normalised};
 use crate::{NoPlan, Outcome, Plan, PlanMethod, Planned, Problem};
 use searoom_geometry::frame::{Pose, Side, wrap};
 use searoom_model::trajectory::{Segment, Trajectory};
@@ -55,7 +55,12 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
         let grounding = land::first_contact(problem.land_obstacle, &follows);
         let first = contact.into_iter().chain(grounding).reduce(f64::min);
         let context = Context::new(problem, &route, proxies, &blocks, first.unwrap_or(0.0));
-        let mut selection = Selection::new(context, &SearchBudget::WARM_START);
+        // a tidy plan has as many alterations as its conflicts need
+        let conflicts = match problem.tidy {
+            Some(_) => conflicts_of(problem, proxies, &follows),
+            None => Vec::new(),
+        };
+        let mut selection = Selection::new(context, &SearchBudget::WARM_START, &conflicts);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], &[], clock);
         let plan = selection.plan().map(|plan| Plan {
