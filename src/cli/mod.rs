@@ -62,20 +62,20 @@ pub fn main() -> ExitCode {
     };
     let status = match runner::guarded(run) {
         Ok(Ok(status)) => status,
-        Ok(Err(error)) => output.refuse(&told(&error)),
+        Ok(Err(error)) => output.refuse(&error_chain(&error)),
         Err(fault) => output.fault(&fault),
     };
     status.into()
 }
 
 /// An error and its causes. Some texts hold that of their cause, which is not repeated.
-fn told(error: &anyhow::Error) -> String {
-    error.chain().fold(String::new(), |told, cause| {
+fn error_chain(error: &anyhow::Error) -> String {
+    error.chain().fold(String::new(), |chain, cause| {
         let cause = cause.to_string();
-        match told.as_str() {
+        match chain.as_str() {
             "" => cause,
-            _ if told.contains(&cause) => told,
-            _ => format!("{told}: {cause}"),
+            _ if chain.contains(&cause) => chain,
+            _ => format!("{chain}: {cause}"),
         }
     })
 }

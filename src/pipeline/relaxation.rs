@@ -681,8 +681,8 @@ impl Relaxer<'_> {
         Some(self.clear_of(&found, &retained, level))
     }
 
-    /// Where a level ran out of its share of the time and no answer is safe, the rest of the time is
-    /// for the mission that is cut.
+    /// If a level used up its share of the time and no plan is safe, spends the remaining time on the
+    /// shortened mission.
     fn or_cut_again(&self, found: Option<Attempt>, with_domain: bool) -> Option<Attempt> {
         let is_safe = |of: &Attempt| of.trajectory().is_some() && of.level < RelaxationLevel::Risk;
         let has_time = self.is_cut_short.get() && !self.time_left().is_zero();
@@ -705,7 +705,7 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
     /// its end, or else where the last plan ends, each within a share of the time. It keeps the level
     /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius. Out of time no plan is made, and only a remainder is asked.
+    /// turning radius. After the deadline only the remainder of the last plan is considered.
     fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
         let risk = self.scenario.max_risk;
         let (whole, reductions) = self.asked(&self.scales(0.0));

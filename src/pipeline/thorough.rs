@@ -12,9 +12,8 @@ use crate::tolerance::TOUCH_M;
 const NOTHING_M2: f64 = 1e-6;
 
 impl Relaxer<'_> {
-    /// The best of the answers of A* and of the search with larger budgets, and of the plans of all
-    /// searches for stricter requests: with ship domains, by the rules, around outer ellipses of
-    /// polytopes. Such a plan is a candidate where it is clear of the sets of this request.
+    /// Best of: A*, a search with larger budgets, and plans for stricter requests (with ship domains, by the
+    /// rules, around outer ellipses of polytopes) that are clear of the sets of this request, too.
     ///
     /// The answers are compared whole: a cheaper plan at one level may lead to more relaxation at
     /// another. Candidates compete at the first level only, and not with the remainder of the last

@@ -293,7 +293,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// True where it ends at the last waypoint. Motions under forces are never said not to.
+    /// True where it ends at the last waypoint. Always true for motions under forces.
     pub fn arrives(&self) -> bool {
         self.to_go == 0.0
     }

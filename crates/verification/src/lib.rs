@@ -236,6 +236,13 @@ fn request<'a>(claim: &'a Claim) -> Request<'a> {
 
 /// Violation for a false statement in the document: the quantity, the reported value and the true
 /// value.
-fn mismatch(what: &str, said: impl std::fmt::Display, so: impl std::fmt::Display) -> Violation {
-    Violation::new(format!("{what}: the document says {said}, it is {so}"), 0.0)
+fn mismatch(
+    quantity: &str,
+    reported: impl std::fmt::Display,
+    actual: impl std::fmt::Display,
+) -> Violation {
+    Violation::new(
+        format!("{quantity}: the document says {reported}, it is {actual}"),
+        0.0,
+    )
 }

@@ -283,7 +283,7 @@ fn grouped<'w>(all: impl Iterator<Item = (&'w str, String)>) -> Vec<(Vec<&'w str
     groups
 }
 
-/// A text behind the names that it is about, if there are any.
+/// `names: text`, or the text alone where there are no names.
 fn in_front(names: &[&str], text: String) -> String {
     let names: Vec<&str> = names
         .iter()

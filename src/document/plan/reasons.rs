@@ -114,9 +114,9 @@ fn going_on(plan: &PlanDocument, leg: &Segment, before: &Before) -> Vec<Segment>
     ahead.map(segment).filter(|s| s.duration > 0.0).collect()
 }
 
-/// The target that own ship lets pass before leg `index` comes back to the mission's course or
-/// speed, or [`LAND`]: its set would be entered first if the rest of the plan began at the start
-/// of the straight leg, or of the wait, before. O(sets × legs).
+/// Target that delays the return on leg `index` to the mission's course or speed, or [`LAND`]: the first set
+/// entered if the rest of the plan began at the start of the straight leg, or of the wait, before it.
+/// O(sets × legs).
 pub(super) fn waited_for<'a>(
     plan: &'a PlanDocument,
     legs: &[PlannedLeg],

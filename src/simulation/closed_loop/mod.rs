@@ -60,8 +60,8 @@ const DIFFUSION_TIME: f64 = 5.0;
 /// Spacing of samples as a fraction of the time ahead.
 const SAMPLE_RATIO: f64 = 0.03;
 
-/// A scenario that is sailed: own ship plans again and again and follows its plans, among targets
-/// that do what they like.
+/// A scenario that is sailed: own ship plans repeatedly and follows its plans, while targets move by their
+/// behaviour models.
 ///
 /// Within a step the order is: the current changes, the sensors report, the tracker takes in what
 /// arrives, a plan is made or becomes valid, own ship steers, and all ships move. A plan is made
@@ -341,7 +341,7 @@ impl Simulation {
         }
     }
 
-    /// How far a contact of hulls is, in metres: zero after a contact, and never before.
+    /// Level function for splitting, metres: zero if and only if hulls have met.
     ///
     /// The least of `(d + CLOSING_SPEED t) / sqrt(1 + t / DIFFUSION_TIME)` over the times `t` from now
     /// to the end.

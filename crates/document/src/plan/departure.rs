@@ -21,7 +21,8 @@ pub const LEAST_DEG: f64 = 5.0;
 /// Seconds: a shorter departure that was sailed is none.
 const LEAST_S: f64 = 3.0;
 
-/// Degrees: a departure goes on down to here, so that a course near [`LEAST_DEG`] is one departure.
+/// Hysteresis: a departure ends below this course error, degrees, so that a course near [`LEAST_DEG`] is one
+/// departure.
 const LEAVES_DEG: f64 = 3.0;
 
 /// Fraction of the turning radius. Own ship is on its path where it is less far from it.

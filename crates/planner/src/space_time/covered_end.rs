@@ -1,4 +1,4 @@
-//! A last waypoint that sets cover until the horizon, and the desired trajectory up to before them.
+//! Last waypoint covered by sets until the horizon, and the mission shortened to end before them.
 
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, within_reach};

@@ -222,8 +222,8 @@ fn ways_in_one_manoeuvre(problem: &Problem, proxies: &[Proxy], clock: Clock) -> 
     plan.into_iter().chain(others).collect()
 }
 
-/// Plans one problem. With `others` it is planned in one manoeuvre alone, and the other ways go
-/// there.
+/// Plans one problem. If `others` is given, plans a single departure from the route and returns its
+/// alternatives there.
 fn plan_with(
     problem: &Problem,
     proxies: &[Proxy],

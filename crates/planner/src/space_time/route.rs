@@ -29,14 +29,17 @@ const SKIPPED_RADII: f64 = 4.0;
 /// in rounding.
 const SHORTEST_M: f64 = 1e-3;
 
-/// Metres between two returns to schedule where the desired speed is not one of own ship's.
+/// Metres between two returns to schedule where the desired speed is not one of own ship's: in a tidy plan,
+/// and in another.
+const TIDY_ALTERNATION_M: f64 = 400.0;
 const ALTERNATION_M: f64 = 130.0;
 
 /// Cycles of a faster and a slower part on one piece, about: with hundreds the refinement is slow.
 const MOST_ALTERNATIONS: f64 = 50.0;
 
-/// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
-/// mixed from thousands of parts.
+/// Least length of the faster part, metres, in a tidy plan and in another, because a speed very close to own
+/// ship's would otherwise be mixed from thousands of parts.
+const TIDY_LEAST_ALTERNATION_M: f64 = 50.0;
 const LEAST_ALTERNATION_M: f64 = 17.0;
 
 /// Seconds of the least change of speed where the rules ask for plain manoeuvres.
@@ -101,7 +104,7 @@ pub(crate) struct Route {
     pieces: Vec<RoutePiece>,
     /// Own ship's speeds, increasing.
     speeds: Vec<f64>,
-    /// Seconds: no change of speed for the schedule's sake is shorter.
+    /// Shortest change of speed that is made only to regain the schedule, seconds.
     least_change: f64,
     /// Seconds for which a speed is kept where the speed alternates.
     speed_time: f64,
@@ -588,8 +591,7 @@ impl Route {
                 return (slower, way);
             }
         }
-        // a stretch that is due at once, or was due before, is not waited for: zero-length waits
-        // would repeat for ever
+        // never wait where the schedule allows no time, because zero-length waits would repeat for ever
         if slowness <= 0.0 {
             return (fastest, left);
         }
@@ -606,14 +608,18 @@ impl Route {
             Some(&fast) => {
                 let slow = self.slower(slowness);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
-                let least = ALTERNATION_M.max(piece.length / MOST_ALTERNATIONS);
+                let [least, least_fast] = match self.speed_time > 0.0 {
+                    true => [TIDY_ALTERNATION_M, TIDY_LEAST_ALTERNATION_M],
+                    false => [ALTERNATION_M, LEAST_ALTERNATION_M],
+                };
+                let least = least.max(piece.length / MOST_ALTERNATIONS);
                 let mut cycles = (left / least).ceil();
                 if let Some(slow) = slow.filter(|_| self.speed_time > 0.0) {
                     let least = self.speed_time * (fast / share).max(slow / (1.0 - share));
                     cycles = cycles.min((left / least).floor());
                 }
                 let cycle = left / cycles.max(1.0);
-                (fast, (cycle * share).max(LEAST_ALTERNATION_M))
+                (fast, (cycle * share).max(least_fast))
             }
             None => (fastest, left),
         }

@@ -185,7 +185,7 @@ impl Lattice<'_> {
         let motion = state.motion(problem.own.turning_radius);
         let last = motion.last()?;
         (state.pose, state.time) = (last.end(), last.end_time());
-        // the integral below is what a successor costs most
+        // the cost integral dominates, so the cheap tests come first
         let to_go = match is_end {
             true => 0.0,
             false => self.grid.from(state.pose.position, state.time),

@@ -15,13 +15,13 @@ use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::{Duty, Encountered};
 use searoom_model::trajectory::Segment;
 
-/// Greatest ratio of the cost of a plan that breaks no rule to that of the cheapest. *J* is squared: ten
-/// times the distance. One manoeuvre around ships that are met an hour apart breaks no rule, but no
-/// one would sail it.
+/// Highest ratio of *J* to the cheapest plan's that is accepted to avoid breaking a rule. *J* is quadratic, so
+/// this is ten times the deviation; beyond it no one would sail the plan, such as one manoeuvre around ships
+/// that are met an hour apart.
 const MOST_COST_RATIO: f64 = 100.0;
 
-/// The same of a plan that breaks fewer rules than the cheapest, but some: one rule fewer of many is hardly
-/// a better plan.
+/// The same ratio for a plan that still breaks some rules, though fewer than the cheapest, because one rule
+/// fewer of many hardly makes a better plan.
 const MOST_UNLAWFUL_COST_RATIO: f64 = 1.5;
 
 /// Most nodes that are expanded: so many for each target, and as many again. Most plans whose rules are judged.

@@ -268,7 +268,7 @@ pub(super) struct Manoeuvres<'s, 'a> {
     to_the_end: Vec<bool>,
     pub passing: Vec<Passing<'s>>,
     pub family: Family,
-    /// True for a target that is not passed nearer than a length, Rule 8(d).
+    /// True for a target from which one length of the longer ship is kept, Rule 8(d).
     pub keeps_a_length: fn(&Passing) -> bool,
     /// True where turns are made at half speed or less.
     pub slows_to_turn: bool,

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A ship that keeps clear departs in ample time; one that stands on holds until its escape is due.
-//! Each is tried with a length off all targets, then off fewer where that is the only way or costs a tenth,
-//! and with turns at half speed or less where nothing else is clear.
+//! Each search keeps one ship length from every target first, then only from those own ship gives way to,
+//! then from none, where that is the only way or costs a tenth; turns at half speed or less come last.
 
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
@@ -153,7 +153,7 @@ impl Manoeuvres<'_, '_> {
             return None;
         }
         let may = self.may_act() + SAMPLE_S;
-        // to hold on for as long as it must is worth more than a length, and than a moderate turn
+        // standing on (Rule 17) takes priority over the one-length clearance, and over a moderate turn
         let keeps_a_length = self.keeps_a_length;
         let ways = [
             (LARGEST_ESCAPE, keeps_a_length),

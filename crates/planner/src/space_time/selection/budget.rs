@@ -9,11 +9,11 @@ pub(crate) struct SearchBudget {
     /// `(max_expansions, heuristic_weight)` of each search stage. The limit counts all expansions
     /// so far and bounds memory and time. A stage starts where the earlier ones found no plan.
     pub stages: &'static [(usize, f64)],
-    /// Largest number of rounds.
-    pub steps: usize,
-    /// Largest number of rounds once a manoeuvre is clear. The best one then lacks segment
-    /// variables rather than steps.
-    pub rounds: usize,
+    /// Largest number of iterations of a refinement.
+    pub max_iterations: usize,
+    /// Largest number of iterations once some manoeuvre is clear, because the best one then lacks segment
+    /// variables rather than iterations.
+    pub iterations_once_clear: usize,
     /// Largest number of manoeuvres that get segment insertions.
     pub leaders: usize,
     /// Relative cost difference from the best one up to which a manoeuvre gets them.
@@ -33,8 +33,8 @@ impl SearchBudget {
     /// Budget for one target: finds the graph's optimum.
     pub(crate) const ONE_TARGET: Self = Self {
         stages: &[(2_000, 1.0)],
-        steps: MAX_STEPS,
-        rounds: 8,
+        max_iterations: MAX_STEPS,
+        iterations_once_clear: 8,
         leaders: 8,
         leader_margin: 0.3,
         insert_twice: true,
@@ -70,8 +70,8 @@ impl SearchBudget {
     /// Budget of a warm start. A manoeuvre that is clear of other sets is clear of these soon or
     /// never.
     pub(crate) const WARM_START: Self = Self {
-        steps: 16,
-        rounds: 5,
+        max_iterations: 16,
+        iterations_once_clear: 5,
         leaders: 1,
         insert_twice: false,
         ..Self::ONE_TARGET

@@ -27,8 +27,8 @@ const HYBRID_TOLERANCE: f64 = 0.6;
 /// Factor of the tolerance while too many corners remain.
 const COARSER: f64 = 1.3;
 
-/// Cost of a hybrid A* motion of use, over that of the best candidate: refinement gains about a
-/// third.
+/// A hybrid A* motion is kept up to this multiple of the best candidate's cost, because refinement typically
+/// saves a third.
 const OF_USE: f64 = 1.5;
 
 /// Cost below which the grid is too coarse for the hybrid A* to find a cheaper plan, in squared

@@ -197,7 +197,11 @@ impl<'a> Selection<'a> {
             .take_while(|_| !clock.is_up())
             .filter_map(|s| Refinement::fitting(&coarse, s))
             .collect();
-        let SearchBudget { steps, rounds, .. } = *self.search_budget;
+        let SearchBudget {
+            max_iterations: steps,
+            iterations_once_clear: rounds,
+            ..
+        } = *self.search_budget;
         let mut round = 0;
         while round < steps {
             let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
@@ -326,7 +330,7 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// The cheapest clear motions of other ways than that of the best candidate.
+    /// Clear alternatives that pass the targets differently from the best candidate, cheapest first.
     fn other_ways(&self, running: &[Refinement]) -> Vec<Vec<Segment>> {
         let best = self.best.iter();
         let mut ways: Vec<_> = best.map(|b| (b.motion.clone(), b.cost)).collect();

@@ -50,8 +50,8 @@ const DROPPED: f64 = 0.5;
 const LEADERS: usize = 2;
 const LEADER_MARGIN: f64 = 0.5;
 
-/// Priced cost of a tidy manoeuvre over that of a refinement, below which it is not simplified: that of
-/// as many alterations as a tidy plan has.
+/// Simplifying stops when a tidy candidate costs, with its price, at most this multiple of the refinement: the
+/// price of seven alterations, as many as a tidy plan has.
 const ENOUGH: f64 = 1.35;
 
 /// Steps of a refinement after simplifying.
@@ -65,8 +65,8 @@ pub(super) struct Prices {
     own_speed: f64,
     /// Manoeuvres that a plan is expected to have: conflicts that are far apart have one each.
     manoeuvres: usize,
-    /// Alterations of the nominal motion: corners, legs of different speeds, returns to schedule;
-    /// but only those short times that own ship cannot avoid.
+    /// Alterations already in the nominal motion (corners, legs of different speeds, returns to schedule),
+    /// which are not charged.
     nominal: Alterations,
 }
 
