@@ -16,14 +16,16 @@ const ALTERATION: f64 = std::f64::consts::PI / 90.0;
 /// Fraction of the ordered speed from which another speed is a change.
 const CHANGE: f64 = 0.02;
 
-/// Changes of speed of 95 % of tidy plans, at most: own ship slows down, and then makes good the time. Turns, at most, and seconds of segments, at least.
+/// Changes of speed of 95 % of tidy plans, at most: own ship slows down, and then makes good the time.
+/// Turns, at most, and seconds of segments, at least.
 const MOST_SPEED_CHANGES: f64 = 3.0;
 const MOST_TURNS: f64 = 4.0;
 const SHORTEST: f64 = 3.0;
 
-/// Median of J over that of the plan of least cost, at most. Measured with 1,000 encounters: 1.22,
-/// 1.07 and 1.00.
-const MEDIAN_RATIO: [f64; 3] = [1.35, 1.2, 1.02];
+/// Median and 95 % of J over that of the plan of least cost, at most. Measured with 1,000 encounters: 1.22, 1.07
+/// and 1.00, and 1.86, 1.71 and 1.00. Without the graph of manoeuvres `none` has 1.35 and 2.5.
+const MEDIAN_RATIO: [f64; 3] = [1.3, 1.15, 1.02];
+const RATIO_95: [f64; 3] = [2.1, 1.9, 1.1];
 
 /// Plans of random encounters with one target, tidy and of the least cost alone, at every level of
 /// compliance: `seeds` of each kind.
@@ -85,7 +87,7 @@ fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut 
     };
     let speed_changes = quantile(&values(&|t| t.speed_changes as f64), 0.95);
     let turns = quantile(&values(&|t| t.turns as f64), 0.95);
-    let ratio = quantile(&ratios, 0.5);
+    let [ratio, ratio_95] = [0.5, 0.95].map(|p| quantile(&ratios, p));
     let most_speed_changes = MOST_SPEED_CHANGES;
     for (what, most, allowed) in [
         ("changes of speed", speed_changes, most_speed_changes),
@@ -94,6 +96,11 @@ fn of_compliance(word: &str, compliance: Compliance, seeds: Seeds, report: &mut 
             "median of J over the least",
             ratio,
             MEDIAN_RATIO[compliance as usize],
+        ),
+        (
+            "95 % of J over the least",
+            ratio_95,
+            RATIO_95[compliance as usize],
         ),
     ] {
         report.require(most <= allowed, || format!("{word}: {what}: {most}"));

@@ -350,9 +350,9 @@ struct Attempt {
     explored: ExploredGraph,
 }
 
-/// Searches the graph, and among several targets a grid. Refines what
-/// they find and the manoeuvres around the conflicts of the nominal motion. Resolves conflicts that
-/// are far apart one after another, unless `others` are asked for.
+/// Searches the graph, and among several targets a grid. Refines what they find and the manoeuvres around
+/// the conflicts of the nominal motion. Resolves conflicts that are far apart one after another, unless
+/// `others` are asked for.
 fn attempt(
     context: &Context,
     budget: &SearchBudget,

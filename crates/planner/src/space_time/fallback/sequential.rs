@@ -20,11 +20,11 @@ use searoom_model::trajectory::Segment;
 use searoom_model::vessel::OwnShip;
 use searoom_sets::Obstacle;
 
-/// Largest lead of a departure before a conflict, seconds.
+/// Largest lead of a departure before a conflict, seconds at the normalised size.
 const LEAD_S: f64 = 67.0;
 
-/// Seconds after the beginning of a conflict until which its plan is clear of all sets. Sets that
-/// are met later are the next conflict.
+/// Seconds, at that size, after the beginning of a conflict until which its plan is clear of all sets. Sets
+/// that are met later are the next conflict.
 const CLEAR_S: f64 = 100.0;
 
 /// True when conflicts, ordered by start, do not all begin together.

@@ -5,7 +5,7 @@ use crate::space_time::proxy::Proxy;
 use searoom_geometry::frame::{Side, to_port};
 use searoom_model::trajectory::Segment;
 
-/// Seconds. Conflicts that all begin within this time are left to one manoeuvre.
+/// Seconds at the normalised size. Conflicts that all begin within this time are left to one manoeuvre.
 const APART_S: f64 = 120.0;
 
 /// Samples of a conflict's width.
@@ -105,4 +105,26 @@ pub(crate) fn far_apart(conflicts: &[Conflict]) -> usize {
         is_apart
     });
     apart.count().max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conflicts_that_begin_together_are_one() {
+        for (begin, expected) in [
+            (&[][..], 1),
+            (&[50.0], 1),
+            (&[0.0, APART_S], 1),
+            (&[0.0, APART_S + 1.0], 2),
+            // the third is far from the first, not from the second
+            (&[0.0, 100.0, 200.0], 2),
+            (&[0.0, 200.0, 300.0, 400.0], 3),
+            (&[f64::NAN], 1),
+        ] {
+            let conflicts: Vec<Conflict> = begin.iter().map(|t| Conflict::at(*t, 0.0)).collect();
+            assert_eq!(far_apart(&conflicts), expected, "{begin:?}");
+        }
+    }
 }

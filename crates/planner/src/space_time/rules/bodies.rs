@@ -79,8 +79,8 @@ impl<'a> Passing<'a> {
 }
 
 impl Manoeuvres<'_, '_> {
-    /// True for segments that are clear of every set and of land, with Rule 8(d) clearance from every
-    /// target and from the water ahead of its bow.
+    /// True for segments that are clear of every set, of land and of the water ahead of every target's bow, with
+    /// Rule 8(d) clearance from the targets.
     pub(super) fn is_clear(&self, segments: &[Segment]) -> bool {
         first_met(self.context.proxies, segments).is_none()
             && !land::meets(self.problem().land_obstacle, segments)
