@@ -314,9 +314,27 @@ fn plan_with(
         Some(_) => conflicts_of(problem, proxies, &nominal_motion),
         None => Vec::new(),
     };
-    let targets = by_obstacle(proxies).count();
-    let budget = SearchBudget::of(targets, others.is_some(), problem.search);
-    let best = attempt(&context, budget, &nominal_motion, &conflicts, others, clock);
+    let search = |context: &Context, others: Option<&mut Vec<Vec<Segment>>>| {
+        let targets = by_obstacle(context.proxies).count();
+        let budget = SearchBudget::of(targets, others.is_some(), problem.search);
+        attempt(context, budget, &nominal_motion, &conflicts, others, clock)
+    };
+    // where the nominal motion meets one obstacle alone, its plan is as cheap as if no other were there, if
+    // it is clear of them: so a ship that is never near changes nothing
+    let met = met_alone(proxies, &nominal_motion)
+        .filter(|_| others.is_none() && problem.search != SearchKind::Thorough);
+    let around_one = met.map(|proxies| {
+        let proxies = &proxies[..];
+        search(&Context { proxies, ..context }, None)
+    });
+    let is_clear = |best: &Attempt| {
+        let plan = best.plan.as_ref();
+        plan.is_some_and(|plan| first_met(proxies, plan.trajectory.segments()).is_none())
+    };
+    let best = match around_one.filter(is_clear) {
+        Some(best) => best,
+        None => search(&context, others),
+    };
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
@@ -328,6 +346,13 @@ fn plan_with(
         explored: best.explored,
         ..Planned::of(outcome)
     }
+}
+
+/// Proxies of the only one of several obstacles that a motion meets.
+fn met_alone<'a>(proxies: &[Proxy<'a>], motion: &[Segment]) -> Option<Vec<Proxy<'a>>> {
+    let mut met = by_obstacle(proxies).filter(|of_one| first_contact(of_one, motion).is_some());
+    let alone = met.next().filter(|of_one| of_one.len() < proxies.len())?;
+    met.next().is_none().then(|| alone.to_vec())
 }
 
 /// Conflicts of a motion with sets and with land, by their beginning.
