@@ -149,6 +149,7 @@ pub fn problem<'a>(
         under_way: None,
         tidy: scenario.tidiness(),
         warm_start: scenario.memory.warm_start.as_ref(),
+        settings: scenario.settings.space_time,
     }
 }
 

@@ -230,7 +230,10 @@ fn scene_at(
             out_of_reach: std::sync::Arc::default(),
             planner: DEFAULT_PLANNER,
             objective: Objective::SpaceTimeError,
-            settings: PlannerSettings::at_length(OWN_HULL.length),
+            settings: PlannerSettings {
+                space_time: super::ablation::settings(),
+                ..PlannerSettings::at_length(OWN_HULL.length)
+            },
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

@@ -3,6 +3,7 @@
 //! The tests run each with few scenes; `cargo campaign` with as many as asked for.
 #![allow(dead_code, reason = "the tests and the program use a part each")]
 
+pub mod ablation;
 pub mod behaviour;
 pub mod closed_loop;
 pub mod dense_search;

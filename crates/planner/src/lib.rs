@@ -29,6 +29,7 @@ pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts
 pub use no_plan::NoPlan;
 pub use optimal_control::WarmStart;
 pub use searoom_model::PlanMethod;
+pub use space_time::SpaceTimeSettings;
 
 use std::time::Duration;
 
@@ -58,6 +59,8 @@ pub struct PlannerSettings {
     pub tidy: Option<bool>,
     /// How tidy they are.
     pub tidiness: Tidiness,
+    /// What its searches are tuned by.
+    pub space_time: &'static SpaceTimeSettings,
 }
 
 impl PlannerSettings {
@@ -67,6 +70,7 @@ impl PlannerSettings {
             optimal_control: ControlSettings::at_length(VesselKind::CyberShip2, length),
             tidy: None,
             tidiness: Tidiness::at_length(length),
+            space_time: &SpaceTimeSettings::DEFAULT,
         }
     }
 }
@@ -211,6 +215,8 @@ pub struct Problem<'a> {
     pub tidy: Option<Tidiness>,
     /// Own ship's state and last plan under forces; `None` where it moves ahead at its speed.
     pub warm_start: Option<&'a optimal_control::WarmStart>,
+    /// Settings of the space-time planner's searches.
+    pub settings: &'a SpaceTimeSettings,
 }
 
 impl<'a> Problem<'a> {
@@ -239,6 +245,7 @@ impl<'a> Problem<'a> {
             under_way: None,
             tidy: None,
             warm_start: None,
+            settings: &SpaceTimeSettings::DEFAULT,
         }
     }
 

@@ -6,7 +6,8 @@ use searoom_input::text::counted;
 use searoom_input::{Field, Range, Table};
 use searoom_model::vessel::{ForceVector, StateVector, VesselKind};
 use searoom_planner::{
-    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, Tidiness, planner_words,
+    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, SpaceTimeSettings, Tidiness,
+    planner_words,
 };
 
 /// The fields of the table `[planner]` that a file has.
@@ -52,6 +53,7 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
             optimal_control,
             tidy,
             tidiness,
+            space_time: &SpaceTimeSettings::DEFAULT,
         }),
         kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),

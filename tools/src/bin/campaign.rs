@@ -27,6 +27,10 @@ use searoom::scenario::Compliance;
 struct Options {
     #[command(subcommand)]
     campaign: Campaign,
+    /// Changes a setting of the space-time planner, as in `--set conflicts.lead_s=200`: an ablation. Scenes that
+    /// are read from scenario files keep the settings that plans are made with
+    #[arg(long, global = true, value_name = "GROUP.NAME=VALUE")]
+    set: Vec<String>,
 }
 
 #[derive(Subcommand)]
@@ -320,7 +324,11 @@ fn run(campaign: Campaign) -> Report {
 }
 
 fn main() -> ExitCode {
-    let campaign = Options::parse().campaign;
+    let Options { campaign, set } = Options::parse();
+    if let Err(error) = campaigns::ablation::set(&set) {
+        eprintln!("{error}");
+        return ExitCode::from(2);
+    }
     // a wrong plan may panic with its seed
     let Ok(report) = catch_unwind(|| run(campaign)) else {
         return ExitCode::FAILURE;

@@ -7,8 +7,7 @@ use crate::space_time::proxy::{Proxy, first_contact};
 use crate::space_time::route::Route;
 use searoom_model::trajectory::Segment;
 
-/// Longest arc per chord in the search for approaches, radians: at first and at the end.
-pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
+/// Longest arc per chord in the search for approaches in the end, radians.
 pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 
 /// Data that stay fixed for one problem.

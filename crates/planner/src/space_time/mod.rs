@@ -29,12 +29,14 @@ mod refinement;
 mod route;
 mod rules;
 mod selection;
+pub mod settings;
 mod similarity;
 
 pub use bound::Heuristic;
 pub use fallback::escape::{after_holding, nominal_motion};
 pub(super) use fallback::harm::NominalHulls;
 pub use selection::warm_start::warm_started;
+pub use settings::SpaceTimeSettings;
 
 use std::cell::RefCell;
 
@@ -63,8 +65,8 @@ use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_parallel as parallel;
 use searoom_sets::{LAND, SpaceTimeObstacle};
 use selection::Selection;
-use selection::budget::SearchBudget;
 use selection::coarse_search::CoarseSearch;
+use settings::SearchBudget;
 use similarity::Similarity;
 
 /// Searches a graph, and refines the result.
@@ -316,7 +318,8 @@ fn plan_with(
     };
     let search = |context: &Context, others: Option<&mut Vec<Vec<Segment>>>| {
         let targets = by_obstacle(context.proxies).count();
-        let budget = SearchBudget::of(targets, others.is_some(), problem.search);
+        let budgets = &problem.settings.budgets;
+        let budget = budgets.of(targets, others.is_some(), problem.search);
         attempt(context, budget, &nominal_motion, &conflicts, others, clock)
     };
     // where the nominal motion meets one obstacle alone, its plan is as cheap as if no other were there, if
@@ -412,7 +415,8 @@ fn attempt(
     timed_out |= selection.refine(nominal_motion, conflicts, clock);
     if let Some(others) = others {
         *others = selection.others.take().unwrap_or_default();
-    } else if !timed_out && sequential::are_several(conflicts) {
+    } else if !timed_out && sequential::are_several(conflicts, &context.problem.settings.conflicts)
+    {
         // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
         let (motion, is_late) =
             sequential::resolve_sequentially(context, nominal_motion, &selection, budget, clock);

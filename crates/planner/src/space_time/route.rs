@@ -29,19 +29,6 @@ const SKIPPED_RADII: f64 = 4.0;
 /// in rounding.
 const SHORTEST_M: f64 = 1e-3;
 
-/// Metres between two returns to schedule where the desired speed is not one of own ship's: in a tidy plan,
-/// and in another.
-const TIDY_ALTERNATION_M: f64 = 400.0;
-const ALTERNATION_M: f64 = 130.0;
-
-/// Cycles of a faster and a slower part on one piece, about: with hundreds the refinement is slow.
-const MOST_ALTERNATIONS: f64 = 50.0;
-
-/// Least length of the faster part, metres, in a tidy plan and in another, because a speed very close to own
-/// ship's would otherwise be mixed from thousands of parts.
-const TIDY_LEAST_ALTERNATION_M: f64 = 50.0;
-const LEAST_ALTERNATION_M: f64 = 17.0;
-
 /// Seconds of the least change of speed where the rules ask for plain manoeuvres.
 pub(crate) const LEAST_CHANGE_S: f64 = 3.0;
 
@@ -108,6 +95,9 @@ pub(crate) struct Route {
     least_change: f64,
     /// Seconds for which a speed is kept where the speed alternates.
     speed_time: f64,
+    /// Metres between two returns to schedule, least metres of the faster part, and most alternations on a piece,
+    /// where the speed alternates.
+    alternation: [f64; 3],
 }
 
 /// Order of routes: those in time first, then by cost.
@@ -248,6 +238,17 @@ impl Route {
                 0.0
             },
             speed_time: problem.tidy.map_or(0.0, |tidy| tidy.speed_time),
+            alternation: {
+                let settings = &problem.settings.route;
+                let [apart, least] = match problem.tidy {
+                    Some(_) => [
+                        settings.tidy_alternation_m,
+                        settings.tidy_least_alternation_m,
+                    ],
+                    None => [settings.alternation_m, settings.least_alternation_m],
+                };
+                [apart, least, settings.most_alternations]
+            },
         };
         let join = Pose::new(first.start + first.direction * along, heading(leg));
         let due = first.start_time + along / first.speed;
@@ -608,11 +609,8 @@ impl Route {
             Some(&fast) => {
                 let slow = self.slower(slowness);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
-                let [least, least_fast] = match self.speed_time > 0.0 {
-                    true => [TIDY_ALTERNATION_M, TIDY_LEAST_ALTERNATION_M],
-                    false => [ALTERNATION_M, LEAST_ALTERNATION_M],
-                };
-                let least = least.max(piece.length / MOST_ALTERNATIONS);
+                let [least, least_fast, most] = self.alternation;
+                let least = least.max(piece.length / most);
                 let mut cycles = (left / least).ceil();
                 if let Some(slow) = slow.filter(|_| self.speed_time > 0.0) {
                     let least = self.speed_time * (fast / share).max(slow / (1.0 - share));

@@ -23,17 +23,8 @@ use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_model::vessel::{Hull, OwnShip};
 use searoom_sets::{LandObstacle, Obstacle, SpaceTimeObstacle};
 
-/// Turning radius (metres) and desired speed (m/s) of a normalised problem: those of a harbour vessel.
-const NORMAL_TURN_M: f64 = 100.0;
-const NORMAL_MPS: f64 = 5.0;
-
-/// Radii in metres at that size. Where the first set met has a radius at contact outside this
-/// interval, the set determines the size.
-const SMALLEST_M: f64 = 10.0;
-const LARGEST_M: f64 = 210.0;
-
-/// Normalised radius of such sets, metres.
-const NORMAL_SET_M: f64 = 43.0;
+/// Metres at the normalised size. Sets with less room around their centre are not rounded.
+const LEAST_ROOM_M: f64 = 0.33;
 
 /// Grids at that size are powers of two, so that grid numbers are exact. They are for positions of
 /// sets (0.06 mm), waypoints, on which plans must end, velocities (m/s), and times (s).
@@ -57,9 +48,6 @@ const DIGITS: i32 = 40;
 
 /// Numbers beyond this are not rounded.
 const LARGEST_ON_GRID: f64 = 1e7;
-
-/// Metres at that size. Sets with less room around their centre are not rounded.
-const LEAST_ROOM_M: f64 = 0.33;
 
 /// The size by a set is a power of this times the size by the turning radius.
 const STEP: f64 = std::f64::consts::SQRT_2;
@@ -152,9 +140,10 @@ impl Similarity {
     fn mirror_sign(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
         let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
         let places = places.map(|(centre, _)| self.place(centre).y);
+        let size = &problem.settings.size;
         let ways = proxies
             .iter()
-            .map(|h| self.velocity(h.drift()).y * NORMAL_TURN_M / NORMAL_MPS);
+            .map(|h| self.velocity(h.drift()).y * size.turn_m / size.speed_mps);
         let bends = problem
             .desired
             .waypoints()
@@ -479,15 +468,15 @@ impl NormalisedProblem {
 /// turning radius and desired speed. Where the first set met is very small or large relative to the
 /// turning circle, they follow from that set.
 fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
-    let desired = problem.desired;
-    let by_turn = problem.own.turning_radius / NORMAL_TURN_M;
-    let usual = SMALLEST_M..=LARGEST_M;
+    let (desired, settings) = (problem.desired, &problem.settings.size);
+    let by_turn = problem.own.turning_radius / settings.turn_m;
+    let usual = settings.smallest_m..=settings.largest_m;
     let radius = radius_met(desired, proxies).map(|radius| radius / by_turn);
     let radius = radius.filter(|r| *r > 0.0 && !usual.contains(r));
     let longer = (desired.length() / by_turn / LONGEST_M).max(1.0);
-    let larger = radius.map_or(1.0, |r| r / NORMAL_SET_M).max(longer);
+    let larger = radius.map_or(1.0, |r| r / settings.set_m).max(longer);
     let length = by_turn * STEP.powf(larger.log(STEP).round());
-    let time = length * NORMAL_MPS / desired.legs()[0].speed;
+    let time = length * settings.speed_mps / desired.legs()[0].speed;
     let sound = |x: f64| x > 1.0 / MAX_SCALE && x < MAX_SCALE;
     if sound(length) && sound(time) {
         (length, time)

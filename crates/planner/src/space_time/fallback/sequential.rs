@@ -13,23 +13,16 @@ use crate::space_time::manoeuvre::conflict::{Conflict, far_apart};
 use crate::space_time::manoeuvre::motion::{pose_at, shifted, until as motion_until};
 use crate::space_time::piece::pieces;
 use crate::space_time::proxy::{Proxy, first_contact, within_reach};
-use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::{Selection, is_same_way};
+use crate::space_time::settings::{ConflictSettings, SearchBudget};
 use crate::space_time::ways_in_one_manoeuvre;
 use searoom_model::trajectory::Segment;
 use searoom_model::vessel::OwnShip;
 use searoom_sets::Obstacle;
 
-/// Largest lead of a departure before a conflict, seconds at the normalised size.
-const LEAD_S: f64 = 67.0;
-
-/// Seconds, at that size, after the beginning of a conflict until which its plan is clear of all sets. Sets
-/// that are met later are the next conflict.
-const CLEAR_S: f64 = 100.0;
-
 /// True when conflicts, ordered by start, do not all begin together.
-pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
-    far_apart(conflicts) > 1
+pub(crate) fn are_several(conflicts: &[Conflict], settings: &ConflictSettings) -> bool {
+    far_apart(conflicts, settings.apart_s) > 1
 }
 
 /// Motion to the last waypoint whose conflicts before `resolved_until` are resolved.
@@ -102,7 +95,8 @@ fn children(
     selection: &Selection,
     clock: Clock,
 ) -> Vec<Node> {
-    let leaves = (contact - LEAD_S).max(0.0);
+    let settings = context.problem.settings;
+    let leaves = (contact - settings.conflicts.lead_s).max(0.0);
     let begins = node.resolved_until == f64::NEG_INFINITY;
     let problem = Problem {
         first_turn: context.problem.first_turn.filter(|_| begins),
@@ -117,7 +111,10 @@ fn children(
         let mut motion = motion_until(motion, leaves);
         motion.extend(rest);
         let cost = selection.cost_of(&motion);
-        let is_same = |other: &Node| is_same_way((&other.motion, other.cost), (&motion, cost));
+        let is_same = |other: &Node| {
+            let same = settings.guesses.same_way;
+            is_same_way((&other.motion, other.cost), (&motion, cost), same)
+        };
         if !children.iter().any(is_same) {
             children.push(Node {
                 motion,
@@ -133,7 +130,7 @@ fn children(
 }
 
 /// Ways from `leaves` on around the first set that the motion meets at `contact`, clear of all sets
-/// until [`CLEAR_S`] later. Each set that the plan meets until then is added, and planned again. The
+/// until `clear_s` later. Each set that the plan meets until then is added, and planned again. The
 /// last plan is the first of the ways.
 fn ways_from(
     problem: &Problem,
@@ -153,7 +150,7 @@ fn ways_from(
     };
     let desired = problem.desired.remaining(leaves);
     let first_set_met = |motion: &[Segment]| {
-        let soon = motion_until(motion, contact + CLEAR_S);
+        let soon = motion_until(motion, contact + problem.settings.conflicts.clear_s);
         first_contact(proxies, &soon).map(|(obstacle, _)| obstacle)
     };
     // none is met where the contact is with land

@@ -10,12 +10,6 @@ use searoom_geometry::{ConvexPolygon, outer_simplified};
 use searoom_model::trajectory::Segment;
 use searoom_sets::{LAND, PolytopeObstacle};
 
-/// Metres. Blocks farther than this from the nominal motion get no tangent edges.
-const AIMED_M: f64 = 40.0;
-
-/// Largest number of vertices of a block whose corners are nodes.
-const BLOCK_VERTICES: usize = 8;
-
 /// Metres. A corner at least this deep in another block is inside it, not on its boundary.
 const CORNER_M: f64 = 1e-3;
 
@@ -32,14 +26,18 @@ pub(super) fn land_edges(
     let land_obstacle = problem.land_obstacle;
     let grounds = first_contact(land_obstacle, nominal_motion);
     let blocks = if grounds.is_some() {
-        near(land_obstacle, nominal_motion.iter(), AIMED_M)
+        near(
+            land_obstacle,
+            nominal_motion.iter(),
+            problem.settings.graph.land_m,
+        )
     } else {
         Vec::new()
     };
     let speed_table = ManoeuvreSpeeds::at(problem, grounds.unwrap_or(0.0));
     blocks.into_iter().filter_map(move |b| {
         let block = &land_obstacle.blocks()[b];
-        let around = outer_simplified(block.initial(), BLOCK_VERTICES);
+        let around = outer_simplified(block.initial(), problem.settings.graph.block_vertices);
         let open = |corner: Vector| {
             !land_obstacle
                 .depth(corner)

@@ -32,23 +32,14 @@ use searoom_model::vessel::OwnShip;
 use searoom_sets::{PolytopeObstacle, Track, along_track};
 
 /// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
-const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
 /// Largest turn toward a vertex, radians.
-const MAX_TURN: f64 = 2.0;
 /// Largest duration of an interception, seconds.
-const MAX_INTERCEPTION_S: f64 = 240.0;
 /// Seconds for which a course is held beyond a vertex, one after another.
-const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
 /// Angles between the return lines and the route, radians.
-const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
 /// Largest number of consecutive vertices.
-const MAX_CHAIN: u8 = 5;
 /// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
 /// Larger sets are simplified first.
-const INITIAL_VERTICES: usize = 24;
-const VELOCITY_VERTICES: usize = 12;
 /// Metres. Obstacles farther than this from the nominal motion get no nodes.
-const RELEVANT_M: f64 = 120.0;
 /// Length in seconds of the pieces of the nominal motion in this test.
 const PIECE_S: f64 = 5.0;
 
@@ -75,6 +66,7 @@ impl<'a> Graph<'a> {
             proxies,
             ..
         } = context;
+        let settings = &problem.settings.graph;
         let first = |h: &Proxy| nominal_motion.iter().find_map(|s| h.first_contact(s));
         let mut contacts: Vec<f64> = by_obstacle(proxies)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
@@ -85,7 +77,7 @@ impl<'a> Graph<'a> {
             )
             .collect();
         contacts.sort_by(f64::total_cmp);
-        contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
+        contacts.dedup_by(|a, b| *a - *b < settings.leads_s[3]);
         // short pieces: the bound is loose on long ones
         let pieces: Vec<Segment> = nominal_motion
             .iter()
@@ -100,12 +92,16 @@ impl<'a> Graph<'a> {
         let tangent_edges = proxies
             .iter()
             .filter(|_| !contacts.is_empty())
-            .filter(|h| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
+            .filter(|h| {
+                pieces
+                    .iter()
+                    .any(|s| h.clearance_bound(s) < settings.relevant_m)
+            })
             .map(|h| {
                 let body = PolytopeObstacle::new(
                     "",
-                    outer_simplified(h.body.initial(), INITIAL_VERTICES),
-                    outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
+                    outer_simplified(h.body.initial(), settings.initial_vertices),
+                    outer_simplified(h.body.velocity(), settings.velocity_vertices),
                 );
                 TangentEdges::new(h, &body, problem.own.moving_speeds(), |_| true)
             })
@@ -180,12 +176,10 @@ impl<'a> Graph<'a> {
         if self.contacts.is_empty() {
             return;
         }
-        let mut times: Vec<f64> = self
-            .contacts
-            .iter()
-            .flat_map(|c| LEADS_S.iter().map(move |lead| c - lead).chain([c * 0.5]))
-            .filter(|t| *t > from.time)
-            .collect();
+        let leads = self.problem.settings.graph.leads_s;
+        let before = |c: &f64| leads.map(|lead| c - lead).into_iter().chain([*c * 0.5]);
+        let mut times: Vec<f64> = self.contacts.iter().flat_map(before).collect();
+        times.retain(|t| *t > from.time);
         times.push(from.time);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < 2.0);
@@ -257,12 +251,13 @@ impl<'a> Graph<'a> {
     /// Tangent edges to vertices, from a node or from the end of a motion `before` along the route.
     fn interceptions(&self, from: &State, before: &[Segment], out: &mut Vec<(State, f64)>) {
         let radius = self.problem.own.turning_radius;
+        let settings = &self.problem.settings.graph;
         let (pose, time) = before
             .last()
             .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
         let limits = Limits {
-            turn: MAX_TURN,
-            time: (time + MAX_INTERCEPTION_S).min(self.problem.horizon),
+            turn: settings.max_turn,
+            time: (time + settings.max_interception_s).min(self.problem.horizon),
         };
         let interceptors = Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, radius, side));
         let mut scratch = Vec::new();
@@ -320,11 +315,12 @@ impl<'a> Graph<'a> {
     /// ship is late after a manoeuvre. Where it would arrive early, a lower speed is tried, too.
     fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
+        let settings = &self.problem.settings.graph;
         let (radius, speed) = (own.turning_radius, own.max_speed());
         let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
         let start = (&from.pose, from.time);
         for leg in near..desired.legs().len().min(near + 2) {
-            for angle in RETURN_ANGLES {
+            for angle in settings.return_angles {
                 if let Some(motion) = motion_back(self.problem, self.route, start, leg, angle) {
                     let ending = Ending::Return { leg, speed };
                     self.push(out, NodeKind::End, ending, motion, 0, from);
@@ -334,7 +330,7 @@ impl<'a> Graph<'a> {
         for side in Side::BOTH {
             let interceptor = Interceptor::new(&from.pose, from.time, speed, radius, side);
             if let Some((turn, line)) = interceptor.path_to(desired.end())
-                && turn <= MAX_TURN
+                && turn <= settings.max_turn
             {
                 let way = turn * radius + line;
                 for speed in goal_speeds(own, way, desired.duration() - from.time) {
@@ -350,7 +346,12 @@ impl<'a> Graph<'a> {
 
     /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
     fn hold_course(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        let hold = HOLDS_S.get(usize::from(from.held));
+        let hold = self
+            .problem
+            .settings
+            .graph
+            .holds_s
+            .get(usize::from(from.held));
         if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
             let mut chain = Chain::new(
                 from.pose,
@@ -398,7 +399,7 @@ impl Space for Graph<'_> {
         match state.kind {
             NodeKind::Start => self.departures(state, out),
             NodeKind::Vertex { .. } => {
-                if state.chain < MAX_CHAIN {
+                if state.chain < self.problem.settings.graph.max_chain {
                     self.interceptions(state, &[], out);
                 }
                 self.returns(state, out);

@@ -19,15 +19,6 @@ use crate::{Outcome, Plan, PlanMethod, Planned, Problem, SearchStats};
 use searoom_geometry::frame::{Pose, Side, wrap};
 use searoom_model::trajectory::Segment;
 
-/// Turns of the motion primitives, radians.
-const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
-
-/// Largest number of speeds: the memory of the search grows with it.
-const MOST_SPEEDS: usize = 6;
-
-/// Courses that are distinguished at one position and time.
-const COURSES: f64 = 12.0;
-
 /// Resolution of the search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Resolution {
@@ -52,9 +43,6 @@ const FINE: Resolution = Resolution {
     apart: 3.0,
     most: 10_000,
 };
-
-/// Heuristic weight (weighted A*): slightly dearer plans for a fraction of the expansions.
-const WEIGHT: f64 = 1.1;
 
 /// Motion primitive: a turn and a line, or a wait.
 #[derive(Debug, Clone, Copy)]
@@ -143,7 +131,7 @@ pub(crate) fn searched(
         cost: 0.0,
         is_end: false,
     });
-    search.weigh(WEIGHT);
+    search.weigh(problem.settings.grid.weight);
     let Stop::Goal(end) = search.next_goal(&mut lattice, resolution.most) else {
         return None;
     };
@@ -168,7 +156,8 @@ struct Lattice<'a> {
 impl Lattice<'_> {
     fn key(&self, state: &State) -> [i64; 4] {
         let place = state.pose.position / self.grid.cell;
-        let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
+        let course =
+            wrap(state.pose.heading) / std::f64::consts::TAU * self.problem.settings.grid.courses;
         let time = state.time / self.grid.step;
         [place.x, place.y, course, time].map(|v| (self.resolution.apart * v).round() as i64)
     }
@@ -209,17 +198,17 @@ impl Space for Lattice<'_> {
     type State = State;
 
     fn successors(&mut self, from: &State, out: &mut Vec<(State, f64)>) {
-        let own = self.problem.own;
+        let (own, settings) = (self.problem.own, &self.problem.settings.grid);
         let radius = own.turning_radius;
         let way = self.resolution.way * self.grid.cell;
         let end = self.problem.desired.end();
-        for speed in own.some_speeds(MOST_SPEEDS) {
+        for speed in own.some_speeds(settings.most_speeds) {
             if speed == 0.0 {
                 let duration = self.grid.step;
                 out.extend(self.after(from, Primitive::Wait { duration }, false));
                 continue;
             }
-            for turn in TURNS_RAD {
+            for turn in settings.turns {
                 let line = (way - turn.abs() * radius).max(0.0);
                 out.extend(self.after(from, Primitive::Turn { speed, turn, line }, false));
             }

@@ -5,9 +5,6 @@ use crate::space_time::proxy::Proxy;
 use searoom_geometry::frame::{Side, to_port};
 use searoom_model::trajectory::Segment;
 
-/// Seconds at the normalised size. Conflicts that all begin within this time are left to one manoeuvre.
-const APART_S: f64 = 120.0;
-
 /// Samples of a conflict's width.
 const CONFLICT_SAMPLES: usize = 24;
 
@@ -93,12 +90,13 @@ impl Conflict {
     }
 }
 
-/// Number of conflicts, ordered by start, that are far apart; those that begin together are one. At least 1.
-pub(crate) fn far_apart(conflicts: &[Conflict]) -> usize {
+/// Number of conflicts, ordered by start, that begin more than `apart_s` seconds apart; those that begin together
+/// are one. At least 1.
+pub(crate) fn far_apart(conflicts: &[Conflict], apart_s: f64) -> usize {
     let mut first = f64::NEG_INFINITY;
     let begin = conflicts.iter().map(|conflict| conflict.from);
     let apart = begin.filter(|from| {
-        let is_apart = *from > first + APART_S;
+        let is_apart = *from > first + apart_s;
         if is_apart {
             first = *from;
         }
@@ -116,15 +114,15 @@ mod tests {
         for (begin, expected) in [
             (&[][..], 1),
             (&[50.0], 1),
-            (&[0.0, APART_S], 1),
-            (&[0.0, APART_S + 1.0], 2),
+            (&[0.0, 120.0], 1),
+            (&[0.0, 121.0], 2),
             // the third is far from the first, not from the second
             (&[0.0, 100.0, 200.0], 2),
             (&[0.0, 200.0, 300.0, 400.0], 3),
             (&[f64::NAN], 1),
         ] {
             let conflicts: Vec<Conflict> = begin.iter().map(|t| Conflict::at(*t, 0.0)).collect();
-            assert_eq!(far_apart(&conflicts), expected, "{begin:?}");
+            assert_eq!(far_apart(&conflicts, 120.0), expected, "{begin:?}");
         }
     }
 }

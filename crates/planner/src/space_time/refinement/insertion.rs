@@ -17,24 +17,8 @@ use crate::space_time::refinement::rollout::SegmentOrigin;
 use crate::space_time::refinement::structure::{SegmentVariable, Structure};
 use searoom_geometry::frame::{Side, Vector};
 
-/// Metres. Shorter segment variables are removed before the insertion.
-const EMPTY_M: f64 = 0.5;
-
-/// Least useful turn in radians, and least useful line in turning radii.
-const LEAST_TURN: f64 = 0.03;
-const LEAST_LINE: f64 = 0.05;
-
-/// Largest change of a length in the step that prices the contacts, metres.
-const PRICING_RADIUS_M: f64 = 20.0;
-
 /// Largest multiplier of a metre of slack, m²/m.
 const MAX_MULTIPLIER: f64 = 1e5;
-
-/// Largest number of insertions at a time.
-const MAX_INSERTIONS: usize = 8;
-
-/// Least predicted gain of the insertions, as a fraction of the cost.
-const MIN_GAIN: f64 = 1e-3;
 
 /// Segment variable to be inserted before segment variable `gap`.
 #[derive(Debug, Clone, Copy)]
@@ -66,10 +50,11 @@ pub(crate) fn with_insertions(
 /// Removes turns and lines too short to be useful; `None` when there are none.
 pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
     let radius = context.problem.own.turning_radius;
+    let settings = &context.problem.settings.insertion;
     let is_of_use = |(variable, length): &(SegmentVariable, f64)| match variable {
         SegmentVariable::Ordered { .. } | SegmentVariable::Run { .. } => true,
-        SegmentVariable::Arc { .. } => *length >= LEAST_TURN * radius,
-        SegmentVariable::Line { .. } => *length >= LEAST_LINE * radius,
+        SegmentVariable::Arc { .. } => *length >= settings.least_turn * radius,
+        SegmentVariable::Line { .. } => *length >= settings.least_line * radius,
     };
     let kept: Vec<_> = guess.pieces().filter(is_of_use).collect();
     let is_shorter = kept.len() < guess.structure.free();
@@ -79,6 +64,7 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
 /// Removes empty segment variables and divides long lines, including the dependent line of a
 /// return.
 fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+    let empty = context.problem.settings.insertion.empty_m;
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });
@@ -90,7 +76,7 @@ fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialG
     };
     for (variable, length) in guess.pieces() {
         let is_run = variable.is_on_route();
-        if length >= EMPTY_M || is_run && length > 0.0 {
+        if length >= empty || is_run && length > 0.0 {
             add(variable, length);
         }
     }
@@ -112,6 +98,7 @@ fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialG
 
 /// Most promising insertions; `None` where their total predicted gain is negligible.
 fn insertions(context: &Context, base: &InitialGuess) -> Option<Vec<Insertion>> {
+    let settings = &context.problem.settings.insertion;
     let free = base.structure.free();
     let trial = context.trial(&base.structure, &base.lengths)?;
     let unreduced = context.unreduced(&base.structure, trial);
@@ -142,9 +129,9 @@ fn insertions(context: &Context, base: &InitialGuess) -> Option<Vec<Insertion>> 
         }
     }
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    found.truncate(MAX_INSERTIONS.min(MAX_VARIABLES - 2 - free));
+    found.truncate(settings.max_insertions.min(MAX_VARIABLES - 2 - free));
     let promised: f64 = found.iter().map(|a| a.gain).sum();
-    (promised > MIN_GAIN * unreduced.trial.cost).then_some(found)
+    (promised > settings.min_predicted_gain * unreduced.trial.cost).then_some(found)
 }
 
 /// Position and side of the first turn. No turn to the other side is inserted before it: other
@@ -174,12 +161,13 @@ fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
 fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
     let free = base.structure.free();
     let model = context.model(&base.structure, &base.lengths)?;
+    let radius = context.problem.settings.insertion.pricing_radius_m;
     let programme = Programme {
         size: free,
         hessian: &model.hessian,
         gradient: &model.gradient,
-        low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
-        high: &[PRICING_RADIUS_M; MAX_VARIABLES],
+        low: &base.lengths.map(|l| (-radius).max(-l)),
+        high: &[radius; MAX_VARIABLES],
         rows: &model.rows,
         price: Some(MAX_MULTIPLIER),
     };

@@ -25,51 +25,13 @@ use crate::space_time::refinement::trial::Trial;
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 
-/// Trust region of the lengths, metres: first, largest, smallest.
-const FIRST_RADIUS_M: f64 = 80.0;
-const LARGEST_RADIUS_M: f64 = 400.0;
-const SMALLEST_RADIUS_M: f64 = 0.02;
-
-/// Largest number of steps of one refinement.
-pub(crate) const MAX_STEPS: usize = 40;
-
-/// Largest number of restoration steps for a result slightly inside a set, and the largest such
-/// depth, metres.
-const RESTORATIONS: usize = 3;
-const RESTORABLE_M: f64 = 5.0;
-
 /// Longest turn of one segment variable, radians: in a step of the programme, and where a step is
 /// restored or corrected. With a small turning radius a step of some metres would be thousands of
 /// turns, each with its closest approaches.
-const LONGEST_ARC: f64 = 2.0;
 const LONGEST_RESTORED_ARC: f64 = std::f64::consts::TAU;
-
-/// Penalty of a missing metre, m²/m. It starts as a multiple of the initial guess's cost, which a
-/// plan changes over some tens of metres. Later it is at least the sum of the multipliers.
-const LEAST_PENALTY: f64 = 10.0;
-const PENALTY_PER_COST: f64 = 0.01;
-
-/// Factor and largest number of backtracking steps for a step that does not fit or gain. Then the
-/// programme is solved again in a smaller trust region.
-const BACKTRACK: f64 = 0.4;
-const MAX_BACKTRACKS: usize = 2;
-
-/// Fraction of the attainable change that an unsatisfiable row requires.
-const ATTAINABLE: f64 = 0.8;
-
-/// Penalty increase for a refinement that has converged inside a set, and the largest number of
-/// increases.
-const PENALTY_FACTOR: f64 = 6.0;
-const MAX_RAISES: usize = 3;
-
-/// Least ratio of actual to predicted gain of a step.
-const LEAST_GAIN: f64 = 0.05;
 
 /// Depth in metres that needs no correction.
 const CORRECTION_M: f64 = 1e-3;
-
-/// Relative decrease that counts as no progress.
-const STALLED: f64 = 1e-3;
 
 /// Initial guess of a refinement.
 #[derive(Debug, Clone)]
@@ -167,8 +129,9 @@ impl Refinement {
 
     /// `None` when the initial guess's ending does not fit.
     fn new(context: &Context, guess: InitialGuess) -> Option<Self> {
+        let settings = &context.problem.settings.refinement;
         let model = context.model(&guess.structure, &guess.lengths)?;
-        let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
+        let penalty = settings.least_penalty + settings.penalty_per_cost * model.cost;
         let first = guess.first_turn();
         let wanted = context.problem.first_turn;
         let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
@@ -184,7 +147,7 @@ impl Refinement {
             best: None,
             penalty,
             price: penalty,
-            radius: FIRST_RADIUS_M,
+            radius: settings.first_radius_m,
             stalled: 0,
             raised: 0,
             steps: 0,
@@ -250,14 +213,15 @@ impl Refinement {
     /// Restoration: moves a nearly clear manoeuvre to the nearest clear one by a few steps of least
     /// change under the linearised rows.
     fn restore(&mut self, context: &Context) {
+        let settings = &context.problem.settings.refinement;
         let n = self.structure.free();
         let mut identity = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
         for (i, row) in identity.iter_mut().enumerate() {
             row[i] = 1.0;
         }
-        for _ in 0..RESTORATIONS {
+        for _ in 0..settings.restorations {
             let clear = self.model.least_slack >= 0.0;
-            let close = self.model.violation < RESTORABLE_M;
+            let close = self.model.violation < settings.restorable_m;
             let worth = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
             if clear || !close || !worth {
                 return;
@@ -270,7 +234,7 @@ impl Refinement {
                 high: &self.largest_steps(
                     context,
                     &self.lengths,
-                    LARGEST_RADIUS_M,
+                    settings.largest_radius_m,
                     LONGEST_RESTORED_ARC,
                 ),
                 rows: &self.model.rows,
@@ -328,17 +292,18 @@ impl Refinement {
 
     /// Takes one SQP step.
     pub(crate) fn step(&mut self, context: &Context) {
+        let settings = &context.problem.settings.refinement;
         self.steps += 1;
         let advanced = self.advance(context);
-        if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
+        if !advanced && self.model.least_slack < 0.0 && self.raised < settings.max_raises {
             // converged inside a set: raise the penalty
             self.raised += 1;
-            self.penalty *= PENALTY_FACTOR;
-            self.radius = FIRST_RADIUS_M;
+            self.penalty *= settings.penalty_factor;
+            self.radius = settings.first_radius_m;
             self.stalled = 0;
             return;
         }
-        if self.steps >= MAX_STEPS || !advanced {
+        if self.steps >= context.problem.settings.budgets.one_target.max_iterations || !advanced {
             self.finish(context);
         }
     }
@@ -398,9 +363,10 @@ impl Refinement {
     }
 
     fn advance(&mut self, context: &Context) -> bool {
+        let settings = &context.problem.settings.refinement;
         let n = self.structure.free();
         let low = self.least_steps(context, &self.lengths, self.radius);
-        let high = self.largest_steps(context, &self.lengths, self.radius, LONGEST_ARC);
+        let high = self.largest_steps(context, &self.lengths, self.radius, settings.longest_arc);
         let mut rows = Vec::with_capacity(self.model.rows.len());
         for row in &self.model.rows {
             let (mut reach, mut least) = (0.0, 0.0);
@@ -413,7 +379,7 @@ impl Refinement {
             if !(least >= row.bound) {
                 // a row that the box cannot satisfy requires only what is attainable
                 rows.push(Constraint {
-                    bound: row.bound.min(ATTAINABLE * reach),
+                    bound: row.bound.min(settings.attainable * reach),
                     ..*row
                 });
             }
@@ -446,7 +412,7 @@ impl Refinement {
             .sum();
         let merit = self.merit();
         let mut share = 1.0;
-        for _ in 0..=MAX_BACKTRACKS {
+        for _ in 0..=settings.max_backtracks {
             let predicted = share * (self.penalty * met - linear) - 0.5 * share * share * bent;
             let mut trial_lengths = self.lengths;
             for i in 0..n {
@@ -454,7 +420,7 @@ impl Refinement {
             }
             let mut found = context.trial(&self.structure, &trial_lengths);
             let gain = |o: &Trial| merit - o.cost - self.penalty * o.violation;
-            let enough = |gained: f64| gained > 0.0 && gained >= LEAST_GAIN * predicted;
+            let enough = |gained: f64| gained > 0.0 && gained >= settings.least_gain * predicted;
             if share == 1.0
                 && let Some(trial) = &found
                 && !enough(gain(trial))
@@ -469,23 +435,23 @@ impl Refinement {
                 && enough(gained)
             {
                 let model = context.completed(&self.structure, trial);
-                let settled =
-                    gained < STALLED * model.cost.max(1.0) && model.violation < CORRECTION_M;
+                let settled = gained < settings.stalled * model.cost.max(1.0)
+                    && model.violation < CORRECTION_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial_lengths, model);
                 self.keep_if_best(context);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest)
                         .min(self.radius)
-                        .max(SMALLEST_RADIUS_M);
+                        .max(settings.smallest_radius_m);
                 } else if gained > 0.6 * predicted && largest > 0.9 * self.radius {
-                    self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
+                    self.radius = (1.7 * self.radius).min(settings.largest_radius_m);
                 }
                 return self.stalled < 2;
             }
-            share *= BACKTRACK;
+            share *= settings.backtrack;
         }
         self.radius = share * largest.min(self.radius);
-        self.radius >= SMALLEST_RADIUS_M
+        self.radius >= settings.smallest_radius_m
     }
 }

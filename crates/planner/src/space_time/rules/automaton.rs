@@ -29,10 +29,6 @@ use crate::{
 };
 use searoom_geometry::frame::{Vector, cross};
 
-/// Seconds for which a parallel course stays clear after the targets are passed: more is wider, with
-/// more room to return.
-const ROOM_S: [f64; 4] = [0.0, 6.0, 30.0, 150.0];
-
 /// The graph of manoeuvres with these departures and first alterations.
 pub(super) struct Graph<'g, 's, 'a> {
     pub manoeuvres: &'g Manoeuvres<'s, 'a>,
@@ -145,7 +141,7 @@ pub(super) fn ways_back<'m>(
 pub(super) fn outward(manoeuvres: &Manoeuvres, out: &Partial) -> impl Iterator<Item = Partial> {
     let begun = manoeuvres.problem().under_way;
     let may_turn_back = begun.is_none_or(|begun| begun.may_turn_back());
-    let parallel = || manoeuvres.parallel(out, ROOM_S[0], COARSE_S, None);
+    let parallel = || manoeuvres.parallel(out, manoeuvres.settings().room_s[0], COARSE_S, None);
     let parallel = may_turn_back.then(parallel).flatten();
     manoeuvres.direct(out).into_iter().chain(parallel)
 }
@@ -155,7 +151,10 @@ pub(super) fn wider(manoeuvres: &Manoeuvres, passed: &Partial) -> Option<Partial
     let Outward::Parallel { spare } = passed.outward else {
         return None;
     };
-    let rooms = ROOM_S.map(|room| room * manoeuvres.unit);
+    let rooms = manoeuvres
+        .settings()
+        .room_s
+        .map(|room| room * manoeuvres.unit);
     let mut rooms = rooms.into_iter().filter(|room| *room > spare);
     let room = rooms.find(|room| !manoeuvres.goes_on(passed, *room))?;
     let out = manoeuvres.out(passed.leave, passed.first)?;

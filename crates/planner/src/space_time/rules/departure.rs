@@ -9,15 +9,6 @@ use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
 use searoom_sets::contact;
 
-/// Most departures, and the least time between two, seconds: in a short window they differ little.
-const MOST_DEPARTURES: f64 = 6.0;
-const APART_S: f64 = 8.0;
-
-/// Seconds within which the first alteration follows a risk that begins late. A ship that overtakes
-/// alters sooner: once it has turned, the closest approach comes early.
-const REACT_S: f64 = 20.0;
-const OVERTAKING_REACT_S: f64 = 10.0;
-
 /// Seconds: more than the step of the judges' samples, so that one of them sees an alteration that
 /// is in time.
 pub(super) const SAMPLE_S: f64 = 1.5;
@@ -25,9 +16,9 @@ pub(super) const SAMPLE_S: f64 = 1.5;
 impl Manoeuvres<'_, '_> {
     /// Some times of departure until the latest one, the latest first.
     pub(super) fn departures(&self, from: f64, latest: f64) -> Vec<f64> {
-        let window = latest - from;
-        let parts = (window / (APART_S * self.unit)).ceil();
-        let parts = parts.clamp(1.0, MOST_DEPARTURES - 1.0) as usize;
+        let (window, settings) = (latest - from, self.settings());
+        let parts = (window / (settings.departures_apart_s * self.unit)).ceil();
+        let parts = parts.clamp(1.0, settings.most_departures - 1.0) as usize;
         let share = |part: usize| 1.0 - part as f64 / parts as f64;
         let times = (0..=parts).map(|part| self.tidy_time(from + share(part) * window));
         let mut times: Vec<f64> = times.collect();
@@ -48,6 +39,7 @@ impl Manoeuvres<'_, '_> {
     /// turn can soon be seen after it.
     pub(super) fn ample_time(&self) -> f64 {
         let (limits, own) = (self.problem().thresholds, self.problem().own);
+        let settings = self.settings();
         let ample = limits.ample_time(own.hull.length);
         let soon = limits.time_factor(own.hull.length) * limits.monitor.response();
         let turning = SMALL_TURN * own.turning_radius / self.context.speeds.normal;
@@ -55,8 +47,8 @@ impl Manoeuvres<'_, '_> {
         let latest = keeping_clear.map(|p| {
             let e = p.encountered;
             let react = match e.role {
-                Role::Overtaking => OVERTAKING_REACT_S,
-                _ => REACT_S,
+                Role::Overtaking => settings.overtaking_react_s,
+                _ => settings.react_s,
             };
             let seen = e.risk_since + (soon - turning - SAMPLE_S).max(react);
             (e.tcpa - ample).max(e.risk_since + react).min(seen)

@@ -15,19 +15,6 @@ use crate::{Escape, PlannedManoeuvre, Problem, UnderWay};
 use searoom_colregs::{Duty, Encountered};
 use searoom_model::trajectory::Segment;
 
-/// Highest ratio of *J* to the cheapest plan's that is accepted to avoid breaking a rule. *J* is quadratic, so
-/// this is ten times the deviation; beyond it no one would sail the plan, such as one manoeuvre around ships
-/// that are met an hour apart.
-const MOST_COST_RATIO: f64 = 100.0;
-
-/// The same ratio for a plan that still breaks some rules, though fewer than the cheapest, because one rule
-/// fewer of many hardly makes a better plan.
-const MOST_UNLAWFUL_COST_RATIO: f64 = 1.5;
-
-/// Most nodes that are expanded: so many for each target, and as many again. Most plans whose rules are judged.
-const EXPANDED_PER_TARGET: usize = 3;
-const MOST_PLANS: usize = 24;
-
 /// A plan by the rules.
 pub(crate) struct RulePlan {
     pub motion: Vec<Segment>,
@@ -66,6 +53,7 @@ pub(crate) fn by_the_rules(
 }
 
 fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Option<RulePlan> {
+    let settings = &context.problem.settings.rules;
     let root = Begun {
         motion: nominal_motion.to_vec(),
         from: 0.0,
@@ -87,25 +75,25 @@ fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Op
     // one plan first: the time may soon be up
     let first = graph.finished(root.clone(), Group::AtContact);
     let mut search = Search::new(Step::Begun(root.clone()));
-    let most_expanded = EXPANDED_PER_TARGET * (context.problem.encountered.len() + 1);
+    let most_expanded = settings.groups_per_target * (context.problem.encountered.len() + 1);
     let mut best: Option<(usize, Rc<Begun>)> = None;
     let mut cheapest: Option<f64> = None;
     let mut judge = |plan: &Rc<Begun>| {
         let cheapest = *cheapest.get_or_insert(plan.cost);
         let broken = broken_rules(context.problem, &plan.motion);
         let most = match broken {
-            0 => MOST_COST_RATIO,
-            _ => MOST_UNLAWFUL_COST_RATIO,
+            0 => settings.most_cost_ratio,
+            _ => settings.most_unlawful_cost_ratio,
         };
         let better = best.as_ref().is_none_or(|(least, _)| broken < *least);
         if better && plan.cost <= most * cheapest {
             best = Some((broken, plan.clone()));
         }
         // the next ones cost no less
-        broken == 0 || plan.cost > MOST_COST_RATIO * cheapest
+        broken == 0 || plan.cost > settings.most_cost_ratio * cheapest
     };
     let mut is_decided = false;
-    for _ in 0..MOST_PLANS {
+    for _ in 0..settings.most_plans {
         let Stop::Goal(goal) = search.next_goal(&mut graph, most_expanded) else {
             break;
         };
@@ -374,7 +362,7 @@ fn resolved(
         speeds: ManoeuvreSpeeds::at(&problem, contact),
         ..*context
     };
-    let family = Family::by_the_rules(group);
+    let family = Family::by_the_rules(group, &context.problem.settings.rules);
     let mut manoeuvres = Manoeuvres::new(&context, motion, all, family, effort);
     if let Some(begun) = under_way {
         let gone_on = manoeuvres.going_on(&begun);

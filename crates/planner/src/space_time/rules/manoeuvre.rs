@@ -9,8 +9,6 @@
 //! A [`Partial`] manoeuvre is built part by part: each part is the shortest one whose line is clear
 //! ([`hug`](super::hug)), so only the departure, the course, and the way back are chosen.
 
-use std::f64::consts::PI;
-
 use crate::space_time::bound::Heuristic;
 use crate::space_time::context::Context;
 use crate::space_time::land;
@@ -23,45 +21,13 @@ use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::bodies::Passing;
 use crate::space_time::rules::compliance::{after_nearest, complies};
 use crate::space_time::rules::hug::{Held, HeldTurn, least_clear};
+use crate::space_time::settings::RuleSettings;
 use crate::{Escape, PlannedManoeuvre, Problem, Tidiness, UnderWay};
 use searoom_colregs::{APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered};
 use searoom_geometry::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::Segment;
 use searoom_sets::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-
-/// Seconds in which a harbour vessel sails its turning radius.
-const NORMAL_TURN_S: f64 = 20.0;
-
-/// First turns by the rules, as multiples of the least readily apparent turn of 30°.
-const TURNS: [f64; 6] = [1.0, 1.5, 2.2, 3.0, 4.0, 5.0];
-
-/// First turns by the rules from a given departure, as multiples of that turn: every 15°.
-const ALL_TURNS: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5];
-
-/// First turns without roles, as multiples of 30°.
-const PLAIN_TURNS: [f64; 4] = [0.3, 0.8, 1.5, 3.0];
-
-/// Largest first turn, radians: with a little more own ship would turn about.
-pub(super) const LARGEST_TURN: f64 = 3.0;
-
-/// Largest turn toward the last waypoint, radians: with more own ship would circle.
-const LARGEST_LAST: f64 = 2.5;
-
-/// Seconds of the least segment of a manoeuvre by the rules.
-const LEAST_S: f64 = 3.0;
-
-/// Greatest lower speed of a manoeuvre without roles, as a fraction of the ordered one.
-const PLAIN_SLOW: f64 = 0.98;
-
-/// Least turn of a manoeuvre without roles, radians.
-const PLAIN_TURN: f64 = PI / 60.0;
-
-/// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
-const SPEED_PRICE: f64 = 2.0;
-
-/// Ratio of the costs above which own ship is on time again by a change of speed that is too short.
-const SHORT_PRICE: f64 = 2.0;
 
 /// The first alteration of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -211,11 +177,11 @@ impl Manoeuvre {
 
 /// Limits and prices of the alterations that a manoeuvre may have.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Family {
+pub(super) struct Family<'a> {
     /// Least first turn, radians.
     pub least_turn: f64,
     /// First turns, where there are several departures, and where there is one, as multiples of 30°.
-    pub turns: [&'static [f64]; 2],
+    pub turns: [&'a [f64]; 2],
     /// Greatest of the lower speeds, as a fraction of the ordered one.
     pub most_slow: f64,
     /// Least time at a lower speed, seconds.
@@ -228,28 +194,28 @@ pub(super) struct Family {
     pub may_speed_up: bool,
 }
 
-impl Family {
+impl<'a> Family<'a> {
     /// By the rules toward these targets: an alteration is readily apparent (Rule 8).
-    pub(super) fn by_the_rules(encountered: &[Encountered]) -> Self {
+    pub(super) fn by_the_rules(encountered: &[Encountered], settings: &'a RuleSettings) -> Self {
         let mut encountered = encountered.iter();
         Self {
             least_turn: APPARENT_TURN,
-            turns: [&TURNS, &ALL_TURNS],
+            turns: [&settings.turns, &settings.all_turns],
             most_slow: APPARENT_SPEED,
             least_slow: APPARENT_TIME,
-            least: LEAST_S,
-            speed_price: SPEED_PRICE,
+            least: settings.least_s,
+            speed_price: settings.speed_price,
             may_speed_up: encountered.any(|e| e.role.duties().may_speed_up),
         }
     }
 
     /// Without roles: smaller turns, any lower speed at no extra price, and more speed. The least times are those
     /// of a tidy plan, in seconds of the problem.
-    pub(super) fn without_roles(tidy: &Tidiness) -> Self {
+    pub(super) fn without_roles(tidy: &Tidiness, settings: &'a RuleSettings) -> Self {
         Self {
-            least_turn: PLAIN_TURN,
-            turns: [&PLAIN_TURNS, &PLAIN_TURNS],
-            most_slow: PLAIN_SLOW,
+            least_turn: settings.plain_turn,
+            turns: [&settings.plain_turns, &settings.plain_turns],
+            most_slow: settings.plain_slow,
             least_slow: tidy.speed_time,
             least: tidy.segment_time,
             speed_price: 1.0,
@@ -268,7 +234,7 @@ pub(super) struct Manoeuvres<'s, 'a> {
     /// ship is on the route again.
     to_the_end: Vec<bool>,
     pub passing: Vec<Passing<'s>>,
-    pub family: Family,
+    pub family: Family<'a>,
     /// True for a target from which one length of the longer ship is kept, Rule 8(d).
     pub keeps_a_length: fn(&Passing) -> bool,
     /// True where turns are made at half speed or less.
@@ -292,10 +258,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         context: &'s Context<'a>,
         (nominal_motion, from): (&'s [Segment], f64),
         all: bool,
-        family: Family,
+        family: Family<'a>,
         effort: Effort<'s>,
     ) -> Self {
         let problem = context.problem;
+        let settings = &problem.settings.rules;
         let has_target = |obstacle: &Obstacle| {
             let mut encountered = problem.encountered.iter();
             encountered.any(|e| obstacle.contains(e.ship.moved(e.tcpa).pose.position, e.tcpa))
@@ -313,8 +280,8 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             keeps_a_length: |_| true,
             slows_to_turn: false,
             stops: false,
-            most_turn: LARGEST_TURN,
-            unit: (turn_s / NORMAL_TURN_S).max(1.0),
+            most_turn: settings.largest_turn,
+            unit: (turn_s / settings.turn_s).max(1.0),
             gaps: problem.obstacles.len() > 1 || !problem.land_obstacle.is_empty(),
             bound: Heuristic::new(problem.desired, problem.time_weight, problem.own),
             effort,
@@ -323,6 +290,10 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
 
     pub(super) fn problem(&self) -> &'s Problem<'s> {
         self.context.problem
+    }
+
+    pub(super) fn settings(&self) -> &'s RuleSettings {
+        &self.context.problem.settings.rules
     }
 
     /// Factor of the cost.
@@ -593,7 +564,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let found = least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)?;
         let last = found.motion.iter().rfind(|s| s.is_arc());
         let turn = last.map_or(0.0, |arc| arc.turn_rate.abs() * arc.duration);
-        (turn < LARGEST_LAST).then_some(found)
+        (turn < self.settings().largest_last).then_some(found)
     }
 
     /// The last line of a partial manoeuvre prolonged, and a return to the end of the route, where that
@@ -704,7 +675,11 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             [now, next, ..] => now.duration < self.family.least && now.speed != next.speed,
             _ => false,
         };
-        let short_price = if is_short { SHORT_PRICE } else { 1.0 };
+        let short_price = if is_short {
+            self.settings().short_price
+        } else {
+            1.0
+        };
         self.plain_cost(whole) * short_price
     }
 

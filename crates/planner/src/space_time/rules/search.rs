@@ -10,7 +10,6 @@
 //! then from none, where that is the only way or costs a tenth; turns at half speed or less come last.
 
 use std::cmp::Ordering;
-use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
 use crate::search::{Search, Stop};
@@ -24,15 +23,12 @@ use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::departure::SAMPLE_S;
 use crate::space_time::rules::hug::{COARSE_S, FINE_S, HeldTurn};
 use crate::space_time::rules::manoeuvre::{
-    Family, FirstAlteration, LARGEST_TURN, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
+    Family, FirstAlteration, Manoeuvre, Manoeuvres, Outward, Partial, WayBack,
 };
 use crate::{FAR_OFF_LENGTHS, MANY_TIMES, Problem, Tidiness, UnderWay};
 use searoom_colregs::APPARENT_TURN;
 use searoom_geometry::frame::{Side, wrap};
 use searoom_model::trajectory::Segment;
-
-/// Angles between the return line and the route, radians.
-const ANGLES: [f64; 3] = [0.35, 0.65, 1.05];
 
 /// Radians by which a turn to a tangent is clear of it.
 const CLEAR_OF_TANGENT: f64 = 1e-6;
@@ -43,39 +39,8 @@ const SPARE: f64 = 1.001;
 /// Tangents nearer to each other than this are one, radians.
 const SAME_TANGENT: f64 = 0.03;
 
-/// Departures whose line hugs a body, for each course.
-const HUGGING_DEPARTURES: usize = 3;
-
-/// Most goals whose rules the judges are asked for.
-const MOST_GOALS: usize = 6;
-
-/// Most expanded nodes of one search.
-const MOST_EXPANDED: usize = 4_000;
-
-/// Rounds of the pattern search, and its first steps: seconds of the departure in units of the ship,
-/// radians of the turn and of the angle of the return, and seconds by which a parallel course is wider.
-const ROUNDS: usize = 7;
-const STEPS: [f64; 4] = [10.0, 0.15, 0.2, 30.0];
-
-/// Angles of the return that the pattern search may try, radians.
-const MOST_ANGLES: RangeInclusive<f64> = 0.1..=1.4;
-
-/// Largest turn of an escape, radians: a turn about at the last moment is none.
-const LARGEST_ESCAPE: f64 = FRAC_PI_2 + 1e-9;
-
 /// Sampled instants of the escape of a stand-on ship, and bisection steps after that.
-const SAMPLES: usize = 40;
 const HALVINGS: usize = 5;
-
-/// Seconds by which a stand-on ship acts before the latest certified escape.
-const SPARE_S: f64 = 40.0;
-
-/// Ratio of the cost of an escape to that of a manoeuvre from when own ship may act: one that is dearer
-/// is no escape.
-const LATE_PRICE: f64 = 4.0;
-
-/// Range in lengths within which a stand-on ship acts.
-const ACT_LENGTHS: f64 = 6.0;
 
 /// The numbers of a manoeuvre that no contact decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,7 +82,10 @@ pub(crate) fn without_roles(
         problem: &problem,
         ..*context
     };
-    let (motion, family) = ((nominal_motion, 0.0), Family::without_roles(tidy));
+    let (motion, family) = (
+        (nominal_motion, 0.0),
+        Family::without_roles(tidy, &problem.settings.rules),
+    );
     let manoeuvres = Manoeuvres::new(&context, motion, true, family, effort);
     let found = manoeuvres.best(0.0..=contact.max(0.0), f64::INFINITY);
     found.map(|found| found.whole.motion)
@@ -153,13 +121,14 @@ impl Manoeuvres<'_, '_> {
             return None;
         }
         let may = self.may_act() + SAMPLE_S;
+        let settings = self.settings();
         // standing on (Rule 17) takes priority over the one-length clearance, and over a moderate turn
         let keeps_a_length = self.keeps_a_length;
         let ways = [
-            (LARGEST_ESCAPE, keeps_a_length),
-            (LARGEST_ESCAPE, FROM_NONE),
-            (LARGEST_TURN, keeps_a_length),
-            (LARGEST_TURN, FROM_NONE),
+            (settings.largest_escape, keeps_a_length),
+            (settings.largest_escape, FROM_NONE),
+            (settings.largest_turn, keeps_a_length),
+            (settings.largest_turn, FROM_NONE),
         ];
         let (mut latest, mut tried): (Option<f64>, Option<f64>) = (None, None);
         for (most_turn, keeps_a_length) in ways {
@@ -179,14 +148,14 @@ impl Manoeuvres<'_, '_> {
             }
         }
         let mut latest = latest?;
-        self.most_turn = LARGEST_TURN;
+        self.most_turn = settings.largest_turn;
         if latest < may && may < contact && self.best(may..=may, f64::INFINITY).is_some() {
             latest = may;
         }
-        let mut wanted = latest - SPARE_S;
+        let mut wanted = latest - settings.spare_s;
         // where it cannot hold on for as long as it must, not longer than is safe
         if !(latest < may - SAMPLE_S) {
-            wanted = wanted.min(self.comes_within(ACT_LENGTHS)).max(may);
+            wanted = wanted.min(self.comes_within(settings.act_lengths)).max(may);
         }
         let latest = latest.max(self.from);
         let leave = self.tidy_time(wanted.clamp(self.from, latest));
@@ -266,22 +235,23 @@ impl Manoeuvres<'_, '_> {
     }
 
     /// The latest time from which there is an escape: a lawful manoeuvre with a turn of at most
-    /// `most_turn` that costs at most [`LATE_PRICE`] times one from when own ship `may` act. By
+    /// `most_turn` that costs at most `late_price` times one from when own ship `may` act. By
     /// sampling and bisection.
     fn latest_escape(&mut self, contact: f64, may: f64, most_turn: f64) -> Option<f64> {
-        self.most_turn = LARGEST_TURN;
+        self.most_turn = self.settings().largest_turn;
         let may = self.tidy_time(may.clamp(self.from, contact));
         // what is sailed before both is no part of the price
         let before = self.problem().error_of(&until(self.nominal_motion, may));
         let early = self.best(may..=may, f64::INFINITY);
         let below = early.map_or(f64::INFINITY, |early| {
             let before = before * early.price;
-            before + LATE_PRICE * (early.whole.cost - before)
+            before + self.settings().late_price * (early.whole.cost - before)
         });
         self.most_turn = most_turn;
-        let step = (contact - self.from) / SAMPLES as f64;
+        let samples = self.settings().escape_samples;
+        let step = (contact - self.from) / samples as f64;
         let exists = |time: f64| self.has_escape(self.tidy_time(time), below);
-        let mut times = (0..=SAMPLES).rev().map(|k| self.from + step * k as f64);
+        let mut times = (0..=samples).rev().map(|k| self.from + step * k as f64);
         let mut latest = times.find(|time| self.effort.clock.is_up() || exists(*time))?;
         let mut too_late = (latest + step).min(contact);
         for _ in 0..HALVINGS {
@@ -359,8 +329,9 @@ impl Manoeuvres<'_, '_> {
         let mut search = Search::new(Partial::start());
         let begun = problem.under_way;
         let mut best: Option<(usize, Partial)> = None;
-        for _ in 0..MOST_GOALS {
-            let Stop::Goal(goal) = search.next_goal(&mut graph, MOST_EXPANDED) else {
+        for _ in 0..self.settings().most_goals {
+            let Stop::Goal(goal) = search.next_goal(&mut graph, self.settings().most_expanded)
+            else {
                 break;
             };
             let found = &search.nodes()[goal].state;
@@ -403,9 +374,9 @@ impl Manoeuvres<'_, '_> {
         // built closer it may hug elsewhere, and be dearer
         best = (self.built(&Numbers::of(&best), best.cost)).unwrap_or(best);
         let mut scale = 1.0;
-        for _ in 0..ROUNDS {
+        for _ in 0..self.settings().rounds {
             let mut gained = false;
-            for (number, step) in STEPS.into_iter().enumerate() {
+            for (number, step) in self.settings().steps.into_iter().enumerate() {
                 let better = [scale, -scale].into_iter().find_map(|scale| {
                     if self.effort.clock.is_up() {
                         return None;
@@ -452,8 +423,9 @@ impl Manoeuvres<'_, '_> {
                 let WayBack::At(angle) = old.way_back else {
                     return None;
                 };
-                let least = MOST_ANGLES.start().max(self.least_angle());
-                let most = least.max(*MOST_ANGLES.end());
+                let [least, most] = self.settings().angle_range;
+                let least = least.max(self.least_angle());
+                let most = least.max(most);
                 new.way_back = WayBack::At((angle + step).clamp(least, most));
             }
             (3, FirstAlteration::Turn { .. }, Outward::Parallel { spare }) => {
@@ -583,7 +555,11 @@ impl Manoeuvres<'_, '_> {
 
     /// Angles of the returns, radians.
     fn angles(&self) -> Vec<f64> {
-        let mut angles = ANGLES.map(|angle| angle.max(self.least_angle())).to_vec();
+        let mut angles = self
+            .settings()
+            .angles
+            .map(|angle| angle.max(self.least_angle()))
+            .to_vec();
         angles.dedup();
         angles
     }
@@ -646,7 +622,7 @@ impl Manoeuvres<'_, '_> {
         }
         times.sort_by(|a, b| b.total_cmp(a));
         times.dedup();
-        times.truncate(HUGGING_DEPARTURES);
+        times.truncate(self.settings().hugging_departures);
         times
     }
 }

@@ -16,28 +16,6 @@ use searoom_geometry::frame::Vector;
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;
 
-/// Refinement steps of a guess.
-const STEPS: usize = 24;
-
-/// Corners nearer to the simplified path than this are left out: in cells of the grid, for paths of
-/// the grid and of the hybrid A*.
-const GRID_TOLERANCE: f64 = 1.0;
-const HYBRID_TOLERANCE: f64 = 0.6;
-
-/// Factor of the tolerance while too many corners remain.
-const COARSER: f64 = 1.3;
-
-/// A hybrid A* motion is kept up to this multiple of the best candidate's cost, because refinement typically
-/// saves a third.
-const OF_USE: f64 = 1.5;
-
-/// Cost below which the grid is too coarse for the hybrid A* to find a cheaper plan, in squared
-/// cells.
-const TOO_CHEAP: f64 = 0.01;
-
-/// Cells by which sets are smaller in the other grid: half a cell closes no gap that is there.
-const SMALLER: f64 = 0.5;
-
 /// Coarse search for one problem.
 #[derive(Debug)]
 pub(crate) struct CoarseSearch<'a> {
@@ -65,7 +43,10 @@ impl<'a> CoarseSearch<'a> {
         let problem = self.context.problem;
         let start = problem.own.pose.position;
         let path = self.grid.path_from(start, problem.desired.end());
-        self.refined(self.along(path, GRID_TOLERANCE), clock)
+        self.refined(
+            self.along(path, problem.settings.grid.grid_tolerance),
+            clock,
+        )
     }
 
     /// Motions of a hybrid A* that cost not much more than `least`, m², and the refined manoeuvres
@@ -79,16 +60,17 @@ impl<'a> CoarseSearch<'a> {
         clock: Clock,
     ) -> (Vec<Vec<Segment>>, Vec<Refinement>) {
         let mut found = (Vec::new(), Vec::new());
-        if !least.is_finite() || least < TOO_CHEAP * self.grid.cell.powi(2) {
+        let settings = &self.context.problem.settings.grid;
+        if !least.is_finite() || least < settings.too_cheap * self.grid.cell.powi(2) {
             return found;
         }
-        let limit = OF_USE * least;
+        let limit = settings.of_use * least;
         let Context {
             problem, proxies, ..
         } = self.context;
         self.add_along_hybrid(limit, clock, &mut found);
         if problem.search == SearchKind::Thorough
-            && let Some(grid) = CostToGoGrid::of(problem, proxies, SMALLER, clock)
+            && let Some(grid) = CostToGoGrid::of(problem, proxies, settings.smaller, clock)
         {
             let smaller = Self { grid, ..self };
             found.1.extend(smaller.along_grid(clock));
@@ -117,7 +99,10 @@ impl<'a> CoarseSearch<'a> {
         };
         let path = motion.iter().map(|s| (s.start_time, s.start.position));
         let end = motion.last().map(|s| (s.end_time(), s.end().position));
-        let mut along = self.along(path.chain(end).collect(), HYBRID_TOLERANCE);
+        let mut along = self.along(
+            path.chain(end).collect(),
+            problem.settings.grid.hybrid_tolerance,
+        );
         let guess = initial_guess_from(problem, route, &motion);
         along.extend(guess.and_then(|guess| Refinement::fitting(&self.context, guess)));
         motions.push(motion);
@@ -125,7 +110,8 @@ impl<'a> CoarseSearch<'a> {
     }
 
     fn refined(&self, mut fitting: Vec<Refinement>, clock: Clock) -> Vec<Refinement> {
-        parallel::each(&mut fitting, |r| r.go_on(&self.context, STEPS, clock));
+        let most = self.context.problem.settings.grid.iterations;
+        parallel::each(&mut fitting, |r| r.go_on(&self.context, most, clock));
         fitting
     }
 
@@ -182,7 +168,7 @@ fn corners_of(
     let path = &path[leaves.saturating_sub(1)..];
     let mut kept = simplified(path, tolerance);
     while kept.len() > MAX_CORNERS + 1 {
-        tolerance *= COARSER;
+        tolerance *= problem.settings.grid.coarser;
         kept = simplified(path, tolerance);
     }
     kept.pop();

@@ -6,7 +6,7 @@ use crate::space_time::manoeuvre::motion::sailed_between;
 use crate::space_time::manoeuvre::speeds::ManoeuvreSpeeds;
 use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::refinement::{InitialGuess, Refinement};
-use crate::space_time::selection::initial_guess::{InitialGuessBuilder, RETURN_ANGLES};
+use crate::space_time::selection::initial_guess::InitialGuessBuilder;
 use searoom_geometry::frame::{Side, Vector, cross, heading_of, wrap};
 use searoom_model::trajectory::Segment;
 
@@ -45,7 +45,7 @@ pub(crate) struct Corners<'c> {
 impl Corners<'_> {
     /// Refinement of a manoeuvre through these corners; `None` where none fits.
     pub(crate) fn refinement(&self, context: &Context) -> Option<Refinement> {
-        let angles = RETURN_ANGLES.into_iter();
+        let angles = context.problem.settings.guesses.return_angles.into_iter();
         angles
             .filter_map(|angle| self.guess(context, angle))
             .find_map(|guess| Refinement::fitting(context, guess))

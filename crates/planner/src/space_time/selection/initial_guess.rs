@@ -12,23 +12,6 @@ use crate::space_time::route::Route;
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 
-/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
-pub(crate) const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
-
-/// Turn of a waiting manoeuvre, radians.
-const WAITING_TURN: f64 = 0.6;
-
-/// Distance beyond the route behind a target that passed ahead, metres, and return angle, radians.
-const OVERSHOOT_M: f64 = 20.0;
-const OVERSHOOT_RETURN: f64 = 0.08;
-
-/// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
-/// and return turn, radians; lines, metres.
-const MAX_FAST_RATIO: f64 = 1.6;
-const AHEAD_TURN: f64 = 0.5;
-const AHEAD_RETURN: f64 = 0.3;
-const AHEAD_OUT_M: f64 = 40.0;
-
 /// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
 /// line until the set is passed, return.
 #[derive(Debug, Clone, Copy)]
@@ -133,7 +116,8 @@ impl EvasiveManoeuvre {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
             2.0 * radius * angle.sin() + line / angle.tan()
         };
-        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
+        let angle = problem.settings.guesses.return_angles;
+        let angle = angle.into_iter().find(|a| way_back(*a) < room);
         let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
@@ -166,7 +150,7 @@ impl EvasiveManoeuvre {
 }
 
 /// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down. It loses
-/// distance by a turn of [`WAITING_TURN`] to the side, a turn back of twice that, and a turn onto
+/// distance by a turn of `waiting_turn` to the side, a turn back of twice that, and a turn onto
 /// the route.
 pub(crate) fn waiting(
     problem: &Problem,
@@ -178,10 +162,11 @@ pub(crate) fn waiting(
 ) -> Option<InitialGuess> {
     let speeds = ManoeuvreSpeeds::at(problem, conflict.from);
     let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
+    let settings = &problem.settings.guesses;
     let (lag, due) = conflict.astern;
-    let needed = lag / (normal - slow * WAITING_TURN.cos());
+    let needed = lag / (normal - slow * settings.waiting_turn.cos());
     let begin = (due - needed).max(0.0);
-    let arc = WAITING_TURN * problem.own.turning_radius;
+    let arc = settings.waiting_turn * problem.own.turning_radius;
     let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
     // negated on purpose: a NaN gives no initial guess
     if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
@@ -195,13 +180,16 @@ pub(crate) fn waiting(
     builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
     builder.line(&[(slow, 0.4 * lines)]);
     if across {
-        let (sine, cosine) = WAITING_TURN.sin_cos();
+        let (sine, cosine) = settings.waiting_turn.sin_cos();
         let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
-        builder.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        builder.line(&[(fast, (offset + settings.overshoot_m) / sine)]);
         builder.turn(back, &[(fast, 0.0)]);
         builder.turn(
             side,
-            &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
+            &[(
+                fast,
+                arc + settings.overshoot_return * problem.own.turning_radius,
+            )],
         );
         builder.line(&[(fast, 0.0)]);
         return builder.build(Ending::Return { leg, speed: fast });
@@ -225,24 +213,28 @@ pub(crate) fn ahead(
 ) -> Option<InitialGuess> {
     let speeds = ManoeuvreSpeeds::at(problem, conflict.from);
     let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
+    let settings = &problem.settings.guesses;
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
     // negated on purpose: a NaN gives no initial guess
-    if !(fast > normal && needed < MAX_FAST_RATIO * due && turn > begin) {
+    if !(fast > normal && needed < settings.max_fast_ratio * due && turn > begin) {
         return None;
     }
     let radius = problem.own.turning_radius;
-    let arc = AHEAD_TURN * radius;
+    let arc = settings.ahead_turn * radius;
     let back = side.opposite();
     let mut builder = InitialGuessBuilder::default();
     let ordered = route.ordered_distance(begin);
     builder.runs(&speeds, ordered, (turn - begin) * fast, 0.0);
     builder.turn(side, &[(fast, arc)]);
-    builder.line(&[(fast, AHEAD_OUT_M)]);
-    builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
-    builder.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    builder.line(&[(fast, settings.ahead_out_m)]);
+    builder.turn(
+        back,
+        &[(fast, 0.0), (slow, arc + settings.ahead_return * radius)],
+    );
+    builder.line(&[(slow, settings.ahead_out_m), (normal, 0.0)]);
     builder.turn(side, &[(slow, 0.0), (fast, 0.0)]);
     builder.line(&[(slow, 0.0), (fast, 0.0)]);
     builder.build(Ending::Return { leg, speed: normal })

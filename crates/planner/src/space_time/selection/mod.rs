@@ -1,7 +1,6 @@
 //! Candidate selection: refines the plans of the searches and predefined manoeuvres; the cheapest
 //! clear candidate wins.
 
-pub(crate) mod budget;
 pub(crate) mod coarse_search;
 mod corners;
 pub(crate) mod initial_guess;
@@ -10,7 +9,6 @@ pub(crate) mod warm_start;
 
 use crate::Plan;
 use crate::clock::Clock;
-use crate::space_time::context::COARSE_CHORD_RAD;
 use crate::space_time::context::Context;
 use crate::space_time::graph::node::State;
 use crate::space_time::land;
@@ -18,10 +16,10 @@ use crate::space_time::manoeuvre::conflict::Conflict;
 use crate::space_time::proxy::first_met;
 use crate::space_time::refinement::insertion::{pruned, with_insertions};
 use crate::space_time::refinement::{InitialGuess, Refinement};
-use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::coarse_search::CoarseSearch;
 use crate::space_time::selection::initial_guess::{EvasiveManoeuvre, ahead, from_graph, waiting};
 use crate::space_time::selection::tidy::Prices;
+use crate::space_time::settings::SearchBudget;
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;
@@ -51,42 +49,8 @@ const SLENDER: [EvasiveManoeuvre; 5] = [
     FASTER_FIRST,
 ];
 
-/// Slenderness from which a conflict uses [`SLENDER`].
-const SLENDER_FROM: f64 = 2.5;
-
-/// Ratio of the offset astern to the lateral one below which waiting is tried as well.
-const WAITING_RATIO: f64 = 1.2;
-
-/// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
-const PASS_AHEAD_RATIO: f64 = 1.2;
-
-/// Largest number of conflicts with manoeuvres of their own, earliest first.
-const MAX_CONFLICTS: usize = 2;
-
 /// Relative cost difference below which two manoeuvres count as the same.
 const SAME_COST: f64 = 1e-3;
-
-/// Largest number of ways past the sets, where others than the cheapest are asked for.
-const MOST_WAYS: usize = 5;
-
-/// Relative cost difference below which two motions with the same first turn are the same way.
-const SAME_WAY: f64 = 0.02;
-
-/// Length above which lines are divided for the first and for the second insertion, metres.
-const UNCUT_M: [f64; 2] = [200.0, 80.0];
-
-/// Steps of a refinement after an insertion, and after the final pruning.
-const STEPS_AFTER_INSERTION: usize = 8;
-const STEPS_AFTER_PRUNING: usize = 6;
-
-/// Relative gain of an insertion that justifies another.
-const MIN_INSERTION_GAIN: f64 = 0.01;
-
-/// Relative cost that pruning may add.
-const PRUNING_COST: f64 = 2e-3;
-
-/// Number of rounds after which arcs are divided into fine chords.
-const FINE_FROM: usize = 6;
 
 /// Clear trajectory.
 #[derive(Debug, Clone)]
@@ -104,7 +68,7 @@ pub(crate) struct Selection<'a> {
     guesses: Vec<InitialGuess>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
-    prices: Prices,
+    prices: Prices<'a>,
     coarse_search: Option<CoarseSearch<'a>>,
     along_grid: Vec<Refinement>,
     /// Clear motions that pass the sets in other ways than the cheapest, where they are asked for.
@@ -162,8 +126,9 @@ impl<'a> Selection<'a> {
         let (problem, route) = (context.problem, context.route);
         let mut guesses = std::mem::take(&mut self.guesses);
         let leg = problem.desired.legs().len() - 1;
-        for conflict in conflicts.iter().take(MAX_CONFLICTS) {
-            if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
+        let settings = &problem.settings.guesses;
+        for conflict in conflicts.iter().take(settings.max_conflicts) {
+            if conflict.astern.0 < settings.waiting_ratio * conflict.nearest_offset() {
                 for across in [false, true] {
                     let both = Side::BOTH.into_iter();
                     guesses.extend(
@@ -173,11 +138,11 @@ impl<'a> Selection<'a> {
                     );
                 }
             }
-            if conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
+            if conflict.ahead.0 < settings.pass_ahead_ratio * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 guesses.extend(both.filter_map(|side| ahead(problem, route, side, conflict, leg)));
             }
-            let slender = conflict.slenderness() > SLENDER_FROM;
+            let slender = conflict.slenderness() > settings.slender_from;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
                 guesses.extend(
@@ -189,7 +154,7 @@ impl<'a> Selection<'a> {
         }
         let tidy = problem.tidy.map(|tidy| (tidy, guesses.clone()));
         let coarse = Context {
-            chord: COARSE_CHORD_RAD,
+            chord: problem.settings.refinement.coarse_chord,
             ..context
         };
         let mut running: Vec<Refinement> = guesses
@@ -202,11 +167,12 @@ impl<'a> Selection<'a> {
             iterations_once_clear: rounds,
             ..
         } = *self.search_budget;
+        let fine_from = problem.settings.refinement.fine_from;
         let mut round = 0;
         while round < steps {
             let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
             // only manoeuvres checked with fine chords count as clear
-            if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
+            if decided || round > fine_from && running.iter().all(Refinement::is_finished) {
                 break;
             }
             // up to `rounds` no refinement depends on another
@@ -270,9 +236,10 @@ impl<'a> Selection<'a> {
             leader_margin: margin,
             ..
         } = *self.search_budget;
+        let settings = &self.context.problem.settings.insertion;
         let leaders = leaders(running, most, margin);
         let mut least = leaders.first()?.1;
-        let [first, then] = UNCUT_M;
+        let [first, then] = settings.uncut_m;
         let mut best = None;
         let mut gained = 0.0;
         let mut leaders: Vec<_> = leaders.into_iter().map(|l| (l, None)).collect();
@@ -291,7 +258,7 @@ impl<'a> Selection<'a> {
             }
             running.extend(again);
         }
-        if self.search_budget.insert_twice && gained > MIN_INSERTION_GAIN {
+        if self.search_budget.insert_twice && gained > settings.min_gain {
             let guess = best.as_ref();
             let again = guess.and_then(|guess| self.with_insertions(guess, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
@@ -299,8 +266,9 @@ impl<'a> Selection<'a> {
         }
         let least = best_of(running)?.rank();
         let guess = best.and_then(|s| pruned(&self.context, &s));
-        let tidy = guess.and_then(|s| refined(&self.context, s, STEPS_AFTER_PRUNING, clock))?;
-        (tidy.rank() <= (1.0 + PRUNING_COST) * least).then_some(tidy)
+        let tidy = guess
+            .and_then(|s| refined(&self.context, s, settings.iterations_after_pruning, clock))?;
+        (tidy.rank() <= (1.0 + settings.pruning_cost) * least).then_some(tidy)
     }
 
     /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
@@ -314,8 +282,9 @@ impl<'a> Selection<'a> {
         if clock.is_up() {
             return None;
         }
+        let most = self.context.problem.settings.insertion.iterations;
         let guess = with_insertions(&self.context, guess, uncut)?;
-        refined(&self.context, guess, STEPS_AFTER_INSERTION, clock)
+        refined(&self.context, guess, most, clock)
     }
 
     /// Tests the refinements' results in the given order until one passes.
@@ -332,6 +301,7 @@ impl<'a> Selection<'a> {
 
     /// Clear alternatives that pass the targets differently from the best candidate, cheapest first.
     fn other_ways(&self, running: &[Refinement]) -> Vec<Vec<Segment>> {
+        let settings = &self.context.problem.settings.guesses;
         let best = self.best.iter();
         let mut ways: Vec<_> = best.map(|b| (b.motion.clone(), b.cost)).collect();
         for refinement in ranked(running) {
@@ -339,11 +309,13 @@ impl<'a> Selection<'a> {
                 break;
             };
             let cost = self.cost_of(&motion);
-            let is_same = |(other, of): &(Vec<_>, f64)| is_same_way((other, *of), (&motion, cost));
+            let is_same = |(other, of): &(Vec<_>, f64)| {
+                is_same_way((other, *of), (&motion, cost), settings.same_way)
+            };
             if !ways.iter().any(is_same) && self.is_clear(&motion) {
                 ways.push((motion, cost));
             }
-            if ways.len() == MOST_WAYS {
+            if ways.len() == settings.most_ways {
                 break;
             }
         }
@@ -392,10 +364,10 @@ impl<'a> Selection<'a> {
     }
 }
 
-/// True where two motions, with their costs, cost alike and turn to the same side first.
-pub(crate) fn is_same_way(one: (&[Segment], f64), other: (&[Segment], f64)) -> bool {
+/// True where two motions, with their costs, cost alike up to a fraction and turn to the same side first.
+pub(crate) fn is_same_way(one: (&[Segment], f64), other: (&[Segment], f64), same: f64) -> bool {
     let side = |motion: &[Segment]| motion.iter().find_map(|s| Side::of_turn(s.turn_rate));
-    (one.1 - other.1).abs() <= SAME_WAY * one.1 && side(one.0) == side(other.0)
+    (one.1 - other.1).abs() <= same * one.1 && side(one.0) == side(other.0)
 }
 
 /// Refinement with at most `most` steps, and fewer after the deadline.
@@ -439,16 +411,17 @@ fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     found.into_iter()
 }
 
-/// One round of a refinement, with fine chords from [`FINE_FROM`] on.
+/// One round of a refinement, with fine chords from `fine_from` on.
 fn advance(refinement: &mut Refinement, context: &Context, round: usize, clock: Clock) {
+    let settings = &context.problem.settings.refinement;
     let mut context = *context;
-    if round < FINE_FROM {
-        context.chord = COARSE_CHORD_RAD;
+    if round < settings.fine_from {
+        context.chord = settings.coarse_chord;
     }
     if clock.is_up() {
         return;
     }
-    if round == FINE_FROM {
+    if round == settings.fine_from {
         refinement.reevaluate(&context);
     }
     if !refinement.is_finished() {

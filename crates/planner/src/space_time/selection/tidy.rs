@@ -20,49 +20,19 @@ use crate::space_time::refinement::{InitialGuess, Refinement};
 use crate::space_time::route::Route;
 use crate::space_time::rules::automaton::Effort;
 use crate::space_time::rules::search::without_roles;
+use crate::space_time::settings::TidySettings;
 use crate::{AGAINST_THE_RULES, Problem, Tidiness};
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 use searoom_parallel as parallel;
 
-/// Price of a change of speed or a turn, as a fraction of the cost.
-const PRICE: f64 = 0.05;
-
-/// Price of each of them that is one too many, and of a segment or a time at a speed that is too
-/// short. No more than two are counted: a long voyage may need many, and a tidy plan must not cost
-/// a multiple without limit.
-const EXCESS_PRICE: f64 = 6.0;
-const MOST_EXCESS: usize = 2;
-
-/// Changes of speed and turns of a tidy plan, at most.
-const MOST_SPEED_CHANGES: usize = 3;
-const MOST_TURNS: usize = 4;
-
-/// Least change of speed as a fraction of own speed, and least turn in radians (2°).
-const SPEED_CHANGE: f64 = 0.02;
-const TURN: f64 = std::f64::consts::PI / 90.0;
-
-/// Fraction of the least time below which a segment variable is dropped, not prolonged. Also the
-/// fraction of the least time at a speed below which less speed is given up.
-const DROPPED: f64 = 0.5;
-
-/// Number of manoeuvres that are simplified, and relative cost difference up to which they are.
-const LEADERS: usize = 2;
-const LEADER_MARGIN: f64 = 0.5;
-
-/// Simplifying stops when a tidy candidate costs, with its price, at most this multiple of the refinement: the
-/// price of seven alterations, as many as a tidy plan has.
-const ENOUGH: f64 = 1.35;
-
-/// Steps of a refinement after simplifying.
-const STEPS: usize = 12;
-
 /// Prices of the alterations of a motion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Prices {
+pub(super) struct Prices<'a> {
     /// `None` where tidiness is not asked for.
     tidy: Option<Tidiness>,
     own_speed: f64,
+    settings: &'a TidySettings,
     /// Manoeuvres that a plan is expected to have: conflicts that are far apart have one each.
     manoeuvres: usize,
     /// Alterations already in the nominal motion (corners, legs of different speeds, returns to schedule),
@@ -70,11 +40,13 @@ pub(super) struct Prices {
     nominal: Alterations,
 }
 
-impl Prices {
-    pub(super) fn of(problem: &Problem, route: &Route, conflicts: &[Conflict]) -> Self {
-        let (tidy, own_speed) = (problem.tidy, problem.own.speed);
+impl<'a> Prices<'a> {
+    pub(super) fn of(problem: &Problem<'a>, route: &Route, conflicts: &[Conflict]) -> Self {
+        let (tidy, own_speed, settings) = (problem.tidy, problem.own.speed, &problem.settings.tidy);
         let nominal = tidy.map(|tidy| {
-            let of = |route: &Route| Alterations::of(own_speed, &route.follow(0.0, 0.0), &tidy);
+            let of = |route: &Route| {
+                Alterations::of(own_speed, &route.follow(0.0, 0.0), &tidy, settings)
+            };
             Alterations {
                 short: of(&route.without_recovery()).short,
                 ..of(route)
@@ -83,7 +55,8 @@ impl Prices {
         Self {
             tidy,
             own_speed,
-            manoeuvres: far_apart(conflicts),
+            settings,
+            manoeuvres: far_apart(conflicts, problem.settings.conflicts.apart_s),
             nominal: nominal.unwrap_or_default(),
         }
     }
@@ -94,15 +67,17 @@ impl Prices {
         let Some(tidy) = self.tidy else {
             return 1.0;
         };
-        let found = Alterations::of(self.own_speed, motion, &tidy);
+        let found = Alterations::of(self.own_speed, motion, &tidy, self.settings);
+        let settings = self.settings;
         let number = found.speed_changes + found.turns;
-        let excess = self.excess(&found).min(MOST_EXCESS);
-        1.0 + PRICE * number as f64 / self.manoeuvres as f64 + EXCESS_PRICE * excess as f64
+        let excess = self.excess(&found).min(settings.most_excess);
+        1.0 + settings.price * number as f64 / self.manoeuvres as f64
+            + settings.excess_price * excess as f64
     }
 
     /// True for a motion with no more alterations than a tidy plan has, and without short times.
     fn is_tidy(&self, motion: &[Segment]) -> bool {
-        let found = |tidy| Alterations::of(self.own_speed, motion, &tidy);
+        let found = |tidy| Alterations::of(self.own_speed, motion, &tidy, self.settings);
         self.tidy.is_none_or(|tidy| self.excess(&found(tidy)) == 0)
     }
 
@@ -114,8 +89,9 @@ impl Prices {
     /// Number of alterations too many and of times too short, beyond those of the nominal motion.
     fn excess(&self, found: &Alterations) -> usize {
         let nominal = &self.nominal;
-        let speed_changes = MOST_SPEED_CHANGES * self.manoeuvres + nominal.speed_changes;
-        let turns = MOST_TURNS * self.manoeuvres + nominal.turns;
+        let speed_changes =
+            self.settings.most_speed_changes * self.manoeuvres + nominal.speed_changes;
+        let turns = self.settings.most_turns * self.manoeuvres + nominal.turns;
         found.speed_changes.saturating_sub(speed_changes)
             + found.turns.saturating_sub(turns)
             + found.short.saturating_sub(nominal.short)
@@ -133,25 +109,25 @@ struct Alterations {
 
 impl Alterations {
     /// Alterations of a motion without equal neighbours, from a speed on.
-    fn of(own_speed: f64, motion: &[Segment], tidy: &Tidiness) -> Self {
+    fn of(own_speed: f64, motion: &[Segment], tidy: &Tidiness, settings: &TidySettings) -> Self {
         let is_short = |time: f64, least: f64| time < least * (1.0 - 1e-6);
         let mut found = Self::default();
         let (mut speed, mut since, mut turn) = (own_speed, f64::NEG_INFINITY, 0.0_f64);
         for s in motion {
             found.short += usize::from(is_short(s.duration, tidy.segment_time));
-            if (s.speed - speed).abs() > SPEED_CHANGE * own_speed {
+            if (s.speed - speed).abs() > settings.speed_change * own_speed {
                 found.speed_changes += 1;
                 found.short += usize::from(is_short(s.start_time - since, tidy.speed_time));
                 (speed, since) = (s.speed, s.start_time);
             }
             let by = s.turn_rate * s.duration;
             if by == 0.0 || by * turn < 0.0 {
-                found.turns += usize::from(turn.abs() > TURN);
+                found.turns += usize::from(turn.abs() > settings.turn);
                 turn = 0.0;
             }
             turn += by;
         }
-        found.turns += usize::from(turn.abs() > TURN);
+        found.turns += usize::from(turn.abs() > settings.turn);
         found
     }
 }
@@ -200,9 +176,9 @@ impl Selection<'_> {
                 pool.add(handicap(self.context.problem, &motion), motion);
             }
         }
-        let speeds = self.context.speeds;
-        for (guess, rank) in leaders(running, LEADERS, LEADER_MARGIN) {
-            if pool.has_tidy_below(ENOUGH * rank) {
+        let (speeds, settings) = (self.context.speeds, self.prices.settings);
+        for (guess, rank) in leaders(running, settings.leaders, settings.leader_margin) {
+            if pool.has_tidy_below(settings.enough * rank) {
                 break;
             }
             for pattern in Speeds::all(&speeds) {
@@ -210,8 +186,9 @@ impl Selection<'_> {
                     true => &pool.late,
                     false => &pool.on_time,
                 };
-                let simple = simplified(&guess, &speeds, pattern, tidy);
-                let refined = simple.and_then(|guess| refined(context, guess, STEPS, clock));
+                let simple = simplified(&guess, &speeds, pattern, (tidy, settings));
+                let refined =
+                    simple.and_then(|guess| refined(context, guess, settings.iterations, clock));
                 refined.iter().for_each(|r| pool.add_refined(r));
             }
         }
@@ -220,10 +197,13 @@ impl Selection<'_> {
             let mut found: Vec<Refinement> = Vec::new();
             for guess in guesses {
                 let simple = Speeds::of_one(&speeds).into_iter();
-                let simple = simple.filter_map(|at| simplified(guess, &speeds, at, tidy));
+                let simple =
+                    simple.filter_map(|at| simplified(guess, &speeds, at, (tidy, settings)));
                 found.extend(simple.filter_map(|guess| Refinement::fitting(&context, guess)));
             }
-            parallel::each(&mut found, |r| r.go_on(&context, STEPS, clock));
+            parallel::each(&mut found, |r| {
+                r.go_on(&context, settings.iterations, clock)
+            });
             found.iter().for_each(|r| pool.add_refined(r));
         }
         pool.add(1.0, late_route.follow(0.0, 0.0));
@@ -247,7 +227,7 @@ fn handicap(problem: &Problem, motion: &[Segment]) -> f64 {
 
 /// Candidates with their priced costs.
 struct Pool<'a> {
-    prices: Prices,
+    prices: Prices<'a>,
     /// Own ship makes good the time it has lost, or does not.
     on_time: Context<'a>,
     late: Context<'a>,
@@ -324,7 +304,7 @@ fn simplified(
     guess: &InitialGuess,
     speeds: &ManoeuvreSpeeds,
     pattern: Speeds,
-    tidy: &Tidiness,
+    (tidy, settings): (&Tidiness, &TidySettings),
 ) -> Option<InitialGuess> {
     let normal = speeds.normal;
     let given: Vec<_> = guess.pieces().filter(|piece| piece.1 > 0.0).collect();
@@ -336,7 +316,7 @@ fn simplified(
             let last = given.iter().rposition(is_slow)?;
             let times = given[first..=last].iter().map(|(_, length)| length / slow);
             let time: f64 = times.sum();
-            if time < DROPPED * tidy.speed_time {
+            if time < settings.dropped * tidy.speed_time {
                 return None;
             }
             (then, Some((first, last, slow)))
@@ -363,13 +343,13 @@ fn simplified(
     let is_arc = |part: &(SegmentVariable, f64)| matches!(part.0, SegmentVariable::Arc { .. });
     loop {
         let arcs = parts.iter().filter(|part| is_arc(part)).count();
-        let too_many = arcs + 1 > MOST_TURNS;
+        let too_many = arcs + 1 > settings.most_turns;
         let relative = |part: &(SegmentVariable, f64)| part.1 / part.0.speed();
         let shortest = (0..parts.len())
             .filter(|i| !too_many || is_arc(&parts[*i]))
             .min_by(|a, b| relative(&parts[*a]).total_cmp(&relative(&parts[*b])));
         match shortest {
-            Some(i) if too_many || relative(&parts[i]) < DROPPED * tidy.segment_time => {
+            Some(i) if too_many || relative(&parts[i]) < settings.dropped * tidy.segment_time => {
                 parts.remove(i);
             }
             _ => break,
@@ -443,7 +423,7 @@ mod tests {
                 0,
             ),
         ] {
-            let found = Alterations::of(5.0, &motion(parts), &tidy);
+            let found = Alterations::of(5.0, &motion(parts), &tidy, &TidySettings::DEFAULT);
             let numbers = (found.turns, found.speed_changes, found.short);
             assert_eq!(numbers, (turns, speed_changes, short), "{parts:?}");
         }
@@ -474,7 +454,13 @@ mod tests {
             (arc(Starboard, 6.0), 25.0),
         ];
         let guess = InitialGuess::new(&parts, Ending::Return { leg: 0, speed: 6.0 });
-        let simple = simplified(&guess, &speeds, Speeds::One(6.0), &tidy).expect("a manoeuvre");
+        let simple = simplified(
+            &guess,
+            &speeds,
+            Speeds::One(6.0),
+            (&tidy, &TidySettings::DEFAULT),
+        )
+        .expect("a manoeuvre");
         let kept: Vec<_> = simple.pieces().collect();
         let expected = [
             (SegmentVariable::Ordered { speed: 5.0 }, 300.0),
@@ -494,6 +480,6 @@ mod tests {
             lengths: guess.lengths.map(|length| 0.1 * length),
             ..guess
         };
-        assert!(simplified(&slow, &speeds, then, &tidy).is_none());
+        assert!(simplified(&slow, &speeds, then, (&tidy, &TidySettings::DEFAULT)).is_none());
     }
 }

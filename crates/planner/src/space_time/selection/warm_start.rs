@@ -12,7 +12,6 @@ use crate::space_time::refinement::quadratic::MAX_VARIABLES;
 use crate::space_time::refinement::structure::SegmentVariable;
 use crate::space_time::route::Route;
 use crate::space_time::selection::Selection;
-use crate::space_time::selection::budget::SearchBudget;
 use crate::space_time::selection::initial_guess::InitialGuessBuilder;
 use crate::space_time::{conflicts_of, plan_normalised};
 use crate::{NoPlan, Outcome, Plan, PlanMethod, Planned, Problem};
@@ -60,7 +59,8 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
             Some(_) => conflicts_of(problem, proxies, &follows),
             None => Vec::new(),
         };
-        let mut selection = Selection::new(context, &SearchBudget::WARM_START, &conflicts);
+        let mut selection =
+            Selection::new(context, &problem.settings.budgets.warm_start, &conflicts);
         selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], &[], clock);
         let plan = selection.plan().map(|plan| Plan {
