@@ -1,5 +1,5 @@
 //! Build script: a hash of the sources, so that two builds of one version are told apart
-//! (docs/campaigns.md).
+//! (docs/guide/campaigns.md).
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;

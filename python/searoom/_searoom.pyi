@@ -212,7 +212,7 @@ class Specification:
 
     @staticmethod
     def read(file: str | PathLike[str]) -> Specification:
-        """Reads a specification file (docs/campaigns.md). The error has every fault."""
+        """Reads a specification file (docs/guide/campaigns.md). The error has every fault."""
     @staticmethod
     def parse(text: str, folder: str | PathLike[str] | None = None) -> Specification:
         """Reads the text of a specification. Its scenario files are searched from `folder`, by

@@ -5,8 +5,9 @@
 ...     print(shard.number, shard.rows, shard.seconds)
 >>> campaign.summarise("sailed")["all"]["contact"]
 
-`docs/campaigns.md` describes specifications, folders and columns. A row is the same wherever it is
-sailed. A run goes on where another one ended: rows that are there are not sailed again.
+`docs/guide/campaigns.md` describes campaigns, `docs/reference/campaign-files.md` keys and columns.
+A row is the same wherever it is sailed. A run goes on where another one ended: rows that are there
+are not sailed again.
 """
 
 from __future__ import annotations

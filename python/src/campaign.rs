@@ -39,7 +39,7 @@ fn refused(error: CampaignError) -> PyErr {
 
 #[pymethods]
 impl Specification {
-    /// Reads a specification file (docs/campaigns.md). The error has every fault.
+    /// Reads a specification file (docs/guide/campaigns.md). The error has every fault.
     #[staticmethod]
     fn read(py: Python, file: PathBuf) -> PyResult<Self> {
         let read = detached(py, || Checked::read(&file))?;

@@ -20,7 +20,7 @@ from searoom import campaign
 
 ROWS = 60
 SHARDS = 12
-# the columns that docs/campaigns.md names as those of the machine
+# the columns that docs/reference/campaign-files.md names as those of the machine
 OF_MACHINE = ["late", "plan_ms_median", "plan_ms_most", "cpu_s"]
 SPEC = f"""
 name = "tests"

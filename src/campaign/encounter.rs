@@ -94,8 +94,8 @@ impl EncounterKind {
         Distribution::Uniform(from, to)
     }
 
-    /// True for an encounter of this kind by the sectors of docs/colregs.md, section 1.3, Rule 13
-    /// first.
+    /// True for an encounter of this kind by the sectors of docs/reference/colregs.md, section 1.3,
+    /// Rule 13 first.
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);
@@ -219,8 +219,8 @@ impl Encounter {
     }
 
     /// One target, where it would reach own ship's track at the meeting time, moved sideways by the
-    /// miss distance (docs/colregs.md 4.3). `None` if the draw is not of the kind, now and 30 s ago,
-    /// or begins inside the hard set.
+    /// miss distance (docs/reference/colregs.md 4.3). `None` if the draw is not of the kind, now
+    /// and 30 s ago, or begins inside the hard set.
     pub(super) fn draw_once(&self, own: &OwnShip, rng: &mut impl Rng) -> Option<ShipTrack> {
         let meeting_time = self.tcpa.draw(rng);
         let bearing = self.bearing.draw(rng);

@@ -1,5 +1,5 @@
 //! Campaigns: many closed-loop rows of one specification, in parts that any number of processes
-//! write; merged, counted and sailed again (docs/campaigns.md).
+//! write; merged, counted and sailed again (docs/guide/campaigns.md).
 
 mod bounds;
 mod encounter;

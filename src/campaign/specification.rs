@@ -49,7 +49,7 @@ const CLASSES: [(&str, EncounterKind); 5] = [
     ("overtaken", EncounterKind::Overtaken),
 ];
 
-/// A checked specification (docs/campaigns.md).
+/// A checked specification (docs/guide/campaigns.md).
 #[derive(Debug, Clone)]
 pub struct Specification {
     /// Its name.

@@ -28,10 +28,11 @@ const LISTED: usize = 3;
 const FULL_SCORE: f64 = 0.995;
 pub(crate) const TIME_LINE: &str = "time";
 
-/// The assumption of every claim, and how often it held: docs/measured.md.
+/// The assumption of every claim, and how often it held: docs/reference/measured.md.
 const ASSUMED: &str = "each target's mean velocity stays in V, which is assumed: sets of ±0.97 kn \
                        and ±5° held ships of US AIS after 1, 5 and 10 min in 83, 57 and 45 % of \
-                       cases (docs/guarantees.md). Near land safety comes from planning again";
+                       cases (docs/guide/guarantees.md). Near land safety comes from planning \
+                       again";
 
 type Add<'a> = dyn FnMut(&'static str, String) + 'a;
 

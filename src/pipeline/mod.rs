@@ -167,8 +167,9 @@ pub fn planned_sets(scenario: &Scenario) -> Vec<TargetSets> {
 /// Plans a scenario and evaluates the plan.
 ///
 /// Where no plan satisfies the whole request, requirements are given up level by level
-/// (`docs/relaxation.md`), and the run reports which. The clock is read around planning alone. It
-/// enters no result but `plan_time` and the improvements, unless the deadline ends the search.
+/// (`docs/reference/relaxation.md`), and the run reports which. The clock is read around planning
+/// alone. It enters no result but `plan_time` and the improvements, unless the deadline ends the
+/// search.
 ///
 /// Under the rules the run's scenario has a risk of collision with every ship whose set own ship
 /// alters for, and with those toward which the first plan would break rules, where a plan with these

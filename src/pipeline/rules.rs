@@ -22,7 +22,7 @@ pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
 /// Removes the domains of give-way targets where own ship stands on and gives way to none.
 ///
 /// Own ship holds course and speed as long as it can keep clear of the hard sets
-/// (docs/colregs.md 3.6).
+/// (docs/reference/colregs.md 3.6).
 pub(super) fn without_domains_of_give_way_targets(
     scenario: &Scenario,
     mut sets: Vec<TargetSets>,
@@ -40,7 +40,7 @@ pub(super) fn without_domains_of_give_way_targets(
 }
 
 /// Ratio of the risk distance of a ship that own ship alters for to the distance at which it would
-/// pass: the end of a risk over its beginning (docs/colregs.md 1.3).
+/// pass: the end of a risk over its beginning (docs/reference/colregs.md 1.3).
 const RISK_DISTANCE_RATIO: f64 = 1.5;
 
 /// The scenario with a risk of collision (Rule 7(a)) with every ship that has no role though own

@@ -12,8 +12,8 @@
 //! Positions are metres east and north. Entities that do not move are static, and so are colours
 //! and names. Without a plan the desired motion is shown in its place and named so.
 //!
-//! `docs/inspect.md` lists the entities. The layout is a store of its own in the same file. The
-//! stores are named after their contents.
+//! `docs/reference/inspect.md` lists the entities. The layout is a store of its own in the same
+//! file. The stores are named after their contents.
 
 mod canvas;
 mod checksum;

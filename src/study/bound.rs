@@ -1,5 +1,5 @@
 //! A certified lower bound of the space-time error of all motions, not only of those that a planner
-//! looks at: docs/theory.md section 13.
+//! looks at: docs/reference/theory.md section 13.
 //!
 //! Time has steps and the plane has square cells. Dynamic programming forward in time gives every
 //! cell a cost that no motion to it can be below:

@@ -89,8 +89,8 @@ pub struct RandomEncounter {
 
 /// Own ship and one target. Its bearing is uniform in the kind's sector, its speed in the kind's
 /// range. It starts where it would reach own ship's track at the meeting time, moved sideways by
-/// the miss distance (docs/colregs.md 4.3). Equal arguments give equal scenes. `None` where every
-/// draw was of another kind.
+/// the miss distance (docs/reference/colregs.md 4.3). Equal arguments give equal scenes. `None`
+/// where every draw was of another kind.
 pub fn random_encounter(
     kind: EncounterKind,
     seed: u64,

@@ -39,7 +39,7 @@ pub fn failure_bound(failures: usize, trials: usize) -> f64 {
 
 #[test]
 fn bounds_match_published_values() {
-    // docs/colregs.md section 4.1
+    // docs/reference/colregs.md section 4.1
     for (failures, trials, bound) in [
         (0, 299, 9.97e-3),
         (0, 10_000, 3.0e-4),

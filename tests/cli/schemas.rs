@@ -81,7 +81,7 @@ fn plan_documents_fit_their_schema() {
 #[test]
 fn a_file_of_thresholds_fits_its_schema() {
     let schema = Schema::of("thresholds");
-    let page = include_str!("../../docs/rules.md");
+    let page = include_str!("../../docs/reference/rules.md");
     let file = page.split("```text\nname").nth(1).expect("a file");
     let file = format!("name{}", file.split("```").next().expect("its end"));
     let value: Value = toml::from_str(&file).expect("TOML");

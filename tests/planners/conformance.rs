@@ -1,4 +1,4 @@
-//! The tables of docs/colregs.md that show what the classifier and the judges say.
+//! The tables of docs/reference/colregs.md that show what the classifier and the judges say.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -9,7 +9,7 @@ use searoom::target::ShipTrack;
 use searoom::trajectory::{Segment, Trajectory};
 use searoom::vessel::{Hull, OwnShip};
 
-const DOCS: &str = include_str!("../../docs/colregs.md");
+const DOCS: &str = include_str!("../../docs/reference/colregs.md");
 
 /// Both ships of the table of motions: metres, m/s.
 const HULL: Hull = Hull::new(50.0, 10.0);
@@ -173,7 +173,7 @@ fn the_tables_of_the_documentation_are_what_the_program_says() {
     for table in [table_of_roles(), table_of_motions()] {
         assert!(
             DOCS.contains(&format!("\n{table}\n")),
-            "docs/colregs.md has another table than this:\n{table}"
+            "docs/reference/colregs.md has another table than this:\n{table}"
         );
     }
 }

@@ -1,5 +1,5 @@
 //! Measures the excess of the outer ellipse over the sum that it contains: the table in
-//! `docs/sets.md`.
+//! `docs/reference/sets.md`.
 //!
 //! `cargo test --no-default-features --test sets outer_excess -- --nocapture` prints it.
 
@@ -89,9 +89,9 @@ fn the_table_in_the_documents_is_what_the_sets_give() {
             rectangle(0.1, 0.5),
         ),
     ];
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sets.md");
-    let text = std::fs::read_to_string(path).expect("docs/sets.md");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/reference/sets.md");
+    let text = std::fs::read_to_string(path).expect("docs/reference/sets.md");
     for row in rows {
-        assert!(text.contains(&row), "not in docs/sets.md: {row}");
+        assert!(text.contains(&row), "not in docs/reference/sets.md: {row}");
     }
 }

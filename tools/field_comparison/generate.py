@@ -48,7 +48,7 @@ def wrap(degrees):
 
 
 def kind_of(own, target, course):
-    """The encounter by the sectors of docs/colregs.md; own ship steers east."""
+    """The encounter by the sectors of docs/reference/colregs.md; own ship steers east."""
     to_target = math.degrees(math.atan2(target[0] - own, target[1]))
     bearing, aspect = wrap(to_target - 90), wrap(to_target + 180 - course)
     along = abs(wrap(course - 90)) <= 15

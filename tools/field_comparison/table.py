@@ -52,7 +52,7 @@ def alterations(t, values, least, rate, pause=5.0):
 
 
 def space_time_error(t, east, north, length):
-    """J of docs/theory.md, section 7, for the straight path to the east."""
+    """J of docs/reference/theory.md, section 7, for the straight path to the east."""
     duration = length / OWN_SPEED
     if t[-1] < duration:  # at the last waypoint until then
         rest = np.arange(t[-1], duration, 0.1)

@@ -1,5 +1,5 @@
 //! Ship domains: the initial set of a target for own ship's centre, enlarged so that the cheapest
-//! plan follows the collision regulations (docs/colregs.md 3.2-3.3).
+//! plan follows the collision regulations (docs/reference/colregs.md 3.2-3.3).
 
 use super::encounter::{Risk, offset_from_wake, sweep_distance};
 use super::rules::ClosedSide;
@@ -26,7 +26,7 @@ pub struct ShipDomain {
     pub reach: f64,
 }
 
-/// The initial sets of a tracked ship, docs/colregs.md 3.3:
+/// The initial sets of a tracked ship, docs/reference/colregs.md 3.3:
 ///
 /// - hull = [`ShipTrack::outer_hull`], on every possible heading until `horizon` seconds;
 /// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
@@ -139,8 +139,9 @@ fn ship_domain_about(
     }
 }
 
-/// docs/colregs.md 3.2: passing on the forbidden side takes at least two sweep distances more than
-/// on the other, where the margin is kept. True for a domain that is not swept or not finite.
+/// docs/reference/colregs.md 3.2: passing on the forbidden side takes at least two sweep distances
+/// more than on the other, where the margin is kept. True for a domain that is not swept or not
+/// finite.
 fn keeps_the_design_inequality(
     own: &OwnShip,
     target: &ShipTrack,
@@ -262,9 +263,9 @@ const SWEEP_EXCESS: f64 = 0.1;
 /// Radians, 5°: own ship this far off the wake of the ship that it overtakes passes on that side.
 const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 
-/// Vector `e` of docs/colregs.md 3.3 by which the base is swept, metres. Passing on the forbidden
-/// side then takes `|e| = 2 (1 + 0.1)` sweep distances more than on the other, so that the compliant
-/// side is cheaper for every miss distance that is a risk (3.2).
+/// Vector `e` of docs/reference/colregs.md 3.3 by which the base is swept, metres. Passing on the
+/// forbidden side then takes `|e| = 2 (1 + 0.1)` sweep distances more than on the other, so that
+/// the compliant side is cheaper for every miss distance that is a risk (3.2).
 ///
 /// The direction is the normal of the relative velocity at the first instant of risk on the closed
 /// side ([`RoleDuties::closed_side`](super::RoleDuties)). When overtaking, that is the target's
@@ -335,7 +336,8 @@ impl BevelledBox {
         }
     }
 
-    /// `P(f, a, p, s, kf, ka)` of docs/colregs.md 3.3, `(ahead, to port)` in units of `length`.
+    /// `P(f, a, p, s, kf, ka)` of docs/reference/colregs.md 3.3, `(ahead, to port)` in units of
+    /// `length`.
     fn corners(&self, length: f64) -> [Vector; 8] {
         [
             (self.fore, -self.bow * self.starboard),

@@ -1,4 +1,5 @@
-//! Encounters along the desired trajectory, for planning once (docs/colregs.md, section 1.3).
+//! Encounters along the desired trajectory, for planning once (docs/reference/colregs.md, section
+//! 1.3).
 
 use super::role::{Role, SteadyShip, role_within};
 use super::thresholds::{RiskLimits, Thresholds};
@@ -91,17 +92,17 @@ pub(super) fn state_at(track: &[(f64, SteadyShip)], time: f64) -> Option<SteadyS
 }
 
 /// Metres by which the sweep of a ship domain is scaled: twice the longer ship, or half of own
-/// safety margin if that is more (docs/colregs.md, section 3.2).
+/// safety margin if that is more (docs/reference/colregs.md, section 3.2).
 pub fn sweep_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
     (RiskLimits::STANDARD.lengths * own.hull.length.max(target.hull.length))
         .max(0.5 * own.safety_margin)
 }
 
-/// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
-/// 1.3): the distance shrinks, and two ships that hold course and speed will pass within the risk
-/// distance and the risk time of the thresholds, or within the target's own risk distance. Searched
-/// from 0 to the horizon or the desired arrival, whichever is first. Own ship is on the desired
-/// trajectory, wherever it starts. O(legs).
+/// First instant of risk along the desired trajectory against the nominal track
+/// (docs/reference/colregs.md 1.3): the distance shrinks, and two ships that hold course and speed
+/// will pass within the risk distance and the risk time of the thresholds, or within the target's
+/// own risk distance. Searched from 0 to the horizon or the desired arrival, whichever is first. Own
+/// ship is on the desired trajectory, wherever it starts. O(legs).
 pub fn first_risk(
     own: &OwnShip,
     desired: &DesiredTrajectory,

@@ -1,4 +1,4 @@
-//! Roles of two ships that meet: docs/colregs.md, section 1.3.
+//! Roles of two ships that meet: docs/reference/colregs.md, section 1.3.
 
 use searoom_geometry::frame::{Pose, Vector, radians_from_deg, relative_bearing};
 use searoom_model::target::ShipTrack;
@@ -129,7 +129,7 @@ impl SteadyShip {
 }
 
 /// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)`
-/// of docs/colregs.md, section 1.3.
+/// of docs/reference/colregs.md, section 1.3.
 ///
 /// It is an ordered list, so every state has one role and the two ships agree: head-on/head-on,
 /// give-way/stand-on, overtaking/overtaken, both-give-way twice, port-to-port twice, and none twice
@@ -220,7 +220,7 @@ pub(super) mod tests {
         ship(at.x, -at.y, -s.pose.heading, s.speed)
     }
 
-    /// docs/colregs.md 0.1.
+    /// docs/reference/colregs.md 0.1.
     pub fn fixtures() -> [(SteadyShip, Role); 5] {
         [
             (ship(1440.0, 0.0, PI, 6.0), HeadOn),
@@ -235,8 +235,8 @@ pub(super) mod tests {
         role_within(own, target, &Sectors::STANDARD)
     }
 
-    /// Each role by its own condition, in no order: a second reading of docs/colregs.md, section 1.3,
-    /// from angles that are found another way.
+    /// Each role by its own condition, in no order: a second reading of docs/reference/colregs.md,
+    /// section 1.3, from angles that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;

@@ -6,8 +6,8 @@ use super::thresholds::{MonitorLimits, ScoreLimits};
 use searoom_geometry::frame::Side;
 use searoom_model::vessel::Hull;
 
-/// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b) (docs/colregs.md
-/// 2.2).
+/// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b)
+/// (docs/reference/colregs.md 2.2).
 pub const APPARENT_TURN: f64 = ScoreLimits::STANDARD.apparent;
 
 /// Fraction of the speed before: a reduction to this or less is readily apparent, Rule 8(b).
@@ -90,7 +90,7 @@ pub enum MayAct {
 pub enum CrossingAhead {
     /// At any distance.
     Allowed,
-    /// Only at a safe distance: Krasowski and Althoff 2021, docs/colregs.md 2.3.
+    /// Only at a safe distance: Krasowski and Althoff 2021, docs/reference/colregs.md 2.3.
     Far,
     /// Never.
     Forbidden,

@@ -1,4 +1,4 @@
-//! Assessment document, see docs/documents.md.
+//! Assessment document, see docs/reference/documents.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

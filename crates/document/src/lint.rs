@@ -1,4 +1,4 @@
-//! Document of `suite --lint`, see docs/formats.md.
+//! Document of `suite --lint`, see docs/reference/formats.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Part of the plan document on targets out of reach, see docs/documents.md.
+//! Part of the plan document on targets out of reach, see docs/reference/documents.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

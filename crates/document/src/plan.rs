@@ -1,4 +1,4 @@
-//! Plan document, see docs/documents.md.
+//! Plan document, see docs/reference/documents.md.
 
 pub(super) mod control;
 pub(super) mod departure;

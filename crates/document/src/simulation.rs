@@ -1,4 +1,4 @@
-//! Simulation document, see docs/documents.md. The closed loop fills it.
+//! Simulation document, see docs/reference/documents.md. The closed loop fills it.
 
 mod campaign;
 

@@ -1,4 +1,4 @@
-//! Suite document, see docs/documents.md.
+//! Suite document, see docs/reference/documents.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

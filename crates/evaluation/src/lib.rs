@@ -107,7 +107,7 @@ pub struct Evaluation {
     pub violations: Vec<Violation>,
     /// Safety from start to arrival.
     pub safety: Safety,
-    /// Space-time error, docs/theory.md section 7, m².
+    /// Space-time error, docs/reference/theory.md section 7, m².
     pub space_time_error: f64,
     /// Time until which the space-time error is counted.
     pub counted: Counted,

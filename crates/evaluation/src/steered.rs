@@ -193,7 +193,7 @@ fn modified_midpoint(
     0.5 * (here + before + h * vessel.rates(&here, force))
 }
 
-/// Space-time error of all pieces, docs/theory.md section 7, m².
+/// Space-time error of all pieces, docs/reference/theory.md section 7, m².
 pub(super) fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
     let integral: f64 = pieces
         .iter()

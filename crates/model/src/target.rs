@@ -81,7 +81,7 @@ pub struct ShipTrack {
     /// `starboard_turn`.
     pub course_spread: f64,
     /// How much farther to starboard the course may be, radians, to port where it is negative: a
-    /// ship that gives way turns to starboard (docs/scenario.md).
+    /// ship that gives way turns to starboard (docs/reference/scenario.md).
     pub starboard_turn: f64,
     /// Largest turn rate to either side, radians per second, not negative: the possible courses grow
     /// by `turn_rate t` to either side.

@@ -20,7 +20,7 @@ pub struct ControlSettings {
 }
 
 impl ControlSettings {
-    /// Settings of a vessel at model size, with the defaults of docs/scenario.md.
+    /// Settings of a vessel at model size, with the defaults of docs/reference/scenario.md.
     pub fn of(vessel: VesselKind) -> Self {
         Self::at_length(vessel, vessel.length())
     }

@@ -1,4 +1,4 @@
-//! Space-time error: the cost that the search minimises, docs/theory.md section 7.
+//! Space-time error: the cost that the search minimises, docs/reference/theory.md section 7.
 
 use std::f64::consts::PI;
 

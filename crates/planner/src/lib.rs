@@ -144,7 +144,7 @@ impl SearchKind {
 /// Quantity that a planner minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
-    /// The space-time error, docs/theory.md section 7, m².
+    /// The space-time error, docs/reference/theory.md section 7, m².
     SpaceTimeError,
     /// Arrival time, s.
     Time,
@@ -273,7 +273,7 @@ pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// Ratio of the costs up to which a plan is kept that keeps more than another: a ship domain, a length off a
 /// ship, or a manoeuvre where a bend breaks no rule either. *J* is squared, so this is three times the
-/// distance (docs/rules.md).
+/// distance (docs/reference/rules.md).
 pub const MANY_TIMES: f64 = 10.0;
 
 /// Own lengths. A plan is far off its schedule where the root mean square of its space-time error is more, and

@@ -359,7 +359,7 @@ fn no_manoeuvre_of_a_dense_search_is_much_cheaper() {
     }
 }
 
-/// The table of docs/rules.md.
+/// The table of docs/reference/rules.md.
 #[test]
 #[ignore = "some minutes"]
 fn plans_and_dense_search_of_many_scenes() {

@@ -129,8 +129,8 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// A scenario in open water with the defaults of a file (docs/scenario.md). Change its fields as
-    /// needed. [`Self::unfit`] names what its planner cannot use.
+    /// A scenario in open water with the defaults of a file (docs/reference/scenario.md). Change
+    /// its fields as needed. [`Self::unfit`] names what its planner cannot use.
     pub fn new(
         title: &str,
         horizon: f64,
@@ -165,8 +165,8 @@ impl Scenario {
         is_tidy.then_some(self.settings.tidiness)
     }
 
-    /// Reads and checks a scenario file (docs/scenario.md). The error holds every fault of the
-    /// file.
+    /// Reads and checks a scenario file (docs/reference/scenario.md). The error holds every fault
+    /// of the file.
     pub fn read(file: &Path) -> Result<Self, ScenarioError> {
         let text = read_text(file, limits::FILE_MEBIBYTES, "a scenario file")?;
         let folder = file.parent().unwrap_or(Path::new(""));

@@ -98,8 +98,8 @@ const COUNTS: [Count; 2] = [
     ),
 ];
 
-/// Reads a TOML file of thresholds (docs/rules.md). With `like = "NAME"` absent keys are those
-/// of a published set. The error holds every fault of the file.
+/// Reads a TOML file of thresholds (docs/reference/rules.md). With `like = "NAME"` absent keys are
+/// those of a published set. The error holds every fault of the file.
 pub fn read_thresholds(file: &Path) -> Result<Thresholds, InputError> {
     let text = read_text(file, FILE_MEBIBYTES, "a file of thresholds")?;
     parse_thresholds(&text).map_err(|faults| InputError::faults(file, faults))
@@ -124,8 +124,8 @@ pub fn thresholds_schema() -> Value {
     json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Thresholds of Searoom's compliance monitors",
-        "description": "docs/rules.md says what each key means; with 'like' absent keys are \
-                        those of a published set",
+        "description": "docs/reference/rules.md says what each key means; with 'like' absent keys \
+                        are those of a published set",
         "type": "object",
         "required": ["name", "source"],
         "anyOf": [{ "required": ["like"] }, { "required": keys }],

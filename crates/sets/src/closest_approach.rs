@@ -1,4 +1,4 @@
-//! Closest point of approach to an obstacle: paper eq. (26), docs/theory.md section 5.
+//! Closest point of approach to an obstacle: paper eq. (26), docs/reference/theory.md section 5.
 
 use super::contact::{Line, clip};
 use super::{MovingVertex, PolytopeObstacle, SpaceTimeObstacle};

@@ -1,5 +1,5 @@
 //! Risk: the factor by which a target's velocities must shrink until a point is out of reach, paper
-//! eqs. (22)-(25), docs/theory.md section 4.
+//! eqs. (22)-(25), docs/reference/theory.md section 4.
 
 use super::contact::Line;
 use super::{HalfSpace, Obstacle, SpaceTimeObstacle};
@@ -75,8 +75,9 @@ impl FaceSpread {
     }
 }
 
-/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, docs/theory.md
-/// section 4. Faces that the point exceeds by at most `edge` metres do not count. O(n + m).
+/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`,
+/// docs/reference/theory.md section 4. Faces that the point exceeds by at most `edge` metres do not
+/// count. O(n + m).
 pub(super) fn polytope_alpha(
     faces: &[HalfSpace],
     spreads: &[FaceSpread],

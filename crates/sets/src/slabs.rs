@@ -1,5 +1,5 @@
 //! An obstacle as slabs in time, each convex in space-time: one where the velocity set never
-//! changes, else one per velocity set, docs/theory.md section 10 (ii).
+//! changes, else one per velocity set, docs/reference/theory.md section 10 (ii).
 
 use std::sync::{Arc, OnceLock};
 

@@ -1,5 +1,5 @@
-//! The velocity obstacle of polytopes as a set of half-planes: paper eq. (26), docs/theory.md
-//! section 5.3.
+//! The velocity obstacle of polytopes as a set of half-planes: paper eq. (26),
+//! docs/reference/theory.md section 5.3.
 
 use super::closest_approach::from_zero;
 use super::{HalfSpace, Obstacle, PolytopeObstacle, Slab};

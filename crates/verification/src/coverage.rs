@@ -34,7 +34,7 @@ const VELOCITY: &str = "the velocity set";
 /// polygon, less its last digits, differ by so much.
 const CENTRE: f64 = 1e-7;
 
-/// Fraction of its size to which the places of an explicit set are held, docs/verify.md.
+/// Fraction of its size to which the places of an explicit set are held, docs/reference/verify.md.
 const KNOWN_TO: f64 = 1e-9;
 
 const LEVEL: &str = "the velocities at the accepted risk";

@@ -102,7 +102,7 @@ fn section_after(initial: &ConvexSet, velocity: &ConvexSet, duration: f64) -> Op
     })
 }
 
-/// Ellipse of least trace around a sum of ellipses with factors, docs/theory.md section 3.
+/// Ellipse of least trace around a sum of ellipses with factors (docs/reference/theory.md 3).
 fn least_trace_sum(terms: [(&Ellipse, f64); 2]) -> Option<Ellipse> {
     let (mut center, mut shape, mut sum) = (Vector::zeros(), Matrix2::zeros(), 0.0);
     for (ellipse, factor) in terms {

@@ -48,7 +48,7 @@ pub enum CampaignCommand {
 
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// The specification (docs/campaigns.md)
+    /// The specification (docs/guide/campaigns.md)
     #[arg(value_name = "SPEC.toml", value_hint = ValueHint::FilePath)]
     pub specification: PathBuf,
     /// Number of this shard, and how many there are
@@ -102,7 +102,7 @@ pub struct ReplayArgs {
 
 #[derive(Debug, Args)]
 pub struct RareArgs {
-    /// The specification (docs/campaigns.md)
+    /// The specification (docs/guide/campaigns.md)
     #[arg(value_name = "SPEC.toml", value_hint = ValueHint::FilePath)]
     pub specification: PathBuf,
     /// The stratum; the only one by default

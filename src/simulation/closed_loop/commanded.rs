@@ -96,7 +96,7 @@ impl Simulation {
     /// seen from the end of the turn: the contact test of a straight motion
     /// ([`SpaceTimeObstacle::first_contact`]) is the test of that membership. As long as every
     /// target keeps to its set, is seen exactly, and own ship follows its commands, a command that
-    /// is clear stays so (docs/closed-loop.md). O(commands × sets).
+    /// is clear stays so (docs/guide/closed-loop.md). O(commands × sets).
     pub fn clear_commands(&mut self, commands: &[Command]) -> (bool, Vec<bool>) {
         self.observe();
         let sets = self.hard_sets();

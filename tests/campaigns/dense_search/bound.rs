@@ -1,8 +1,8 @@
 //! A lower bound of the cost to go, so that the dense search can leave out what cannot win.
 //!
 //! The error of a point is at least `sqrt(across² + kappa lag²)`, the form without its clamp
-//! (docs/theory.md, section 7). Three facts bound its integral from below over steps of equal
-//! length:
+//! (docs/reference/theory.md, section 7). Three facts bound its integral from below over steps of
+//! equal length:
 //! - *across* cannot shrink faster than the ship can turn toward the path and run there at full
 //!   speed;
 //! - *lag* cannot shrink faster than own ship can turn along the path and run there at full speed;

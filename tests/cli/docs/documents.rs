@@ -1,13 +1,13 @@
-//! Checks that docs/documents.md names every key of the documents, and docs/verify.md those of a
-//! verification.
+//! Checks that docs/reference/documents.md names every key of the documents, and
+//! docs/reference/verify.md those of a verification.
 
 use std::collections::BTreeSet;
 
 use crate::program::{Folder, document, searoom, stdout};
 use serde_json::Value;
 
-pub const PAGE: &str = include_str!("../../../docs/documents.md");
-const VERIFICATION: &str = include_str!("../../../docs/verify.md");
+pub const PAGE: &str = include_str!("../../../docs/reference/documents.md");
+const VERIFICATION: &str = include_str!("../../../docs/reference/verify.md");
 
 fn keys(value: &Value, found: &mut BTreeSet<String>) {
     match value {

@@ -60,20 +60,20 @@ fn the_readme_shows_the_table_of_the_suite() {
 
 #[test]
 fn the_guide_shows_an_assessment() {
-    let guide = read("docs/assess.md");
+    let guide = read("docs/reference/assess.md");
     let (_, rest) = guide.split_once(ASSESS_BEGIN).expect("the begin");
     let (shown, _) = rest.split_once(ASSESS_END).expect("the end");
     assert!(guide.contains(&format!("searoom {ASSESS}\n")));
     let printed = stdout(&run(ASSESS).success());
     assert_eq!(
         shown, printed,
-        "docs/assess.md is out of date; the text of today:\n{printed}"
+        "docs/reference/assess.md is out of date; the text of today:\n{printed}"
     );
 }
 
 #[test]
 fn the_guide_goes_on_from_a_plan() {
-    let guide = read("docs/replanning.md");
+    let guide = read("docs/guide/replanning.md");
     let (_, rest) = guide
         .split_once("<!-- previous: checked")
         .expect("the begin");
@@ -85,13 +85,13 @@ fn the_guide_goes_on_from_a_plan() {
     let printed = stdout(&run(&format!("plan {later} --previous {previous}")).success());
     assert!(
         printed.starts_with(shown),
-        "docs/replanning.md is out of date:\n{printed}"
+        "docs/guide/replanning.md is out of date:\n{printed}"
     );
 }
 
 #[test]
 fn the_scenarios_in_the_documents_are_sound() {
-    let guide = read("docs/scenario.md");
+    let guide = read("docs/reference/scenario.md");
     let shown = blocks(&guide, "toml");
     let [whole, targets] = shown[..] else {
         panic!("two blocks: {shown:?}");
@@ -141,7 +141,7 @@ const TABLES: usize = 15;
 
 #[test]
 fn the_guide_has_every_field_of_a_scenario() {
-    let guide = read("docs/scenario.md");
+    let guide = read("docs/reference/scenario.md");
     let faults = Scenario::parse(NO_KEYS).expect_err("keys that are none");
     let unknown: Vec<&Fault> = faults.iter().filter(|f| f.path.ends_with("zzz")).collect();
     assert_eq!(unknown.len(), TABLES, "{unknown:#?}");
@@ -162,7 +162,7 @@ fn the_guide_has_every_field_of_a_scenario() {
 
 #[test]
 fn the_page_on_comparisons_has_every_column() {
-    let page = read("docs/compare.md");
+    let page = read("docs/reference/compare.md");
     for column in COMPARISON_COLUMNS.split(',') {
         assert!(page.contains(&format!("`{column}`")), "{column}");
     }
@@ -173,27 +173,26 @@ const PICTURES: u64 = 1_000_000;
 
 #[test]
 fn the_gallery_is_small_and_shows_what_there_is() {
-    let page = read("docs/gallery.md");
+    let page = read("docs/guide/figures.md");
     let mut bytes = 0;
     for picture in std::fs::read_dir(file("docs/gallery")).expect("a folder") {
         let picture = picture.expect("an entry");
         let name = picture.file_name().to_string_lossy().into_owned();
-        assert!(page.contains(&format!("(gallery/{name})")), "{name}");
+        assert!(page.contains(&format!("(../gallery/{name})")), "{name}");
         bytes += picture.metadata().expect("a file").len();
     }
     assert!((1..PICTURES).contains(&bytes), "{bytes} bytes");
 }
 
-/// Pages in docs, those at the root, and the README of each library and of the Python package.
+/// Pages below docs, those at the root, and the README of each library and of the Python package.
 fn pages() -> Vec<String> {
     let names = |folder: &str| -> Vec<String> {
         let entries = std::fs::read_dir(file(folder)).expect("a folder").flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
         names.map(|name| format!("{folder}/{name}")).collect()
     };
-    let docs = names("docs")
-        .into_iter()
-        .filter(|name| name.ends_with(".md"));
+    let folders = ["docs", "docs/guide", "docs/reference"].into_iter();
+    let docs = folders.flat_map(names).filter(|name| name.ends_with(".md"));
     let crates = names("crates").into_iter();
     let libraries = crates.map(|library| format!("{library}/README.md"));
     let root = [
@@ -210,7 +209,7 @@ fn pages() -> Vec<String> {
 #[test]
 fn every_file_that_the_documents_link_to_is_there() {
     let pages = pages();
-    assert!(pages.len() > 12, "{pages:?}");
+    assert!(pages.len() > 40, "{pages:?}");
     for name in &pages {
         let text = read(name);
         let folder = file(name).parent().expect("a folder").to_owned();

@@ -1,4 +1,4 @@
-//! Draws the images of docs/gallery.md into a folder.
+//! Draws the images of docs/guide/figures.md into a folder.
 //!
 //! ```text
 //! cargo gallery [FOLDER]

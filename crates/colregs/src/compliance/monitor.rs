@@ -1,5 +1,5 @@
 //! Compliance monitors: rules as formulas of temporal logic over samples, each with its robustness
-//! (docs/colregs.md 4.2; Krasowski and Althoff, doi:10.1109/IV48863.2021.9575294).
+//! (docs/reference/colregs.md 4.2; Krasowski and Althoff, doi:10.1109/IV48863.2021.9575294).
 
 use super::role_intervals::RoleInterval;
 use super::samples::{EncounterSample, EncounterSamples};

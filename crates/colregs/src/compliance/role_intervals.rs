@@ -1,5 +1,5 @@
 //! Roles over time: a role begins with risk of collision and lasts until the target is past and
-//! clear (docs/colregs.md, section 1.3, Rule 13(d)).
+//! clear (docs/reference/colregs.md, section 1.3, Rule 13(d)).
 
 use super::samples::{EncounterSample, EncounterSamples};
 use crate::{Role, SteadyShip, Thresholds, role_within};
@@ -139,8 +139,8 @@ mod tests {
         intervals.iter().map(|s| s.role).collect()
     }
 
-    /// docs/colregs.md 0.1: each fixture has its role all the time, on a straight course and on one
-    /// that bears away.
+    /// docs/reference/colregs.md 0.1: each fixture has its role all the time, on a straight course
+    /// and on one that bears away.
     #[test]
     fn a_role_is_kept_while_own_ship_manoeuvres() {
         let straight = planned(&[(0.0, 240.0)], 6.0);

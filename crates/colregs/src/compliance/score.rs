@@ -1,5 +1,5 @@
 //! Scores in `[0, 1]` and rule violations, as evaluators of collision avoidance compute them
-//! (docs/colregs.md 2).
+//! (docs/reference/colregs.md 2).
 
 use std::f64::consts::FRAC_PI_2;
 

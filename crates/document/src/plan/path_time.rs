@@ -1,4 +1,4 @@
-//! Diagram of a path-time plan, see docs/documents.md.
+//! Diagram of a path-time plan, see docs/reference/documents.md.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

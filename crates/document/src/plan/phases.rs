@@ -1,4 +1,4 @@
-//! Phases of a plan by the rules: free, hold, out, parallel, back (docs/replanning.md).
+//! Phases of a plan by the rules: free, hold, out, parallel, back (docs/guide/replanning.md).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

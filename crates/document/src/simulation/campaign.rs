@@ -1,4 +1,4 @@
-//! Summary document of a campaign, see docs/campaigns.md.
+//! Summary document of a campaign, see docs/guide/campaigns.md.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! Two cost figures for the deviation from the desired trajectory, docs/theory.md section 7, with a
-//! separate quadrature.
+//! Two cost figures for the deviation from the desired trajectory, docs/reference/theory.md section
+//! 7, with a separate quadrature.
 
 pub(crate) mod counted;
 pub(crate) mod quadrature;
@@ -11,7 +11,8 @@ use searoom_model::trajectory::{DesiredTrajectory, Segment};
 /// Largest turn per quadrature rule, radians.
 const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// Space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s².
+/// Space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/reference/theory.md section 7, `q` in
+/// m²/s².
 ///
 /// Relative accuracy 1e-9. Intervals are halved towards kinks of `e²`, where the nearest leg
 /// changes.

@@ -20,8 +20,8 @@ const GOLDEN_STEPS: usize = 32;
 /// Relative rounding of a shape matrix and of its eigenvalues.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Ellipse of least trace around `O_0 + sum of d_j V_j + t V` for durations `d_j`, docs/theory.md
-/// section 3, by its support function
+/// Ellipse of least trace around `O_0 + sum of d_j V_j + t V` for durations `d_j`,
+/// docs/reference/theory.md section 3, by its support function
 ///
 /// ```text
 /// h(n, t) = n . p_t + sqrt((r + r_v t) (q(n) + t n' Q_v n / r_v))

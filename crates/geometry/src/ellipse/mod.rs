@@ -196,8 +196,9 @@ impl Ellipse {
 
     /// The signed distance of `p`; NaN for a NaN. A segment and a point have no inside.
     ///
-    /// Newton's method on the secular equation `sum q_i z_i² / (q_i + s)² = 1` (docs/theory.md
-    /// section 5.2), in the form in which every step stays below the root, to rounding.
+    /// Newton's method on the secular equation `sum q_i z_i² / (q_i + s)² = 1`
+    /// (docs/reference/theory.md section 5.2), in the form in which every step stays below the
+    /// root, to rounding.
     pub fn signed_distance(&self, p: Vector) -> SignedDistance {
         let [a, b] = self.axes;
         let (major, minor) = (a.norm(), b.norm());

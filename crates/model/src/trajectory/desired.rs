@@ -278,7 +278,7 @@ impl DesiredTrajectory {
     }
 
     /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t -
-    /// t_d(sigma))²`, docs/theory.md section 7.
+    /// t_d(sigma))²`, docs/reference/theory.md section 7.
     ///
     /// In closed form per leg, with `q` in m²/s²; the earlier of equal legs. Starts at the leg of
     /// that time and proceeds to later and earlier legs until their time difference alone excludes

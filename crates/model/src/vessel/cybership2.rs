@@ -25,7 +25,7 @@ const YAW: f64 = 0.5;
 /// 1.5e-5 N, a micrometre in two seconds.
 const ROUNDED_MPS: f64 = 1e-3;
 
-/// The model `M v' = tau - C(v) v - D(v) v`, docs/theory.md section 9.
+/// The model `M v' = tau - C(v) v - D(v) v`, docs/reference/theory.md section 9.
 ///
 /// The printed rates have the opposite sign, with which damping adds energy. The model is unstable
 /// on a straight course at transit speed: without control, a heading error grows a millionfold in

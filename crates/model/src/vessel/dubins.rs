@@ -1,5 +1,6 @@
 //! Shortest paths of bounded curvature between two poses (Dubins 1957, doi:10.2307/2372560), in the
-//! closed forms of Shkel & Lumelsky (doi:10.1016/S0921-8890(00)00127-5); docs/theory.md section 8.
+//! closed forms of Shkel & Lumelsky (doi:10.1016/S0921-8890(00)00127-5); docs/reference/theory.md
+//! section 8.
 
 use std::f64::consts::TAU;
 

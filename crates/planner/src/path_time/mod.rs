@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A motion is a curve in distance and time with `0 <= speed <= max`. An obstacle is a convex
-//! polygon on each leg. The least time is exact for these polygons; docs/path-time-planner.md
-//! contains the proof.
+//! polygon on each leg. The least time is exact for these polygons;
+//! docs/reference/path-time-planner.md contains the proof.
 
 mod diagram;
 mod due;

@@ -27,7 +27,8 @@ pub(super) const HORIZON_ROUTES: f64 = 2.0;
 /// Hull of a ship whose file says that its size is unknown: nearly every ship is smaller.
 pub(super) const LARGE_HULL: Hull = Hull::new(400.0, 60.0);
 
-/// Values that a scenario needs and imported files do not have. Defaults as in `docs/formats.md`.
+/// Values that a scenario needs and imported files do not have. Defaults as in
+/// `docs/reference/formats.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     /// m/s.

@@ -1,5 +1,5 @@
-//! First contact of a line or an arc in time with a space-time polytope: exact, docs/theory.md
-//! section 10 (iv) and (v).
+//! First contact of a line or an arc in time with a space-time polytope: exact,
+//! docs/reference/theory.md section 10 (iv) and (v).
 //!
 //! Contact at depth `d` is contact with the body whose faces are moved inward by `d` metres. At
 //! depth 0 this is the closed set itself; at a positive depth touching does not count.
@@ -82,8 +82,8 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
 /// The interval during which a straight segment (or a wait) is at least `depth` inside, in O(n +
 /// m).
 ///
-/// Cyrus-Beck clipping by the faces, docs/theory.md section 10 (iv). The body is convex, so there
-/// is at most one interval.
+/// Cyrus-Beck clipping by the faces, docs/reference/theory.md section 10 (iv). The body is convex,
+/// so there is at most one interval.
 pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
     clip(obstacle, &Line::of(line), depth)
 }
@@ -117,7 +117,7 @@ pub(crate) fn clip(obstacle: &PolytopeObstacle, line: &Line, depth: f64) -> Opti
 /// All intervals during which an arc is at least `depth` inside, in order.
 ///
 /// An arc can leave and enter again. Each face gives the roots between its stationary points,
-/// docs/theory.md section 10 (v).
+/// docs/reference/theory.md section 10 (v).
 pub fn arc_contacts(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> Vec<Interval> {
     let start = arc.start_time.max(0.0);
     let mut inside = vec![Interval {

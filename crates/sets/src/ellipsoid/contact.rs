@@ -1,5 +1,5 @@
 //! First contact of a straight motion with an ellipsoid obstacle, as the root of a cubic;
-//! docs/theory.md sections 3 and 10.
+//! docs/reference/theory.md sections 3 and 10.
 
 use crate::EllipsoidObstacle;
 use crate::contact::{self, Interval, Line};
@@ -52,7 +52,7 @@ impl EllipsoidObstacle {
     }
 
     /// The first time at which a straight motion is inside, in O(1): a root of a cubic in t,
-    /// isolated by its turning points; docs/theory.md section 3.
+    /// isolated by its turning points; docs/reference/theory.md section 3.
     pub(crate) fn line_start(&self, line: &Line) -> Option<f64> {
         if let Some(flat) = &self.flat {
             return contact::clip(flat, line, 0.0).map(|i| i.start);

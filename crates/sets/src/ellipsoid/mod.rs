@@ -29,8 +29,8 @@ pub(crate) const MAX_STEPS: usize = 100;
 /// ```
 ///
 /// This is paper eq. (18) in a form without division by zero: a term without trace is dropped, and
-/// `Q_o`, `Q_v` may be singular. Convex in space-time (docs/theory.md section 3). It contains the
-/// Minkowski sum `O_0 ⊕ t V`, which is not an ellipse, and touches it.
+/// `Q_o`, `Q_v` may be singular. Convex in space-time (docs/reference/theory.md section 3). It
+/// contains the Minkowski sum `O_0 ⊕ t V`, which is not an ellipse, and touches it.
 ///
 /// Where both sets lie on parallel segments or are points, the sum does too and is stored as an
 /// exact polytope.
@@ -355,8 +355,8 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     }
 
     /// The positive root of a cubic, in O(1): the sets `O_alpha` at `t` are the sections at `alpha
-    /// t` about the centre of `t`, docs/theory.md section 4. With respect to the outer set, so
-    /// never below that of the exact sum.
+    /// t` about the centre of `t`, docs/reference/theory.md section 4. With respect to the outer
+    /// set, so never below that of the exact sum.
     fn alpha_within(&self, position: Vector, time: f64, edge: f64) -> f64 {
         if let Some(flat) = &self.flat {
             return flat.alpha_within(position, time, edge);

@@ -11,7 +11,7 @@ use searoom_geometry::frame::Vector;
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a
 /// unit normal in the plane.
 ///
-/// docs/theory.md section 1; the corrected eq. (9) is a positive multiple of it.
+/// docs/reference/theory.md section 1; the corrected eq. (9) is a positive multiple of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     /// Outward unit normal `n`.
@@ -178,8 +178,8 @@ impl PolytopeObstacle {
         }
     }
 
-    /// `g(x, t) = max over faces of the signed distance`, docs/theory.md section 1. NaN for a NaN.
-    /// O(n + m).
+    /// `g(x, t) = max over faces of the signed distance`, docs/reference/theory.md section 1. NaN
+    /// for a NaN. O(n + m).
     pub fn slack(&self, position: Vector, time: f64) -> Slack {
         let mut best = Slack {
             value: f64::NEG_INFINITY,

@@ -1,5 +1,5 @@
-//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), docs/theory.md section
-//! 6.
+//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29),
+//! docs/reference/theory.md section 6.
 
 use crate::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 use searoom_geometry::SignedDistance;

@@ -1,7 +1,7 @@
-//! Prints docs/benchmarks.md: the space-time planner on imported and random encounters.
+//! Prints docs/reference/benchmarks.md: the space-time planner on imported and random encounters.
 //!
 //! ```text
-//! cargo leaderboard > docs/benchmarks.md
+//! cargo leaderboard > docs/reference/benchmarks.md
 //! ```
 //!
 //! Only the times depend on the machine. `--quick` plans few random encounters, once each.
@@ -74,7 +74,7 @@ encounters. Targets of imported files have spreads of ±0.5 m/s and ±5°. This 
 page; `--quick` runs a small sample:
 
 ```text
-cargo leaderboard > docs/benchmarks.md
+cargo leaderboard > docs/reference/benchmarks.md
 ```
 
 | column | meaning |

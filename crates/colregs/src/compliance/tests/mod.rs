@@ -1,4 +1,4 @@
-//! Fixtures of docs/colregs.md 0.1 with good and bad manoeuvres.
+//! Fixtures of docs/reference/colregs.md 0.1 with good and bad manoeuvres.
 
 mod hand_worked;
 

@@ -1,4 +1,4 @@
-//! Interception of a moving vertex by a turn and a line, docs/theory.md section 10 (vi).
+//! Interception of a moving vertex by a turn and a line, docs/reference/theory.md section 10 (vi).
 
 use std::f64::consts::TAU;
 

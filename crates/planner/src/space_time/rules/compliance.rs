@@ -17,7 +17,7 @@ const ARC_SAMPLES: u32 = 32;
 
 /// Seconds after the closest approach of the hulls at which a target counts as passed. For the judges of a
 /// plan 1.5 s are enough head-on, and save 1 % of *J*; but in the closed loop, where the target is not where
-/// it was expected, more plans then break a rule (docs/rules.md).
+/// it was expected, more plans then break a rule (docs/reference/rules.md).
 const PASSED_S: f64 = 4.0;
 
 /// Seconds up to which the judges sample so often that this is enough; a longer trajectory has longer

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! So a line that is clear of a body from one hold on touches it there: these holds are tried in
-//! order, and no search is needed (docs/rules.md, "Hugging").
+//! order, and no search is needed (docs/reference/rules.md, "Hugging").
 
 use searoom_geometry::frame::{Pose, Vector, cross};
 use searoom_model::trajectory::Segment;
