@@ -2,7 +2,7 @@
 //!
 //! Each is a number that changes which plans are found, or how long that takes, and never whether a plan is
 //! clear: tolerances and sampling intervals of tests stay beside the test. [`SpaceTimeSettings::DEFAULT`] is what
-//! plans are made with. Others serve ablations: `campaign … --set group.name=value` (docs/benchmarks.md).
+//! plans are made with. Others serve ablations: `campaign … --set group.name=value` (docs/reference/benchmarks.md).
 //!
 //! Metres and seconds of searches are those of the normalised problem, whose turning radius is `size.turn_m`.
 
@@ -90,7 +90,7 @@ settings! {
     /// Conflicts of the nominal motion.
     ConflictSettings {
         /// Conflicts that all begin within this time are left to one manoeuvre, s. With 40 s *J* of four and ten
-        /// targets is 1 and 2 % lower, at twice the time (docs/measured.md).
+        /// targets is 1 and 2 % lower, at twice the time (docs/reference/measured.md).
         apart_s: f64 = 120.0,
         /// Largest lead of a departure before a conflict, s.
         lead_s: f64 = 67.0,
