@@ -4,10 +4,13 @@
 //! plan of a level below. A planner may find a way around a larger
 //! set and miss it for a smaller one. So some levels also plan against more than they require.
 
+mod levels;
+
 use std::cell::Cell;
 use std::cmp::Ordering;
 use std::time::{Duration, Instant};
 
+use self::levels::{BY_THE_RULES, CLEAR_OF_DOMAINS, LAWFUL_REMAINDER, REMAINDER};
 use super::entered;
 use super::remainder::{begins_another, better_remainder};
 use super::rules::{self, encountered, first_turn};
@@ -21,19 +24,7 @@ use crate::planner::{
 };
 use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
-use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
-
-/// Domain scale factor between the hard set, 0, and the full ship domain, 1.
-const HALF: f64 = 0.5;
-
-/// Scale factors of the level that keeps the rules, in the order in which they are tried.
-const SCALES_BY_THE_RULES: [f64; 2] = [HALF, 0.0];
-
-/// Scale factors of the level that reduces domains, in the order in which they are tried.
-const SCALES_OF_REDUCED_DOMAINS: [f64; 2] = [0.0, HALF];
-
-/// Scale factors tried when ship domains are not asked for and the hard sets alone gave no plan.
-const SCALES_ABOVE_HARD_SETS: [f64; 2] = [1.0, HALF];
+use crate::trajectory::{Segment, Trajectory};
 
 /// Bisection steps for a larger common scale factor, each with a warm-started plan.
 const SCALE_HALVINGS: usize = 3;
@@ -43,9 +34,6 @@ const RETAINED_HALVINGS: usize = 10;
 
 /// Metres by which reductions of domains may differ in answers that relax as much.
 const SAME_REDUCTION_M: f64 = 1.0;
-
-/// Seconds between the next plan and the end of a remainder that is kept until then.
-const BEFORE_END_S: f64 = 2.0;
 
 /// Seconds by which a manoeuvre by the rules arrives off its schedule, from which on it is compared with
 /// other lawful plans. An alteration should be bold, but no detour of a quarter of an hour where a bend breaks no
@@ -172,25 +160,6 @@ pub(super) struct Relaxer<'a> {
 }
 
 impl Relaxer<'_> {
-    /// The attempts after the first, in the order in which they are made. Several may belong to one
-    /// level.
-    ///
-    /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
-    /// without a plan says that the time ran out. The flag is true where ship domains are asked
-    /// for. When all fail, [`Self::leaving_sets`] answers.
-    const ATTEMPTS: [fn(&Self, bool) -> Option<Attempt>; 10] = [
-        Self::remainder_by_the_rules,
-        Self::by_the_rules,
-        Self::clear_of_domains,
-        Self::remainder,
-        Self::clear_of_hard_sets,
-        Self::around_hard_sets,
-        Self::short_of_end,
-        Self::waiting,
-        Self::remainder_on_the_way,
-        Self::at_least_risk,
-    ];
-
     /// The answer to the request.
     pub fn answer(&self) -> Attempt {
         let (search, planner) = (self.scenario.search, self.scenario.planner.facts());
@@ -264,7 +233,6 @@ impl Relaxer<'_> {
 
     /// The answer of the first level that has one; without any, that of the first level.
     pub(super) fn answer_of_one_search(&self) -> Attempt {
-        let with_domain = self.scenario.compliance.shapes();
         let first = self.first();
         let mut first = self.much_cheaper_than(&first).unwrap_or(first);
         let problem = self.problem(&first.obstacles);
@@ -284,16 +252,16 @@ impl Relaxer<'_> {
             }
         }
         if self.scenario.planner.facts().relaxes_domains_only {
-            return self.without_domains(first, with_domain);
+            return self.without_domains(first);
         }
         let why = match &first.planned.outcome {
             Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
                 return self.finished(&first).unwrap_or(first);
             }
-            Outcome::Deadline(None) => return self.late(with_domain, first),
+            Outcome::Deadline(None) => return self.late(first),
             Outcome::Infeasible(reason) => reason.clone(),
         };
-        let relaxed = self.relaxed(first, &why, with_domain);
+        let relaxed = self.relaxed(first, &why);
         let relaxed = self.finished(&relaxed).unwrap_or(relaxed);
         let arrives = relaxed.planned.outcome.plan().is_none_or(Plan::arrives);
         let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
@@ -336,8 +304,8 @@ impl Relaxer<'_> {
         }
     }
 
-    /// The answer of the first of [`Self::ATTEMPTS`] that has one.
-    fn relaxed(&self, first: Attempt, why: &NoPlan, with_domain: bool) -> Attempt {
+    /// The answer of the first level below the request that has one.
+    fn relaxed(&self, first: Attempt, why: &NoPlan) -> Attempt {
         if is_inside(why) {
             return self.leaving_sets(first);
         }
@@ -345,37 +313,24 @@ impl Relaxer<'_> {
             return first;
         }
         let at_end = matches!(why, NoPlan::EndCovered { .. });
-        let at_end = at_end.then(|| self.without_domains_at_end(with_domain));
-        let found = at_end.flatten().or_else(|| {
-            let mut attempts = Self::ATTEMPTS.iter();
-            attempts.find_map(|plan| plan(self, with_domain))
-        });
-        match self.or_cut_again(found, with_domain) {
+        let at_end = at_end.then(|| self.without_domains_at_end());
+        let found = at_end.flatten().or_else(|| self.of_levels());
+        match self.or_cut_again(found) {
             Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => {
                 self.letting_pass(&found).unwrap_or(found)
             }
-            Some(found) => self.late(with_domain, found),
+            Some(found) => self.late(found),
             None => self.leaving_sets(first),
         }
     }
 
     /// The answer where the time ran out before there was a plan. It is the remainder of the last
     /// plan, if that is clear of the hard sets: this takes no search.
-    fn late(&self, with_domain: bool, attempt: Attempt) -> Attempt {
-        match self.remainder(with_domain) {
+    fn late(&self, attempt: Attempt) -> Attempt {
+        match self.of_level(&REMAINDER, |_| true) {
             Some(found) => out_of_time(found),
             None => self.leaving_sets(attempt),
         }
-    }
-
-    /// [`RelaxationLevel::Rules`]: the remainder of the last plan, if it is clear of the hard sets
-    /// and breaks no rule.
-    fn remainder_by_the_rules(&self, _: bool) -> Option<Attempt> {
-        if !self.are_rules_asked() {
-            return None;
-        }
-        let found = self.remainder_clear_of_hard_sets(RelaxationLevel::Rules)?;
-        (found.1 == 0).then_some(found.0)
     }
 
     /// [`RelaxationLevel::Rules`]: the manoeuvre under way, finished in smaller domains, where the
@@ -388,42 +343,6 @@ impl Relaxer<'_> {
         let breaks = |trajectory| rules::breaks(self.scenario, trajectory);
         let fewest = attempt.trajectory().map_or(usize::MAX, breaks);
         (found.1 <= fewest).then_some(found.0)
-    }
-
-    /// [`RelaxationLevel::ReducedDomains`]: the remainder of the last plan, if it is clear of the
-    /// hard sets.
-    fn remainder(&self, with_domain: bool) -> Option<Attempt> {
-        let level = RelaxationLevel::ReducedDomains;
-        let found = with_domain.then(|| self.remainder_clear_of_hard_sets(level));
-        found.flatten().map(|found| found.0)
-    }
-
-    /// [`RelaxationLevel::Waiting`]: the remainder of a last plan that ends on the way, if it is clear
-    /// of the hard sets and another plan is due before its end. Until then it is better than a risk.
-    fn remainder_on_the_way(&self, with_domain: bool) -> Option<Attempt> {
-        let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
-        let last = self.scenario.memory.remainder.last()?;
-        if last.end_time() < self.scenario.simulation.replan + BEFORE_END_S {
-            return None;
-        }
-        let end = last.end().position;
-        let left = path.left_from(end, sailed(&self.scenario.memory.remainder));
-        // the schedule may be past that end
-        let to_end = || DesiredTrajectory::new(&[own.pose.position, end], &[path.legs()[0].speed]);
-        let short = Scenario {
-            desired: path.shortened(left).or_else(|| to_end().ok())?,
-            ..self.scenario.clone()
-        };
-        let level = match with_domain {
-            true => RelaxationLevel::ReducedDomains,
-            false => RelaxationLevel::Compliant,
-        };
-        let of_short = self.of(&short, self.sets);
-        let (mut found, _) = of_short.remainder_clear_of_hard_sets(level)?;
-        if let Outcome::Solved(plan) = &mut found.planned.outcome {
-            plan.to_go = left;
-        }
-        Some(found)
     }
 
     /// The remainder against the hard sets and as much of the domains as it is clear of, and the
@@ -449,8 +368,8 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::Rules`] or [`RelaxationLevel::ReducedDomains`]: the remainder of the last
     /// plan, if that is clear of the hard sets; else a plan that is clear of all full domains except
     /// those over the last waypoint, of which it retains what it can.
-    fn without_domains_at_end(&self, with_domain: bool) -> Option<Attempt> {
-        if !with_domain {
+    fn without_domains_at_end(&self) -> Option<Attempt> {
+        if !self.are_domains_asked() {
             return None;
         }
         let level = match self.are_rules_asked() {
@@ -484,40 +403,6 @@ impl Relaxer<'_> {
         }
     }
 
-    /// [`RelaxationLevel::Rules`]: a plan by the rules that is clear of the hard sets, and of the
-    /// ship domains as far as it happens to be.
-    fn by_the_rules(&self, _: bool) -> Option<Attempt> {
-        self.by_the_rules_where(|_| true)
-    }
-
-    /// [`Self::by_the_rules`] in the largest domains for which the plan is `accepted`.
-    fn by_the_rules_where(&self, accepted: impl Fn(&Attempt) -> bool) -> Option<Attempt> {
-        if !self.are_rules_asked() || !self.has_domains() {
-            return None;
-        }
-        let (level, risk) = (RelaxationLevel::Rules, self.scenario.max_risk);
-        SCALES_BY_THE_RULES.into_iter().find_map(|scale| {
-            let found = self.attempt(level, &self.scales(scale), risk);
-            let retained = self.retained_along(found.trajectory()?, risk);
-            Some(self.clear_of(&found, &retained, level)).filter(&accepted)
-        })
-    }
-
-    /// [`RelaxationLevel::Domains`]: a plan that is clear of the full domains, where the rules were
-    /// asked for as well.
-    fn clear_of_domains(&self, _: bool) -> Option<Attempt> {
-        self.clear_of_domains_where(|_| true)
-    }
-
-    /// [`Self::clear_of_domains`], an `accepted` plan where there is one.
-    fn clear_of_domains_where(&self, accepted: impl Fn(&Attempt) -> bool) -> Option<Attempt> {
-        if !self.are_rules_asked() {
-            return None;
-        }
-        let found = self.at_most_the_risk(RelaxationLevel::Domains, &self.scales(1.0), accepted);
-        (!found.is_infeasible()).then_some(found)
-    }
-
     /// A lawful plan that costs a tenth of a manoeuvre by the rules that is far off its schedule: one of the
     /// whole request that is no such manoeuvre, the rest of the last plan, or a manoeuvre in smaller
     /// domains. During a manoeuvre only the rest of the last plan.
@@ -534,12 +419,14 @@ impl Relaxer<'_> {
                     && rules::breaks(self.scenario, &found.trajectory) == 0
             })
         };
-        let rest = || self.remainder_by_the_rules(true).filter(is_better);
+        let rest = || self.of_level(&LAWFUL_REMAINDER, |_| true).filter(is_better);
         let found = match self.scenario.memory.under_way {
             Some(_) => rest(),
-            None => (self.clear_of_domains_where(is_better).filter(is_better))
-                .or_else(rest)
-                .or_else(|| self.by_the_rules_where(is_better)),
+            None => (self
+                .of_level(&CLEAR_OF_DOMAINS, is_better)
+                .filter(is_better))
+            .or_else(rest)
+            .or_else(|| self.of_level(&BY_THE_RULES, is_better)),
         };
         let mut found = found?;
         if found.reductions.iter().all(|metres| *metres == 0.0) {
@@ -558,91 +445,6 @@ impl Relaxer<'_> {
         let far = FAR_OFF_LENGTHS * self.scenario.own_ship.hull.length;
         let far = self.sets.iter().map(|s| s.shape_reach).fold(far, f64::max);
         off_time.abs() > FAR_OFF_TIME_S || plan.cost > far * far
-    }
-
-    /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets, or against halved domains,
-    /// that retains as much of each domain as was found.
-    fn clear_of_hard_sets(&self, with_domain: bool) -> Option<Attempt> {
-        if !self.has_domains() {
-            return None;
-        }
-        if with_domain {
-            // a plan along paths for a larger set is also found for the smaller one
-            let tried = if self.follows_paths() { 1 } else { 2 };
-            let mut scales = SCALES_OF_REDUCED_DOMAINS.into_iter().take(tried);
-            let found = scales.find_map(|scale| self.found(scale))?;
-            let Some(trajectory) = found.trajectory() else {
-                return Some(found);
-            };
-            let retained = self.retained_along(trajectory, found.risk);
-            let clear = self.clear_of(&found, &retained, RelaxationLevel::ReducedDomains);
-            return Some(self.with_larger_domains(clear, &retained));
-        }
-        if self.follows_paths() {
-            return None;
-        }
-        let found = SCALES_ABOVE_HARD_SETS
-            .into_iter()
-            .find_map(|scale| self.found(scale))?;
-        if found.trajectory().is_none() {
-            return Some(found);
-        }
-        Some(self.clear_of(&found, &self.scales(0.0), RelaxationLevel::Compliant))
-    }
-
-    /// [`RelaxationLevel::ReducedDomains`] by a wide detour around the hard sets.
-    fn around_hard_sets(&self, with_domain: bool) -> Option<Attempt> {
-        let planner = self.scenario.planner;
-        let risk = self.scenario.max_risk;
-        let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
-        let obstacles = level_sets(&whole, risk);
-        let mut planned = planner.wide_detour(&self.problem(&obstacles))?;
-        let wide = planned.outcome.plan()?;
-        let refined = warm_started(planner, &self.problem(&obstacles), wide);
-        let plan = match refined.as_ref().and_then(Outcome::plan) {
-            Some(refined) if refined.cost < wide.cost => refined.clone(),
-            _ => wide.clone(),
-        };
-        planned.outcome = match refined {
-            Some(Outcome::Deadline(_)) => Outcome::Deadline(Some(plan)),
-            _ => Outcome::Solved(plan),
-        };
-        let level = if with_domain {
-            RelaxationLevel::ReducedDomains
-        } else {
-            RelaxationLevel::Compliant
-        };
-        let reductions = vec![0.0; whole.len()];
-        let found = Attempt::of(level, whole, reductions, obstacles, risk, planned);
-        if !with_domain {
-            return Some(self.clear_of(&found, &self.scales(0.0), level));
-        }
-        let retained = self.retained_along(found.trajectory()?, risk);
-        Some(self.with_larger_domains(self.clear_of(&found, &retained, level), &retained))
-    }
-
-    /// [`RelaxationLevel::Waiting`]: a motion that does not arrive in time, clear of the hard sets
-    /// and of as much of the domains as was found.
-    fn waiting(&self, with_domain: bool) -> Option<Attempt> {
-        if self.is_infeasible_alone() {
-            return None;
-        }
-        let (level, risk) = (RelaxationLevel::Waiting, self.scenario.max_risk);
-        let at = |scale: f64| {
-            let found = self.attempt(level, &self.scales(scale), risk);
-            (!found.is_infeasible()).then_some(found)
-        };
-        if with_domain && let Some(found) = at(1.0) {
-            return Some(found);
-        }
-        let found = at(0.0)?;
-        match found.trajectory() {
-            Some(trajectory) if with_domain => {
-                let retained = self.retained_along(trajectory, risk);
-                Some(self.clear_of(&found, &retained, level))
-            }
-            _ => Some(found),
-        }
     }
 
     /// [`RelaxationLevel::Rules`], or [`RelaxationLevel::ReducedDomains`]: a plan clear of the hard
@@ -683,129 +485,17 @@ impl Relaxer<'_> {
 
     /// If a level used up its share of the time and no plan is safe, spends the remaining time on the
     /// shortened mission.
-    fn or_cut_again(&self, found: Option<Attempt>, with_domain: bool) -> Option<Attempt> {
+    fn or_cut_again(&self, found: Option<Attempt>) -> Option<Attempt> {
         let is_safe = |of: &Attempt| of.trajectory().is_some() && of.level < RelaxationLevel::Risk;
         let has_time = self.is_cut_short.get() && !self.time_left().is_zero();
         if found.as_ref().is_some_and(is_safe) || !has_time {
             return found;
         }
-        match (self.cut(with_domain, 1.0), found) {
+        match (self.cut(1.0), found) {
             (Some(again), Some(found)) if !again.is_better_than(&found) => Some(found),
             (Some(again), _) => Some(again),
             (None, found) => found,
         }
-    }
-
-    /// [`RelaxationLevel::Waiting`]: the answer of [`Self::cut`] within half of the time, which leaves
-    /// the rest to the levels below.
-    fn short_of_end(&self, with_domain: bool) -> Option<Attempt> {
-        self.cut(with_domain, 0.5)
-    }
-
-    /// [`RelaxationLevel::Waiting`]: the answer for the mission cut before the hard sets that cover
-    /// its end, or else where the last plan ends, each within a share of the time. It keeps the level
-    /// of that answer. Without one the plan ends where own ship is, if the place is within its
-    /// turning radius. After the deadline only the remainder of the last plan is considered.
-    fn cut(&self, with_domain: bool, share: f64) -> Option<Attempt> {
-        let risk = self.scenario.max_risk;
-        let (whole, reductions) = self.asked(&self.scales(0.0));
-        let hard = level_sets(&whole, risk);
-        let problem = self.problem(&hard);
-        let (why, desired) = self.scenario.planner.short_of_end(&problem)?;
-        let needs_time = desired.is_some() && self.scenario.memory.remainder.is_empty();
-        if needs_time && self.time_left().is_zero() {
-            return None;
-        }
-        let (own, path) = (&self.scenario.own_ship, &self.scenario.desired);
-        let away = |short: &DesiredTrajectory| (short.end() - own.pose.position).norm();
-        let is_near = desired.as_ref().map_or(0.0, away) <= own.turning_radius;
-        let kept = &self.scenario.memory.remainder;
-        let left = |last: &Segment| path.left_from(last.end().position, sailed(kept));
-        let left = kept.last().map(left);
-        let left = left.filter(|left| *left > tolerance::ARRIVAL_M);
-        let before = left.and_then(|left| path.shortened(left));
-        let mut late = false;
-        let answer = desired.into_iter().chain(before).find_map(|desired| {
-            let short = Scenario {
-                desired,
-                deadline: self.scenario.deadline - (1.0 - share) * self.time_left().as_secs_f64(),
-                ..self.scenario.clone()
-            };
-            let answer = self.of(&short, self.sets).answer_of_one_search();
-            late |= matches!(answer.planned.outcome, Outcome::Deadline(_));
-            let arrives = answer.level < RelaxationLevel::Waiting;
-            (arrives && answer.trajectory().is_some()).then_some(answer)
-        });
-        if late {
-            self.is_cut_short.set(true);
-        }
-        let mut found = match answer {
-            Some(answer) => answer,
-            None if is_near && !late => {
-                let planned = Planned::of(Outcome::Solved(Plan::staying(&problem)?));
-                let level = match with_domain {
-                    true => RelaxationLevel::ReducedDomains,
-                    false => RelaxationLevel::Compliant,
-                };
-                let found = Attempt::of(level, whole, reductions, hard, risk, planned);
-                if with_domain {
-                    let retained = self.retained_along(found.trajectory()?, risk);
-                    self.clear_of(&found, &retained, level)
-                } else {
-                    found
-                }
-            }
-            None => return None,
-        };
-        if let Outcome::Solved(plan) | Outcome::Deadline(Some(plan)) = &mut found.planned.outcome {
-            let motion = &plan.trajectory;
-            plan.to_go = path.left_from(motion.end().position, motion.length());
-        }
-        found.why = Some(why);
-        Some(found)
-    }
-
-    /// [`RelaxationLevel::Risk`]: the plan at the least risk for which one was found, by bisection
-    /// to [`RISK_STEP`]. Along paths a motion that does not arrive counts as a plan.
-    fn at_least_risk(&self, _: bool) -> Option<Attempt> {
-        let level = RelaxationLevel::Risk;
-        let hard = self.scales(0.0);
-        let at = |risk: f64| {
-            let found = self.attempt(level, &hard, risk);
-            if self.follows_paths() && found.is_infeasible() {
-                return Attempt {
-                    level,
-                    ..self.attempt(RelaxationLevel::Waiting, &hard, risk)
-                };
-            }
-            found
-        };
-        let mut low = self.scenario.max_risk;
-        let mut high = 1.0 - RISK_STEP;
-        if low >= high {
-            return None;
-        }
-        let mut best = at(high);
-        if best.trajectory().is_none() {
-            let timed_out = matches!(best.planned.outcome, Outcome::Deadline(_));
-            return timed_out.then_some(best);
-        }
-        while high - low > RISK_STEP {
-            if self.time_left().is_zero() {
-                return Some(out_of_time(best));
-            }
-            let risk = 0.5 * (low + high);
-            let tried = self.warm_started(&best, risk).unwrap_or_else(|| at(risk));
-            match tried.planned.outcome {
-                Outcome::Infeasible(_) => low = risk,
-                Outcome::Deadline(None) => return Some(out_of_time(best)),
-                Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
-                    best = tried;
-                    high = risk;
-                }
-            }
-        }
-        Some(best)
     }
 
     /// [`RelaxationLevel::Inside`]: the motion with the least harm. Without a motion the attempt is
@@ -895,14 +585,14 @@ impl Relaxer<'_> {
     }
 
     /// The only level below the first for a planner that relaxes domains only: the hard sets.
-    fn without_domains(&self, mut first: Attempt, with_domain: bool) -> Attempt {
+    fn without_domains(&self, mut first: Attempt) -> Attempt {
         let blocked = match &first.planned.outcome {
             // the ellipse around a domain may contain own ship where the domain does not
             Outcome::Infeasible(NoPlan::StartInside { .. }) => true,
             Outcome::Infeasible(reason) => reason.is_for_the_sets(),
             Outcome::Solved(_) | Outcome::Deadline(_) => false,
         };
-        if !(with_domain && blocked && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
+        if !(self.are_domains_asked() && blocked && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
             return first;
         }
         let level = RelaxationLevel::ReducedDomains;
@@ -924,6 +614,10 @@ impl Relaxer<'_> {
             && !encountered(self.scenario, self.sets).is_empty()
     }
 
+    fn are_domains_asked(&self) -> bool {
+        self.scenario.compliance.shapes()
+    }
+
     fn has_domains(&self) -> bool {
         self.sets.iter().any(TargetSets::has_domain)
     }
@@ -934,10 +628,12 @@ impl Relaxer<'_> {
 
     /// The planning problem of the scenario against these sets, with the time that is left.
     pub(super) fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
-        let with_domain = self.scenario.compliance.shapes();
         Problem {
             deadline: self.time_left(),
-            first_turn: with_domain.then(|| first_turn(self.sets)).flatten(),
+            first_turn: self
+                .are_domains_asked()
+                .then(|| first_turn(self.sets))
+                .flatten(),
             ..super::problem(self.scenario, obstacles, self.land_obstacle)
         }
     }
@@ -975,13 +671,6 @@ impl Relaxer<'_> {
             self.is_cut_short.set(true);
         }
         Attempt::of(level, whole, reductions, obstacles, risk, planned)
-    }
-
-    /// An attempt against domains of one scale factor; `None` where there is no plan.
-    fn found(&self, scale: f64) -> Option<Attempt> {
-        let level = RelaxationLevel::ReducedDomains;
-        let attempt = self.attempt(level, &self.scales(scale), self.scenario.max_risk);
-        (!attempt.is_infeasible()).then_some(attempt)
     }
 
     /// The plan of an attempt refined for another risk, without a search; `None` where that fails.
@@ -1034,8 +723,7 @@ impl Relaxer<'_> {
 
     /// The full ship domains, where they are asked for.
     fn first_scales(&self) -> Vec<f64> {
-        let with_domain = self.scenario.compliance.shapes();
-        self.scales(if with_domain { 1.0 } else { 0.0 })
+        self.scales(if self.are_domains_asked() { 1.0 } else { 0.0 })
     }
 
     /// The plan of an attempt, claimed to be clear of domains of these scale factors.
