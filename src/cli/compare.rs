@@ -63,14 +63,15 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     let documents: Vec<_> = asked.iter().map(document).collect();
     let read = documents.iter().filter(|document| document.error.is_none());
     let tables: Vec<ResultTable> = read.map(comparison_table).collect();
-    let mut written = args.tables.write(&tables, output);
+    status = status.max(args.tables.write(&tables, output));
     if let Some(figure) = figure {
         match draw(figure, args, &asked) {
             Ok(()) if figure.exists() => output.wrote(figure),
             Ok(()) => {}
-            Err(error) => written = written.max(output.refuse(&format_args!("{error:#}"))),
+            Err(error) => status = status.max(output.refuse(&error)),
         }
     }
+    let mut written = ExitStatus::Good;
     for (compared, document) in asked.iter().zip(&documents) {
         if let Ok(c) = compared {
             let result = products.write_comparison(&c.stem, &c.scenario, &c.entries, document);

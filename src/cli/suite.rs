@@ -96,9 +96,9 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let document = SuiteDocument::of(tally.runs);
     let lead = document.summary.to_string();
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
-    let mut written = output.written(report);
+    let written = output.written(report);
     let table = suite_table(&document);
-    written = written.max(args.tables.write(std::slice::from_ref(&table), output));
+    let tabled = args.tables.write(std::slice::from_ref(&table), output);
     let shown = output.show(args.shared.written.json, &document, || {
         // the errors say all of files that hold no scenario
         if document.runs.iter().all(|run| run.scenario.is_none()) {
@@ -109,7 +109,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     if document.runs.iter().any(|run| run.cost.is_some()) {
         products.announce(tally.written.max(written), output);
     }
-    Ok(tally.status.max(written).max(shown))
+    Ok(tally.status.max(written).max(tabled).max(shown))
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, products: &Products, tally: &mut Tally) {

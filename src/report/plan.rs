@@ -348,11 +348,15 @@ mod tests {
         SuiteRunDocument::of("a.toml".to_owned(), &PlanDocument::of(&run), Vec::new())
     }
 
+    fn suite_text(runs: &[SuiteRunDocument], display: Display) -> String {
+        suite_table(&SuiteDocument::of(runs.to_vec())).text(display)
+    }
+
     #[test]
     fn rows_name_a_few_targets_and_count_the_rest() {
         let mut busy = planned();
         busy.encounters = vec![busy.encounters[0].clone(); 5];
-        let table = suite_table(std::slice::from_ref(&busy), Display::default());
+        let table = suite_text(std::slice::from_ref(&busy), Display::default());
         assert_eq!(table.matches("port, astern").count(), LISTED, "{table}");
         assert!(table.contains("+ 2 more") && table.contains("a.toml"));
         assert!(!table.contains('\u{1b}'));
@@ -360,9 +364,9 @@ mod tests {
             colour: true,
             width: None,
         };
-        assert!(suite_table(&[planned()], colour).contains('\u{1b}'));
+        assert!(suite_text(&[planned()], colour).contains('\u{1b}'));
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
-        let both = suite_table(&[failed, busy], Display::default());
+        let both = suite_text(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
     }
 
@@ -377,7 +381,7 @@ mod tests {
                 width,
             };
             run.verdict = "a long outcome of many words which leaves no room for others".to_owned();
-            let table = suite_table(std::slice::from_ref(&run), display);
+            let table = suite_text(std::slice::from_ref(&run), display);
             assert_eq!(table.contains(CLEARANCE), is_told, "{table}");
         }
     }

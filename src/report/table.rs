@@ -266,6 +266,13 @@ fn in_tex(text: &str) -> String {
     if text.starts_with(['[', '*']) {
         escaped.push_str("{}");
     }
+    let text = match text.strip_prefix('-') {
+        Some(figure) if figure.starts_with(|c: char| c.is_ascii_digit()) => {
+            escaped.push_str("$-$");
+            figure
+        }
+        _ => text,
+    };
     for c in printable(text).chars() {
         match c {
             '&' | '%' | '_' | '#' | '$' | '{' | '}' => escaped.extend(['\\', c]),

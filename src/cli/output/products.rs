@@ -318,9 +318,12 @@ impl TableFiles {
             .filter_map(|(option, file)| Some((option, file.as_ref()?)))
     }
 
-    /// Rejects folders, and creates those of the files.
+    /// Rejects what names no file, and creates the folders of the files.
     pub fn prepare(&self) -> anyhow::Result<()> {
         self.files().try_for_each(|(option, file)| {
+            if file.as_os_str() == "-" {
+                bail!("{option}: found -; allowed: a file, or /dev/stdout for standard output");
+            }
             refuse_folder(option, file, "name a file")?;
             make_parent(file)
         })

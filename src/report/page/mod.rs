@@ -215,6 +215,13 @@ impl HtmlReport {
 
     /// Renders the page.
     pub fn html(&self, title: &str, lead: &str) -> String {
+        // the section of a single plan says all of its row
+        let overview = (!self.runs.is_empty() && self.sections.len() > 1).then(|| {
+            let mut table = suite_table(&SuiteDocument::of(self.runs.clone()));
+            // the lead counts the outcomes
+            table.remarks.pop();
+            remarked(table, &self.run_sections)
+        });
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -227,10 +234,7 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    // the section of a single plan says all of its row
-                    @if !self.runs.is_empty() && self.sections.len() > 1 {
-                        (remarked(suite_table(&SuiteDocument::of(self.runs.clone())), &self.run_sections))
-                    }
+                    @if let Some(overview) = overview { (overview) }
                     @for section in &self.sections { (section) }
                     p.quiet {
                         "Lengths in metres, speeds in knots, times in seconds from the start, \
