@@ -186,10 +186,12 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub plans: Option<PathBuf>,
+    #[command(flatten)]
+    pub tables: TableFiles,
     /// Plan nothing: report where ships would meet, and errors in the scenarios
     #[arg(long, conflicts_with_all = [
         "plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk",
-        "thresholds", "strict",
+        "thresholds", "strict", "csv", "md", "tex",
     ])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
@@ -269,9 +271,8 @@ pub struct CompareArgs {
     /// Also find, for each plan, a cost that no motion can be below (takes some seconds)
     #[arg(long)]
     pub bound: bool,
-    /// Write the rows as CSV
-    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
-    pub csv: Option<PathBuf>,
+    #[command(flatten)]
+    pub tables: TableFiles,
     #[command(flatten)]
     pub written: Written,
     #[command(flatten)]
@@ -384,6 +385,20 @@ impl Drawn {
             _ => Ok(()),
         }
     }
+}
+
+/// Files of the table.
+#[derive(Debug, Args)]
+pub struct TableFiles {
+    /// Write the rows as CSV: all columns, with all digits and in SI units
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub csv: Option<PathBuf>,
+    /// Write the table as Markdown
+    #[arg(long, value_name = "FILE.md", value_hint = ValueHint::FilePath)]
+    pub md: Option<PathBuf>,
+    /// Write the table for LaTeX, with its package booktabs
+    #[arg(long, value_name = "FILE.tex", value_hint = ValueHint::FilePath)]
+    pub tex: Option<PathBuf>,
 }
 
 /// Where results go.

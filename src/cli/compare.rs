@@ -1,12 +1,12 @@
 //! `searoom compare`: every applicable planner and two baselines.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use searoom::document::{ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument};
-use searoom::report::figure::comparison_figure;
+use searoom::report::figure::{FigureError, comparison_figure};
 use searoom::report::page::HtmlReport;
-use searoom::report::{COMPARISON_COLUMNS, comparison_csv, comparison_table, write_atomically};
+use searoom::report::{ResultTable, comparison_table};
 use searoom::scenario::Scenario;
 use searoom::scenario::import::Imported;
 use searoom::study::compare::{
@@ -16,8 +16,8 @@ use searoom::study::compare::{
 use super::args::CompareArgs;
 use super::found::{Refused, shown};
 use super::input::scenes::{self, Scene};
+use super::output::Output;
 use super::output::products::{Failure, Products, Wanted, prepare_figure, report_failure};
-use super::output::{Output, csv};
 use super::runner::{guarded, guarded_on};
 use super::status::ExitStatus;
 
@@ -39,6 +39,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     }
     let figure = args.written.drawn.figure.as_deref();
     figure.map_or(Ok(()), prepare_figure)?;
+    args.tables.prepare()?;
     let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {
@@ -60,14 +61,15 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         status = status.max(compared.as_ref().map_or(ExitStatus::Good, Compared::status));
     }
     let documents: Vec<_> = asked.iter().map(document).collect();
-    match write(args, &asked, &documents) {
-        Ok(()) => {
-            let files = args.csv.iter().chain(&args.written.drawn.figure);
-            files
-                .filter(|file| file.exists())
-                .for_each(|file| output.wrote(file));
+    let read = documents.iter().filter(|document| document.error.is_none());
+    let tables: Vec<ResultTable> = read.map(comparison_table).collect();
+    status = status.max(args.tables.write(&tables, output));
+    if let Some(figure) = figure {
+        match draw(figure, args, &asked) {
+            Ok(()) if figure.exists() => output.wrote(figure),
+            Ok(()) => {}
+            Err(error) => status = status.max(output.refuse(&error)),
         }
-        Err(error) => status = status.max(output.refuse(&format_args!("{error:#}"))),
     }
     let mut written = ExitStatus::Good;
     for (compared, document) in asked.iter().zip(&documents) {
@@ -82,7 +84,16 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     if asked.iter().any(Result::is_ok) {
         products.announce(written, output);
     }
-    Ok(status.max(written).max(show(args, documents, output)))
+    let shown = match args.written.json {
+        true => output.document(&ComparisonDocument {
+            comparisons: documents,
+        }),
+        false => {
+            let texts = tables.iter().map(|table| table.text(output.display));
+            output.result(&texts.collect::<Vec<_>>().join("\n\n"))
+        }
+    };
+    Ok(status.max(written).max(shown))
 }
 
 fn ask(scene: &Scene, args: &CompareArgs) -> Result<Compared, Refused> {
@@ -188,29 +199,19 @@ impl Compared {
     }
 }
 
-fn write(
+fn draw(
+    file: &Path,
     args: &CompareArgs,
     asked: &[Result<Compared, Refused>],
-    documents: &[ScenarioComparisonDocument],
-) -> anyhow::Result<()> {
-    if let Some(file) = &args.csv {
-        let mut rows = vec![COMPARISON_COLUMNS.split(',').map(str::to_owned).collect()];
-        for document in documents {
-            let entries = document.entries.iter();
-            rows.extend(entries.map(|entry| comparison_csv(document, entry)));
-        }
-        write_atomically(file, &csv(rows)?)?;
+) -> Result<(), FigureError> {
+    let drawn = asked.iter().flatten();
+    let drawn: Vec<(&Scenario, &[Entry])> =
+        drawn.map(|c| (&c.scenario, c.entries.as_slice())).collect();
+    if drawn.is_empty() {
+        return Ok(());
     }
-    if let Some(file) = &args.written.drawn.figure {
-        let drawn = asked.iter().flatten();
-        let drawn: Vec<(&Scenario, &[Entry])> =
-            drawn.map(|c| (&c.scenario, c.entries.as_slice())).collect();
-        if !drawn.is_empty() {
-            let options = args.written.drawn.options(&args.written.times, false);
-            comparison_figure(&drawn, &options)?.write(file)?;
-        }
-    }
-    Ok(())
+    let options = args.written.drawn.options(&args.written.times, false);
+    comparison_figure(&drawn, &options)?.write(file)
 }
 
 /// Builds the report of all scenarios, including unreadable ones.
@@ -234,22 +235,4 @@ fn report(
     }
     let lead = "Every planner that applies and two baselines on the same targets.";
     products.write_report(&report, "Searoom: a comparison", lead)
-}
-
-fn show(
-    args: &CompareArgs,
-    comparisons: Vec<ScenarioComparisonDocument>,
-    output: &Output,
-) -> ExitStatus {
-    if args.written.json {
-        return output.document(&ComparisonDocument { comparisons });
-    }
-    let read = comparisons.iter().filter(|c| c.error.is_none());
-    let tables: Vec<String> = read
-        .map(|compared| comparison_table(compared, output.display))
-        .collect();
-    if tables.is_empty() {
-        return ExitStatus::Good;
-    }
-    output.result(&tables.join("\n\n"))
 }

@@ -54,6 +54,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()?
     };
+    args.tables.prepare()?;
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());
     let mut tally = Tally::default();
@@ -96,18 +97,19 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let lead = document.summary.to_string();
     let report = products.write_report(&tally.report, "Searoom: a suite", &lead);
     let written = output.written(report);
+    let table = suite_table(&document);
+    let tabled = args.tables.write(std::slice::from_ref(&table), output);
     let shown = output.show(args.shared.written.json, &document, || {
         // the errors say all of files that hold no scenario
         if document.runs.iter().all(|run| run.scenario.is_none()) {
             return String::new();
         }
-        let table = suite_table(&document.runs, output.display);
-        format!("{table}\n{}", document.summary)
+        table.text(output.display)
     });
     if document.runs.iter().any(|run| run.cost.is_some()) {
         products.announce(tally.written.max(written), output);
     }
-    Ok(tally.status.max(written).max(shown))
+    Ok(tally.status.max(written).max(tabled).max(shown))
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, products: &Products, tally: &mut Tally) {

@@ -21,7 +21,7 @@ pub use crate::pipeline::Verdict;
 pub use crate::text::{broken, counted, printable, printable_lines};
 pub use assessment::assessment_text;
 pub use campaign::{campaign_text, rare_contacts_text};
-pub use comparison::{COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table};
+pub use comparison::comparison_table;
 pub use inspection::{entities_table, timelines_text};
 pub use lint::lint_text;
 pub use plan::{
@@ -30,5 +30,5 @@ pub use plan::{
 };
 pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_markdown, simulation_text, simulations_line};
-pub use table::Display;
+pub use table::{Display, ResultTable};
 pub use verification::{simulation_verification_text, verification_line, verification_text};

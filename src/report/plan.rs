@@ -4,12 +4,13 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::table::{
-    Display, Grid, Styled, Tone, or_dash, painted, plain, verdict, verified, yes_or_no,
+    Display, Field, Grid, ResultTable, Styled, Tone, both, datum, fact, number, or_dash, painted,
+    plain, verdict, verified, yes_or_no,
 };
 use crate::document::{
-    Departure, EncounterDocument, MONITORS, PlanDocument, PlannedLeg, SuiteRunDocument,
-    TimingDocument, breaks, in_brackets, longest, met, passing, plan_lines, planned_legs,
-    rules_in_words, verdict_parts,
+    CostDocument, Departure, EncounterDocument, MONITORS, PlanDocument, PlannedLeg,
+    SearchStatsDocument, SuiteDocument, SuiteRunDocument, TimingDocument, breaks, in_brackets,
+    longest, met, passing, plan_lines, planned_legs, verdict_parts,
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
@@ -25,25 +26,47 @@ pub(super) const TIME_COLUMN: &str = "time";
 pub(super) const CLEARANCE: &str =
     "clearance: own hull to any hull that a target may have, or own position to an explicit set";
 
-/// Formats a table with one row per scenario, and explains the clearance and the monitors in it.
-pub fn suite_table(runs: &[SuiteRunDocument], display: Display) -> String {
-    let broken = runs.iter().filter_map(|run| breaks(&run.encounters));
-    let (table, columns) = suite_grid(runs).text_and_columns(display);
-    let has_clearance = columns.iter().any(|name| name.starts_with("clearance"));
-    let clearance = has_clearance.then(|| CLEARANCE.to_owned());
-    let keys = clearance.into_iter().chain(monitors_key(broken.flatten()));
-    std::iter::once(table)
-        .chain(keys)
-        .collect::<Vec<_>>()
-        .join("\n")
-}
+/// Names in tables and keys in data of the columns of a suite.
+const COLUMNS: [(&str, &str); 23] = [
+    ("", "file"),
+    ("scenario", "scenario"),
+    ("", "planner"),
+    ("outcome", "outcome"),
+    ("", "arrived"),
+    ("encounter", "roles"),
+    ("manoeuvre", ""),
+    ("", "largest_turn_deg"),
+    ("", "largest_turn_side"),
+    ("passing", ""),
+    ("J\n[m²]", "space_time_error_m2"),
+    ("", "duration_s"),
+    ("delay\n[s]", "delay_s"),
+    ("", "length_m"),
+    ("clearance\n[m]", "min_clearance_m"),
+    ("risk", "largest_risk"),
+    ("breaks", "breaks"),
+    ("method", "method"),
+    ("nodes", "expanded"),
+    ("time\n[ms]", "plan_ms"),
+    ("verified", "verified"),
+    ("safe", "safe"),
+    ("", "reason"),
+];
 
-pub(super) fn suite_grid(runs: &[SuiteRunDocument]) -> Grid {
-    let header = "scenario, outcome, encounter, manoeuvre, passing, J\n[m²], delay\n[s], \
-                  clearance\n[m], risk, breaks, method, nodes, time\n[ms], verified, safe";
+/// The table of many scenarios, one row each. Remarks explain the clearance and the monitors in it,
+/// the last one counts the outcomes.
+pub fn suite_table(suite: &SuiteDocument) -> ResultTable {
+    let runs = &suite.runs;
     let rows = runs.iter().zip(row_names(runs));
-    let rows = rows.map(|(run, name)| suite_row(run, name));
-    Grid::new(header, 5..13, rows).breaking("breaks", 14)
+    let rows = rows.map(|(run, name)| suite_row(run, name)).collect();
+    let mut table = ResultTable::new(&COLUMNS, rows).showing(|grid| grid.breaking("breaks", 14));
+    table.remark("clearance", CLEARANCE);
+    let broken = runs.iter().filter_map(|run| breaks(&run.encounters));
+    if let Some(key) = monitors_key(broken.flatten()) {
+        table.remark("breaks", key);
+    }
+    table.remark("", suite.summary.to_string());
+    table
 }
 
 /// The shortest names that tell the runs apart. A file alone has its name, or its path where
@@ -81,8 +104,9 @@ fn row_names(runs: &[SuiteRunDocument]) -> Vec<String> {
     runs.iter().map(label).collect()
 }
 
-fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
+fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Field> {
     let cost = run.cost.as_ref();
+    let of = |value: fn(&CostDocument) -> f64| number(cost.map(value), tenths);
     let met = met(&run.encounters);
     let planned = cost.is_some();
     let risks = run.encounters.iter().filter_map(|e| e.max_risk);
@@ -94,27 +118,50 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         (!lines.is_empty()).then(|| lines.join("\n"))
     };
     let roles = per_target(&|e| e.role.clone());
+    let roles = roles.or_else(|| run.search_stats.map(|_| "none".to_owned()));
+    let each_role: Vec<&str> = met.iter().map(|e| e.role.as_str()).collect();
+    let passing = or_dash(per_target(&passing).filter(|_| planned));
+    let [degrees, side] = turned(run.departure);
+    let method = run.method.map(|method| method.label().to_owned());
+    let reason = run.reason.as_ref().or(run.error.as_ref());
+    let (checked, safe) = (cost.map(|_| run.verified), cost.map(|_| run.safe));
     vec![
-        plain(printable(&name)),
-        verdict(&run.verdict),
-        or_dash(roles.or_else(|| run.search_stats.map(|_| "none".to_owned()))),
-        or_dash(cost.map(|_| manoeuvre(run.departure))),
-        or_dash(per_target(&passing).filter(|_| planned)),
-        or_dash(cost.map(|c| square_metres(c.space_time_error_m2))),
-        or_dash(cost.and_then(|c| c.delay_s).map(signed)),
-        or_dash(cost.and_then(|c| c.min_clearance_m).map(tenths)),
-        or_dash(risks.max_by(f64::total_cmp).map(risk_figure)),
-        rules_broken(breaks(&run.encounters)),
-        or_dash(run.method.map(|method| method.label().to_owned())),
-        or_dash(
-            run.search_stats
-                .and_then(|s| s.expanded)
-                .map(|n| n.to_string()),
+        datum(&run.file),
+        both(
+            plain(printable(&name)),
+            run.scenario.clone().unwrap_or_default(),
         ),
-        or_dash(run.timing.as_ref().map(milliseconds)),
-        verified(cost.map(|_| run.verified), cost.map(|_| run.safe)),
-        yes_or_no(cost.map(|_| run.safe)),
+        datum(run.planner.clone().unwrap_or_default()),
+        both(verdict(&run.verdict), &run.outcome),
+        datum(cost.is_some_and(|c| c.arrived).to_string()),
+        both(or_dash(roles), each_role.join(" ")),
+        both(or_dash(cost.map(|_| manoeuvre(run.departure))), ""),
+        degrees,
+        side,
+        both(passing, ""),
+        number(cost.map(|c| c.space_time_error_m2), square_metres),
+        of(|c| c.duration_s),
+        number(cost.and_then(|c| c.delay_s), signed),
+        of(|c| c.length_m),
+        number(cost.and_then(|c| c.min_clearance_m), tenths),
+        number(risks.max_by(f64::total_cmp), risk_figure),
+        broken(breaks(&run.encounters)),
+        both(or_dash(method.clone()), method.unwrap_or_default()),
+        nodes(run.search_stats.as_ref()),
+        time(run.timing.as_ref()),
+        fact(verified(checked, safe), checked),
+        fact(yes_or_no(safe), safe),
+        datum(reason.cloned().unwrap_or_default()),
     ]
+}
+
+/// Degrees and side of the greatest turn of a motion.
+pub(super) fn turned(departure: Option<Departure>) -> [Field; 2] {
+    let (degrees, side) = match departure {
+        Some(Departure::Course { side, turn_deg, .. }) => (Some(turn_deg), side.to_string()),
+        _ => (None, String::new()),
+    };
+    [number(degrees, tenths), datum(side)]
 }
 
 /// The departure of a motion in brief.
@@ -122,15 +169,28 @@ pub(super) fn manoeuvre(departure: Option<Departure>) -> String {
     departure.map_or("none".to_owned(), |departure| departure.brief())
 }
 
-pub(super) fn milliseconds(timing: &TimingDocument) -> String {
-    format!("{:.2}", 1e3 * timing.plan_s)
+pub(super) fn nodes(stats: Option<&SearchStatsDocument>) -> Field {
+    let expanded = stats.and_then(|stats| stats.expanded);
+    number(expanded.map(|n| n as f64), |n| n.to_string())
 }
 
+pub(super) fn time(timing: Option<&TimingDocument>) -> Field {
+    number(timing.map(|timing| 1e3 * timing.plan_s), |ms| {
+        format!("{ms:.2}")
+    })
+}
+
+pub(super) fn broken(broken: Option<Vec<&str>>) -> Field {
+    let numbers = broken.as_ref().map_or_else(String::new, |b| b.join(" "));
+    both(rules_broken(broken), numbers)
+}
+
+/// The numbers of the rules and monitors that are broken.
 pub(super) fn rules_broken(broken: Option<Vec<&str>>) -> Styled {
     match broken {
         None => or_dash(None),
         Some(broken) if broken.is_empty() => ("none".to_owned(), Tone::Good),
-        Some(broken) => (rules_in_words(broken), Tone::Bad),
+        Some(broken) => (broken.join(", "), Tone::Bad),
     }
 }
 
@@ -288,11 +348,15 @@ mod tests {
         SuiteRunDocument::of("a.toml".to_owned(), &PlanDocument::of(&run), Vec::new())
     }
 
+    fn suite_text(runs: &[SuiteRunDocument], display: Display) -> String {
+        suite_table(&SuiteDocument::of(runs.to_vec())).text(display)
+    }
+
     #[test]
     fn rows_name_a_few_targets_and_count_the_rest() {
         let mut busy = planned();
         busy.encounters = vec![busy.encounters[0].clone(); 5];
-        let table = suite_table(std::slice::from_ref(&busy), Display::default());
+        let table = suite_text(std::slice::from_ref(&busy), Display::default());
         assert_eq!(table.matches("port, astern").count(), LISTED, "{table}");
         assert!(table.contains("+ 2 more") && table.contains("a.toml"));
         assert!(!table.contains('\u{1b}'));
@@ -300,9 +364,9 @@ mod tests {
             colour: true,
             width: None,
         };
-        assert!(suite_table(&[planned()], colour).contains('\u{1b}'));
+        assert!(suite_text(&[planned()], colour).contains('\u{1b}'));
         let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
-        let both = suite_table(&[failed, busy], Display::default());
+        let both = suite_text(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
     }
 
@@ -317,7 +381,7 @@ mod tests {
                 width,
             };
             run.verdict = "a long outcome of many words which leaves no room for others".to_owned();
-            let table = suite_table(std::slice::from_ref(&run), display);
+            let table = suite_text(std::slice::from_ref(&run), display);
             assert_eq!(table.contains(CLEARANCE), is_told, "{table}");
         }
     }

@@ -1,32 +1,33 @@
-//! Tables for a terminal, and number formats of tables.
+//! Tables for a terminal, Markdown and LaTeX, their rows as data, and number formats of tables.
 
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 use textwrap::core::display_width;
 
-use crate::text::{broken, printable_lines};
+use crate::text::{broken, printable, printable_lines};
 
 /// Least width for which columns are dropped, in characters. Narrower tables are cards.
 const CARD_WIDTH: usize = 80;
 
 /// Columns that a table drops first where it is too wide, in this order. Cards have none of them.
 const DETAILS: [&str; 10] = [
-    "arc J", "nodes", "time", METHOD, "risk", "delay", "duration", "length", "to", "leg",
+    "arc J", "duration", "length", "nodes", "time", METHOD, "risk", "delay", "to", "leg",
 ];
 
 /// Column of what made a plan. In a comparison it names the rows, and is not dropped.
 const METHOD: &str = "method";
 
 /// Columns that a table drops next, in this order.
-const FURTHER: [&str; 8] = [
+const FURTHER: [&str; 6] = [
     "behaviour",
     "acts before",
     "passing",
     "encounter",
     "verified",
     "manoeuvre",
-    "J",
-    "clearance",
 ];
+
+/// Columns that a table drops where it is too wide with all its lines broken.
+const LAST: [&str; 2] = ["J", "clearance"];
 
 /// Where a text is shown. The default is a file: no colour, and as wide as need be.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,11 +55,13 @@ const MISSING: &str = "–";
 pub(super) struct Grid {
     /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
-    /// Range of numeric columns.
-    pub numbers: std::ops::Range<usize>,
+    /// Whether each column is numeric.
+    pub numbers: Vec<bool>,
     pub rows: Vec<Vec<Styled>>,
     /// The columns whose lines may be broken where the table is too wide, and their least widths.
     breaking: Vec<(&'static str, usize)>,
+    /// Those whose lines are broken only instead of dropping a column of [`LAST`].
+    breaking_last: Vec<(&'static str, usize)>,
 }
 
 impl Grid {
@@ -68,11 +71,13 @@ impl Grid {
         numbers: std::ops::Range<usize>,
         rows: impl IntoIterator<Item = Vec<Styled>>,
     ) -> Self {
+        let header: Vec<_> = names.split(", ").collect();
         Self {
-            header: names.split(", ").collect(),
-            numbers,
+            numbers: (0..header.len()).map(|i| numbers.contains(&i)).collect(),
+            header,
             rows: rows.into_iter().collect(),
             breaking: Vec::new(),
+            breaking_last: Vec::new(),
         }
     }
 
@@ -82,14 +87,20 @@ impl Grid {
         self
     }
 
+    /// Allows lines of a column to be broken where most other columns are dropped, so that before
+    /// each row is one line.
+    pub fn breaking_last(mut self, name: &'static str, least: usize) -> Self {
+        self.breaking_last.push((name, least));
+        self
+    }
+
     /// Removes the column whose name has this first line, if there is one.
     pub fn without(mut self, name: &str) -> Self {
         let is_it = |header: &&str| header.lines().next() == Some(name);
         let found = self.header.iter().position(is_it);
         if let Some(column) = found.filter(|column| *column > 0 || name != METHOD) {
             self.header.remove(column);
-            self.numbers.start -= usize::from(column < self.numbers.start);
-            self.numbers.end -= usize::from(column < self.numbers.end);
+            self.numbers.remove(column);
             self.rows
                 .iter_mut()
                 .for_each(|row| drop(row.remove(column)));
@@ -119,7 +130,11 @@ impl Grid {
             return (grid.cards(display), grid.header);
         }
         let mut grid = self;
-        for name in DETAILS.into_iter().chain(FURTHER) {
+        for name in DETAILS.into_iter().chain(FURTHER).chain(LAST) {
+            if name == LAST[0] {
+                let last = std::mem::take(&mut grid.breaking_last);
+                grid.breaking.extend(last);
+            }
             grid = match grid.fitted(width, display) {
                 Ok(fitted) => return (fitted.table(display).trim_fmt(), fitted.header),
                 Err(wide) => wide.without(name),
@@ -171,9 +186,9 @@ impl Grid {
             .set_content_arrangement(ContentArrangement::Disabled)
             .set_header(&self.header);
         table.style_mut().row_separator = presets::NOTHING.row_separator;
-        for (index, column) in table.column_iter_mut().enumerate() {
+        for (column, is_number) in table.column_iter_mut().zip(&self.numbers) {
             column.set_padding((0, 1));
-            if self.numbers.contains(&index) {
+            if *is_number {
                 column.set_cell_alignment(CellAlignment::Right);
             }
         }
@@ -206,18 +221,226 @@ impl Grid {
     /// Formats the table as markdown.
     pub fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
-        let mut lines = vec![
-            line(self.header.iter().map(|name| in_cell(name)).collect()),
-            format!("|{}", "---|".repeat(self.header.len())),
-        ];
-        let rows = self.rows.iter();
-        lines.extend(rows.map(|row| line(row.iter().map(|(text, _)| in_cell(text)).collect())));
+        let mut lines = self.lines(in_cell, line);
+        lines.insert(1, format!("|{}", "---|".repeat(self.header.len())));
         lines.join("\n")
+    }
+
+    /// Formats the table as a `tabular` of LaTeX with the rules of its package booktabs.
+    pub fn tex(&self) -> String {
+        let columns = self.numbers.iter().map(|is| if *is { 'r' } else { 'l' });
+        let columns: String = columns.collect();
+        let line = |cells: Vec<String>| format!("  {} \\\\", cells.join(" & "));
+        let mut lines = self.lines(in_tex, line);
+        lines.insert(0, format!("\\begin{{tabular}}{{{columns}}}\n  \\toprule"));
+        lines.insert(2, "  \\midrule".to_owned());
+        lines.push("  \\bottomrule\n\\end{tabular}".to_owned());
+        lines.join("\n")
+    }
+
+    /// The header and the rows, each on one line.
+    fn lines(&self, cell: fn(&str) -> String, line: fn(Vec<String>) -> String) -> Vec<String> {
+        let header = self
+            .header
+            .iter()
+            .map(|name| cell(&name.replace('\n', " ")));
+        let rows = self.rows.iter().map(|row| {
+            // a line of a cell may have commas
+            let cells = row.iter().map(|(text, _)| cell(&text.replace('\n', "; ")));
+            line(cells.collect())
+        });
+        std::iter::once(line(header.collect()))
+            .chain(rows)
+            .collect()
     }
 }
 
 pub(super) fn in_cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
+}
+
+/// A text for LaTeX in any font encoding: no character of it is a command.
+fn in_tex(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    // `\\` before it would take it for its option
+    if text.starts_with(['[', '*']) {
+        escaped.push_str("{}");
+    }
+    let text = match text.strip_prefix('-') {
+        Some(figure) if figure.starts_with(|c: char| c.is_ascii_digit()) => {
+            escaped.push_str("$-$");
+            figure
+        }
+        _ => text,
+    };
+    for c in printable(text).chars() {
+        match c {
+            '&' | '%' | '_' | '#' | '$' | '{' | '}' => escaped.extend(['\\', c]),
+            '\\' => escaped.push_str("\\textbackslash{}"),
+            '~' => escaped.push_str("\\textasciitilde{}"),
+            '^' => escaped.push_str("\\textasciicircum{}"),
+            '<' => escaped.push_str("\\textless{}"),
+            '>' => escaped.push_str("\\textgreater{}"),
+            '|' => escaped.push_str("\\textbar{}"),
+            '²' => escaped.push_str("$^2$"),
+            '°' => escaped.push_str("$^\\circ$"),
+            '–' => escaped.push_str("--"),
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// Value of a row: as a table shows it, and as data.
+pub(super) struct Field {
+    shown: Styled,
+    datum: String,
+    is_number: bool,
+}
+
+/// A value with its text in tables; not a number is missing.
+pub(super) fn number(value: Option<f64>, text: impl Fn(f64) -> String) -> Field {
+    let value = value.filter(|v| v.is_finite());
+    Field {
+        shown: or_dash(value.map(text)),
+        datum: value.map_or_else(String::new, |v| v.to_string()),
+        is_number: true,
+    }
+}
+
+pub(super) fn both(shown: Styled, datum: impl Into<String>) -> Field {
+    Field {
+        shown,
+        datum: datum.into(),
+        is_number: false,
+    }
+}
+
+/// A fact as it is shown, and as data.
+pub(super) fn fact(shown: Styled, fact: Option<bool>) -> Field {
+    both(
+        shown,
+        fact.map_or_else(String::new, |fact| fact.to_string()),
+    )
+}
+
+/// A value of data alone.
+pub(super) fn datum(datum: impl Into<String>) -> Field {
+    both(plain(""), datum)
+}
+
+/// A result as a table, described once for every format.
+#[derive(Clone)]
+pub struct ResultTable {
+    title: Option<String>,
+    pub(super) grid: Grid,
+    /// Sentences below the table, each behind the column that it explains; empty for none.
+    pub(super) remarks: Vec<(&'static str, String)>,
+    /// The keys of the data, and the values of each row.
+    records: Vec<Vec<String>>,
+}
+
+impl ResultTable {
+    /// Rows below columns with a name in tables, the unit on a second line, and a key in data.
+    /// Either may be empty: the column is then in data alone, or in tables alone.
+    pub(super) fn new(columns: &[(&'static str, &'static str)], rows: Vec<Vec<Field>>) -> Self {
+        let keys = columns.iter().map(|(_, key)| *key);
+        let mut records = vec![
+            keys.filter(|key| !key.is_empty())
+                .map(str::to_owned)
+                .collect(),
+        ];
+        let mut grid = Grid {
+            header: columns
+                .iter()
+                .map(|(name, _)| *name)
+                .filter(|name| !name.is_empty())
+                .collect(),
+            numbers: Vec::new(),
+            rows: Vec::new(),
+            breaking: Vec::new(),
+            breaking_last: Vec::new(),
+        };
+        grid.numbers = vec![false; grid.header.len()];
+        for row in rows {
+            let (mut cells, mut record) = (Vec::new(), Vec::new());
+            for ((name, key), field) in columns.iter().zip(row) {
+                if !name.is_empty() {
+                    grid.numbers[cells.len()] |= field.is_number;
+                    cells.push(field.shown);
+                }
+                if !key.is_empty() {
+                    record.push(field.datum);
+                }
+            }
+            grid.rows.push(cells);
+            records.push(record);
+        }
+        Self {
+            title: None,
+            grid,
+            remarks: Vec::new(),
+            records,
+        }
+    }
+
+    pub(super) fn titled(self, title: &str) -> Self {
+        let title = Some(title.to_owned());
+        Self { title, ..self }
+    }
+
+    /// Changes what is shown of the table.
+    pub(super) fn showing(mut self, change: impl FnOnce(Grid) -> Grid) -> Self {
+        self.grid = change(self.grid);
+        self
+    }
+
+    pub(super) fn remark(&mut self, column: &'static str, remark: impl Into<String>) {
+        self.remarks.push((column, remark.into()));
+    }
+
+    /// The table without details, so that it fits a pane of a viewer.
+    pub fn brief(self) -> Self {
+        self.showing(Grid::brief)
+    }
+
+    /// Formats the table for a terminal, with the remarks on the columns that are left.
+    pub fn text(&self, display: Display) -> String {
+        let (table, columns) = self.grid.clone().text_and_columns(display);
+        let is_shown = |name: &str| columns.iter().any(|c| c.lines().next() == Some(name));
+        let remarks = self.remarks.iter();
+        let remarks = remarks.filter(|(column, _)| column.is_empty() || is_shown(column));
+        let lines = self.title.iter().chain([&table]);
+        let lines: Vec<&str> = lines
+            .chain(remarks.map(|(_, remark)| remark))
+            .map(String::as_str)
+            .collect();
+        lines.join("\n")
+    }
+
+    /// Formats the title, the table and the remarks as markdown.
+    pub fn markdown(&self) -> String {
+        let title = self.title.iter();
+        let mut lines: Vec<String> = title.map(|t| format!("# {}\n", in_cell(t))).collect();
+        lines.extend([self.grid.markdown(), String::new()]);
+        let remarks = self.remarks.iter();
+        lines.extend(remarks.map(|(_, remark)| format!("- {}", in_cell(remark))));
+        lines.join("\n")
+    }
+
+    /// Formats the table for LaTeX, to be read by `\input`. The title and the remarks are comments.
+    pub fn tex(&self) -> String {
+        let remarks = self.remarks.iter().map(|(_, remark)| remark);
+        let comments = self.title.iter().chain(remarks);
+        let mut lines: Vec<String> = comments.map(|c| format!("% {}", printable(c))).collect();
+        lines.push(self.grid.tex());
+        lines.join("\n")
+    }
+
+    /// Keys of the data, then the values of each row: whole numbers in SI units, missing ones empty.
+    pub fn records(&self) -> &[Vec<String>] {
+        &self.records
+    }
 }
 
 fn styled(display: Display) -> Table {

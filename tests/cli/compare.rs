@@ -86,8 +86,6 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
         compare scenarios/colregs/head-on.toml --figure x.eps | ends in none of .svg, .png and .pdf
         ",
     );
-    let unwritten = run(&format!("compare {head_on} --csv /no/such/folder/x.csv")).code(2);
-    unwritten.stderr(contains("/no/such/folder/x.csv"));
 }
 
 /// Who enters a whole set within the accepted risk is relaxed, whether a planner chose it or not.

@@ -17,6 +17,7 @@ mod recordings;
 mod schemas;
 mod simulate;
 mod suite;
+mod tables;
 mod terminal;
 mod verdict;
 mod verify;

@@ -95,7 +95,7 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     let folder = Folder::new();
     let file = folder.write("a.toml", overlapping());
     let table = stdout(&searoom(&["compare", &file]).code(1));
-    for method in ["space-time, A* ", "path-time, least harm ", "hold course "] {
+    for method in ["space-time, A*, ", "path-time, least harm ", "hold course "] {
         let row = table.lines().find(|line| line.contains(method));
         assert!(row.expect("a row").contains("COLLIDES"), "{table}");
     }

@@ -12,15 +12,16 @@ use searoom::report::figure::{
 use searoom::report::page::{HtmlReport, Subject, link_from};
 #[cfg(feature = "recording")]
 use searoom::report::simulation_markdown;
-use searoom::report::write_atomically;
+use searoom::report::{ResultTable, write_atomically};
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
 use searoom::study::compare::Entry;
 
+use super::super::args::TableFiles;
 use super::super::found::{Found, Refused, refuse_clashes, shown};
 use super::super::runner::guarded;
 use super::super::status::ExitStatus;
-use super::{Output, json};
+use super::{Output, csv, json};
 
 /// The viewer of recordings, of the version of the library that writes them or a later one.
 const VIEWER: &str = "(Rerun 0.36.3 or later: pip install rerun-sdk)";
@@ -210,7 +211,9 @@ impl Products {
                 let compared = searoom::recording::Compared {
                     scenario,
                     entries,
-                    table: &searoom::report::comparison_markdown(document),
+                    table: &searoom::report::comparison_table(document)
+                        .brief()
+                        .markdown(),
                     document: &json(&whole)?,
                 };
                 let file = place.file(stem, "rrd");
@@ -301,6 +304,61 @@ pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
     refuse_undrawn(path)?;
     refuse_folder("--figure", path, "name a file")?;
     make_parent(path)
+}
+
+impl TableFiles {
+    fn files(&self) -> impl Iterator<Item = (&'static str, &PathBuf)> {
+        let files = [
+            ("--csv", &self.csv),
+            ("--md", &self.md),
+            ("--tex", &self.tex),
+        ];
+        files
+            .into_iter()
+            .filter_map(|(option, file)| Some((option, file.as_ref()?)))
+    }
+
+    /// Rejects what names no file, and creates the folders of the files.
+    pub fn prepare(&self) -> anyhow::Result<()> {
+        self.files().try_for_each(|(option, file)| {
+            if file.as_os_str() == "-" {
+                bail!("{option}: found -; allowed: a file, or /dev/stdout for standard output");
+            }
+            refuse_folder(option, file, "name a file")?;
+            make_parent(file)
+        })
+    }
+
+    /// Writes the files that are asked for, with all tables in each.
+    pub fn write(&self, tables: &[ResultTable], output: &Output) -> ExitStatus {
+        let joined = |text: fn(&ResultTable) -> String| {
+            let texts: Vec<String> = tables.iter().map(text).collect();
+            Ok(format!("{}\n", texts.join("\n\n")).into_bytes())
+        };
+        let mut status = ExitStatus::Good;
+        for (option, file) in self.files().filter(|_| !tables.is_empty()) {
+            let written = attempt(|| {
+                let contents = match option {
+                    "--csv" => csv(records(tables)),
+                    "--md" => joined(ResultTable::markdown),
+                    _ => joined(ResultTable::tex),
+                };
+                Ok(write_atomically(file, &contents?)?)
+            });
+            if written.is_ok() {
+                output.wrote(file);
+            }
+            status = status.max(output.written(written));
+        }
+        status
+    }
+}
+
+/// The rows of tables with the same keys, which come once.
+fn records(tables: &[ResultTable]) -> Vec<Vec<String>> {
+    let of_one =
+        |(index, table): (usize, &ResultTable)| table.records()[usize::from(index > 0)..].to_vec();
+    tables.iter().enumerate().flat_map(of_one).collect()
 }
 
 /// Rejects the name of a file that is a folder, or asks for one.

@@ -13,7 +13,6 @@ use crate::geometry::Window;
 use crate::labels::Needed;
 use crate::obstacle::Obstacle;
 use crate::planner::Minimises;
-use crate::report::comparison::joined;
 use crate::scenario::Scenario;
 use crate::study::compare::{Candidate, Entry, Method};
 
@@ -118,6 +117,34 @@ fn curves<'a>(entries: &'a [Entry], style: &Style) -> Vec<Curve<'a>> {
         entries,
     });
     curves.collect()
+}
+
+/// The end of the name of a method that plans around ellipsoids.
+const ELLIPSOIDS: &str = ", ellipsoids";
+
+/// Names of methods as one: `space-time, A* and Dijkstra` where they differ in one part. With
+/// `polytopes and ellipsoids` behind it where each of them occurs with both.
+fn joined(methods: &[&str]) -> String {
+    let (round, other): (Vec<&str>, Vec<&str>) =
+        methods.iter().partition(|m| m.ends_with(ELLIPSOIDS));
+    let plain = round.iter().map(|m| m.trim_end_matches(ELLIPSOIDS));
+    if !other.is_empty() && plain.eq(other.iter().copied()) {
+        return format!("{}, polytopes and ellipsoids", joined(&other));
+    }
+    let split: Vec<Vec<&str>> = methods.iter().map(|m| m.split(", ").collect()).collect();
+    let first = &split[0];
+    let differ = |part: &usize| split.iter().any(|m| m.get(*part) != first.get(*part));
+    let parts: Vec<usize> = (0..first.len()).filter(differ).collect();
+    match parts[..] {
+        [part] if split.iter().all(|m| m.len() == first.len()) => {
+            let other: Vec<&str> = split.iter().map(|m| m[part]).collect();
+            let other = other.join(" and ");
+            let mut all = first.clone();
+            all[part] = &other;
+            all.join(", ")
+        }
+        _ => methods.join(" and "),
+    }
 }
 
 /// Builds the path-time diagrams of the candidates that have one.
@@ -410,6 +437,34 @@ mod tests {
     use crate::planner::space_time::SpaceTimePlanner;
     use crate::planner::{Planner, SearchKind};
     use crate::target::Representation;
+
+    #[test]
+    fn methods_with_one_plan_have_one_name() {
+        for (methods, name) in [
+            (&["space-time, A*"][..], "space-time, A*"),
+            (
+                &["space-time, A*", "space-time, Dijkstra"],
+                "space-time, A* and Dijkstra",
+            ),
+            (
+                &[
+                    "space-time, A*, ellipsoids",
+                    "space-time, Dijkstra, ellipsoids",
+                ],
+                "space-time, A* and Dijkstra, ellipsoids",
+            ),
+            (
+                &["space-time, A*", "space-time, A*, ellipsoids"],
+                "space-time, A*, polytopes and ellipsoids",
+            ),
+            (
+                &["path-time", "optimal control"],
+                "path-time and optimal control",
+            ),
+        ] {
+            assert_eq!(joined(methods), name);
+        }
+    }
 
     /// In the head-on scenario no path is clear at any accepted risk.
     #[test]

@@ -10,19 +10,19 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::campaign::{CLEARANCES, EVENTS, bounds, clearances, counts, groups, worst_grid};
-use super::comparison::{comparison_grid, is_sweep, remarks};
+use super::comparison::{comparison_table, is_sweep};
 use super::figure::{
     Figure, Panel, Style, comparison_panels, diagram_panels, distribution_panel, plan_panels,
     simulation_panel,
 };
-use super::plan::{TIME_COLUMN, legs_grid, suite_grid};
+use super::plan::{TIME_COLUMN, legs_grid, suite_table};
 use super::simulation::{
     TIMES, alarm_lines, conduct_lines, headline as simulation_headline, judges_grid, replans_grid,
     targets_grid,
 };
-use super::table::{Grid, Styled, Tone, verdict};
+use super::table::{Grid, ResultTable, Styled, Tone, verdict};
 use crate::document::{
-    CampaignDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument,
+    CampaignDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteDocument,
     SuiteRunDocument, TIME_LINE, headline, plan_lines,
 };
 use crate::output::{WriteError, write_atomically};
@@ -105,14 +105,11 @@ impl HtmlReport {
         );
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
-        let remarks = remarks(compared);
+        let compared = comparison_table(compared);
         self.section(html! {
             h2 { (scenario.title) }
             (origin(subject))
-            (table(comparison_grid(&compared.entries), &[]))
-            @if !remarks.is_empty() {
-                ul.quiet { @for line in remarks { li { (line) } } }
-            }
+            (remarked(compared, &[]))
             (figures)
         });
     }
@@ -218,6 +215,13 @@ impl HtmlReport {
 
     /// Renders the page.
     pub fn html(&self, title: &str, lead: &str) -> String {
+        // the section of a single plan says all of its row
+        let overview = (!self.runs.is_empty() && self.sections.len() > 1).then(|| {
+            let mut table = suite_table(&SuiteDocument::of(self.runs.clone()));
+            // the lead counts the outcomes
+            table.remarks.pop();
+            remarked(table, &self.run_sections)
+        });
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -230,10 +234,7 @@ impl HtmlReport {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    // the section of a single plan says all of its row
-                    @if !self.runs.is_empty() && self.sections.len() > 1 {
-                        (table(suite_grid(&self.runs), &self.run_sections))
-                    }
+                    @if let Some(overview) = overview { (overview) }
                     @for section in &self.sections { (section) }
                     p.quiet {
                         "Lengths in metres, speeds in knots, times in seconds from the start, \
@@ -281,6 +282,16 @@ fn named_lines(lines: Vec<(&'static str, String)>, time: &str) -> Markup {
     }
 }
 
+/// Renders a table and the remarks below it.
+fn remarked(shown: ResultTable, sections: &[usize]) -> Markup {
+    html! {
+        (table(shown.grid, sections))
+        @if !shown.remarks.is_empty() {
+            ul.quiet { @for (_, line) in shown.remarks { li { (line) } } }
+        }
+    }
+}
+
 /// Renders a table that may be wider than the page. The first cell names the row, and links to
 /// its section if `sections` has one. Narrow pages repeat the column names in every row.
 fn table(grid: Grid, sections: &[usize]) -> Markup {
@@ -291,7 +302,7 @@ fn table(grid: Grid, sections: &[usize]) -> Markup {
         rows,
         ..
     } = grid.without(TIME_COLUMN);
-    let number = |column: usize| numbers.contains(&column);
+    let number = |column: usize| numbers[column];
     html! {
         div.scroll {
             table {

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::program::{Folder, run, searoom, stdout};
-use searoom::report::COMPARISON_COLUMNS;
 use searoom::scenario::{Fault, Scenario};
 
 const BEGIN: &str = "all but the time -->\n```text\n";
@@ -163,8 +162,17 @@ fn the_guide_has_every_field_of_a_scenario() {
 #[test]
 fn the_page_on_comparisons_has_every_column() {
     let page = read("docs/reference/compare.md");
-    for column in COMPARISON_COLUMNS.split(',') {
-        assert!(page.contains(&format!("`{column}`")), "{column}");
+    let folder = Folder::new();
+    let csv = folder.at("rows.csv");
+    for command in ["suite", "compare"] {
+        run(&format!(
+            "{command} scenarios/colregs/head-on.toml --csv {csv}"
+        ))
+        .success();
+        let mut rows = csv::Reader::from_path(&csv).expect("rows");
+        for column in rows.headers().expect("columns") {
+            assert!(page.contains(&format!("`{column}`")), "{column}");
+        }
     }
 }
 
