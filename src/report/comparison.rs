@@ -274,7 +274,7 @@ pub fn comparison_csv(compared: &ScenarioComparisonDocument, entry: &EntryDocume
         compared.scenario.clone().unwrap_or_default(),
         entry.method.clone(),
         entry.max_risk.to_string(),
-        entry.outcome.clone(),
+        entry.outcome.to_string(),
         word(entry.verified),
         word(entry.safe),
         cost.is_some_and(|c| c.arrived).to_string(),

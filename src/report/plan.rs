@@ -93,7 +93,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Styled> {
         }
         (!lines.is_empty()).then(|| lines.join("\n"))
     };
-    let roles = per_target(&|e| e.role.clone());
+    let roles = per_target(&|e| e.role.to_string());
     vec![
         plain(printable(&name)),
         verdict(&run.verdict),
@@ -139,8 +139,8 @@ pub(super) fn monitors_key<'a>(broken: impl Iterator<Item = &'a str>) -> Option<
     let broken: Vec<&str> = broken.collect();
     let told = MONITORS
         .iter()
-        .filter(|monitor| broken.contains(&monitor.number));
-    let told = told.map(|monitor| format!("{}: {}", monitor.number, monitor.breaks));
+        .filter(|monitor| broken.contains(&monitor.monitor.word()));
+    let told = told.map(|monitor| format!("{}: {}", monitor.monitor, monitor.breaks));
     let told: Vec<String> = told.collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
@@ -278,7 +278,8 @@ pub fn no_return_reason(run: &Run) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{NOT_APPLICABLE, headline};
+    use crate::colregs::compliance::MonitorVerdict;
+    use crate::document::{SuiteOutcome, headline};
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -301,7 +302,11 @@ mod tests {
             width: None,
         };
         assert!(suite_table(&[planned()], colour).contains('\u{1b}'));
-        let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
+        let failed = SuiteRunDocument::failed(
+            "x.toml".to_owned(),
+            SuiteOutcome::NotApplicable,
+            "no".to_owned(),
+        );
         let both = suite_table(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
     }
@@ -345,7 +350,7 @@ mod tests {
             .as_mut()
             .expect("a ship")
             .monitors[0]
-            .verdict = "violated".to_owned();
+            .verdict = MonitorVerdict::Violated;
         let ends = format!("({red}verified, not safe{end}; {red}breaks contact (S){end})");
         assert!(
             first(&plan, true).ends_with(&ends),

@@ -7,6 +7,8 @@ use super::parts::{
     CostDocument, LowerBoundDocument, PositionDocument, SearchStatsDocument, TimingDocument,
 };
 use super::plan::departure::Departure;
+use searoom_evaluation::CandidateOutcome;
+use searoom_model::ObjectiveKind;
 
 /// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,8 +31,8 @@ pub struct ScenarioComparisonDocument {
 pub struct EntryDocument {
     pub method: String,
     pub max_risk: f64,
-    pub objective: Option<String>,
-    pub outcome: String,
+    pub objective: Option<ObjectiveKind>,
+    pub outcome: CandidateOutcome,
     pub verdict: String,
     pub reason: Option<String>,
     pub verified: bool,

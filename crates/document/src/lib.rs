@@ -39,6 +39,7 @@ pub use plan::motions::{PlannedLeg, STILL_MPS, is_same_motion};
 pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;
+pub use searoom_evaluation::{CandidateOutcome, PlanOutcome};
 pub use simulation::*;
 pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument, vertices};

@@ -3,8 +3,8 @@
 use super::motion;
 use super::sets;
 use searoom_document::{
-    InitialSetDocument, OUTCOMES, OwnShipDocument, PLAN_FORMAT, PLANNER_NAMES, PlanDocument,
-    PositionDocument, TargetDocument,
+    InitialSetDocument, OwnShipDocument, PLAN_FORMAT, PLANNER_NAMES, PlanDocument,
+    PositionDocument, RelaxationKind, TargetDocument,
 };
 use searoom_evaluation::{SpaceTimeSet, StageWeights, Violation};
 use searoom_geometry::Polygon;
@@ -12,9 +12,7 @@ use searoom_geometry::frame::{Pose, Vector, heading_from_course_deg, wrap};
 use searoom_geometry::tolerance;
 use searoom_input::Fault;
 use searoom_input::text::short_numbers;
-use searoom_model::target::{
-    Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
-};
+use searoom_model::target::{Motion, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Steered};
 use searoom_model::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
@@ -30,17 +28,6 @@ const SHORTEST_LEG_M: f64 = 1e-3;
 
 /// Most legs of a target's known route.
 const MOST_LEGS: usize = 12;
-
-const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
-const OBJECTIVES: [&str; 5] = [
-    "space-time-error",
-    "time",
-    "length",
-    "length-risk",
-    "stage-cost",
-];
-pub(super) const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
-pub(super) const ARRIVAL: &str = "arrival";
 
 /// Most keys listed in the error for a document of another format.
 const KEYS: usize = 5;
@@ -102,10 +89,14 @@ pub(super) struct Claim<'a> {
 }
 
 impl<'a> Claim<'a> {
+    /// Returns true where the document reports that the plan gives up this.
+    pub fn gives_up(&self, kind: RelaxationKind) -> bool {
+        self.file.relaxations.iter().any(|r| r.kind == kind)
+    }
+
     /// Returns true where the document reports that the plan does not arrive.
     pub fn gives_up_arrival(&self) -> bool {
-        let mut relaxations = self.file.relaxations.iter();
-        relaxations.any(|r| r.kind == ARRIVAL)
+        self.gives_up(RelaxationKind::Arrival)
     }
 
     /// Time after the end of the motion over which a clearance is reported, seconds.
@@ -120,9 +111,6 @@ impl<'a> Claim<'a> {
             return Err(fault("format", format!("'{}'", file.format), PLAN_FORMAT));
         }
         word("planner", &file.planner, &PLANNER_NAMES)?;
-        word("compliance", &file.compliance, &COMPLIANCES)?;
-        word("objective", &file.objective, &OBJECTIVES)?;
-        word("outcome", &file.outcome, &OUTCOMES)?;
         positive("horizon_s", file.horizon_s)?;
         let hold = (file.cost.as_ref()).map_or(0.0, |cost| cost.arrival_hold_s);
         within("cost.arrival_hold_s", hold, 0.0, LONGEST_HOLD_S)?;
@@ -157,7 +145,6 @@ impl<'a> Claim<'a> {
         let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
         for (index, relaxation) in file.relaxations.iter().enumerate() {
             let at = |key: &str| format!("relaxations[{index}].{key}");
-            word(&at("kind"), &relaxation.kind, &KINDS)?;
             word(&at("target"), &relaxation.target, &names)?;
             not_negative(&at("amount"), relaxation.amount)?;
         }
@@ -293,12 +280,6 @@ pub(super) fn placed<T>(path: &str, read: Result<T, Fault>) -> Result<T, ClaimEr
 }
 
 fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
-    let found = target.representation.as_str();
-    let mut known = Representation::WORDS.iter();
-    let Some((_, representation)) = known.find(|(word, _)| *word == found) else {
-        let field = format!("{path}.representation");
-        return Err(fault(&field, format!("'{found}'"), "polytope, ellipsoid"));
-    };
     let motion = match (&target.ship, &target.initial_set) {
         (Some(ship), None) if target.velocity_sets.is_empty() => {
             let at = |key: &str| format!("{path}.ship.{key}");
@@ -335,7 +316,7 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
     Ok(Target {
         name: target.name.clone(),
         motion,
-        representation: *representation,
+        representation: target.representation,
     })
 }
 

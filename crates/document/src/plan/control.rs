@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use searoom_geometry::frame::radians_from_deg;
+use searoom_geometry::frame::{Side, radians_from_deg};
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,7 +60,7 @@ pub struct StartAttemptDocument {
 /// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HomotopyClassDocument {
-    pub sides: Vec<Option<String>>,
+    pub sides: Vec<Option<Side>>,
     pub objective: f64,
     pub starts: usize,
 }

@@ -36,7 +36,7 @@ pub use task::{Controls, Profile, Task, force, node, state};
 pub use transcription::Weights;
 pub use warm_start::WarmStart;
 
-use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
+use super::{Minimises, ObjectiveKind, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
 use searoom_sets::Obstacle;
 
 /// Chooses the forces on a ship with dynamics.
@@ -47,7 +47,7 @@ impl Planner for OptimalControlPlanner {
         &PlannerFacts {
             name: "optimal-control",
             label: "optimal control",
-            minimises: Minimises::Own("stage-cost"),
+            minimises: Minimises::Own(ObjectiveKind::StageCost),
             follows_paths: false,
             keeps_off_land: false,
             keeps_rules: false,
