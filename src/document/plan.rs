@@ -172,7 +172,7 @@ pub(crate) fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
         kind,
         target: target.clone(),
         amount,
-        unit,
+        unit: Some(unit),
         until_s,
     }
 }
@@ -349,16 +349,6 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::planner_words;
-
-    /// In the order in which a fault of a document lists them.
-    #[test]
-    fn the_planners_of_a_document_are_those_of_the_library() {
-        assert_eq!(
-            searoom_document::PLANNER_NAMES,
-            planner_words().map(|(name, _)| name)
-        );
-    }
 
     /// In the headline and in the legs.
     #[test]

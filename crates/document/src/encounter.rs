@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value};
 
 use searoom_colregs::compliance::{ComplianceReport, Measure, Monitor, MonitorVerdict};
 use searoom_colregs::{Paragraph, Role};
@@ -38,11 +39,11 @@ pub struct EncounterDocument {
 
 /// Reads the conduct where a key of it is present. serde alone would take a wrong word for none.
 fn conduct<'de, D: Deserializer<'de>>(from: D) -> Result<Option<ConductDocument>, D::Error> {
-    let keys = serde_json::Map::deserialize(from)?;
+    let keys = Map::deserialize(from)?;
     let has_conduct = ["roles", "scores", "violations", "monitors"]
         .iter()
         .any(|key| keys.contains_key(*key));
-    let conduct = || serde_json::from_value(keys.into()).map_err(D::Error::custom);
+    let conduct = || serde_path_to_error::deserialize(Value::from(keys)).map_err(D::Error::custom);
     has_conduct.then(conduct).transpose()
 }
 

@@ -97,7 +97,9 @@ pub struct RelaxationDocument {
     pub kind: RelaxationKind,
     pub target: String,
     pub amount: f64,
-    pub unit: AmountUnit,
+    /// Absent in an old document.
+    #[serde(default)]
+    pub unit: Option<AmountUnit>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
 }

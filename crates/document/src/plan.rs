@@ -32,15 +32,13 @@ pub const PLAN_FORMAT: &str = "searoom-plan/1";
 /// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
 pub const PLAN_MEBIBYTES: u64 = 64;
 
-/// Names that `planner` of a document may have.
-pub const PLANNER_NAMES: [&str; 3] = ["space-time", "path-time", "optimal-control"];
-
 /// Self-contained plan: everything needed to verify it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,
-    /// Not an enum: a user of the library may plan with a planner of another name.
+    /// Not an enum: a user of the library may plan with a planner of another name, which `verify`
+    /// rejects.
     pub planner: String,
     pub search: SearchKind,
     /// Method that made the plan; null without one, absent in an old document.

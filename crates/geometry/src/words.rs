@@ -74,7 +74,7 @@ macro_rules! words_in_files {
             where
                 D: $crate::words::serde::Deserializer<'de>,
             {
-                from.deserialize_str($crate::words::Known(Self::WORDS))
+                $crate::words::read(from, Self::WORDS)
             }
         }
     };
@@ -109,27 +109,19 @@ pub use schemars;
 #[cfg(feature = "serde")]
 pub use serde;
 
-/// The words that a text may be, with their values.
+/// Reads a word.
 #[cfg(feature = "serde")]
-#[derive(Debug)]
-pub struct Known<T: 'static>(pub &'static [(&'static str, T)]);
-
-#[cfg(feature = "serde")]
-impl<T: Copy> serde::de::Visitor<'_> for Known<T> {
-    type Value = T;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let words = self.0.iter().map(|(word, _)| *word);
-        f.write_str(&words.collect::<Vec<_>>().join(", "))
-    }
-
-    fn visit_str<E: serde::de::Error>(self, found: &str) -> Result<T, E> {
-        let known = self.0.iter().find(|(word, _)| *word == found);
-        let allowed: &dyn serde::de::Expected = &self;
-        known
-            .map(|(_, value)| *value)
-            .ok_or_else(|| E::custom(format_args!("found '{found}'; allowed: {allowed}")))
-    }
+pub fn read<'de, T: Copy, D: serde::Deserializer<'de>>(
+    from: D,
+    words: &[(&str, T)],
+) -> Result<T, D::Error> {
+    let found: String = serde::Deserialize::deserialize(from)?;
+    let known = words.iter().find(|(word, _)| *word == found);
+    known.map(|(_, value)| *value).ok_or_else(|| {
+        let allowed: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        let allowed = allowed.join(", ");
+        serde::de::Error::custom(format_args!("found '{found}'; allowed: {allowed}"))
+    })
 }
 
 /// Schema of one of these words, each with what it means.

@@ -20,5 +20,5 @@ pub mod trajectory;
 pub mod vessel;
 
 pub use method::PlanMethod;
-pub use request::{Compliance, ObjectiveKind, SearchKind};
+pub use request::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
 pub use simulated::{BehaviourKind, SensorType};

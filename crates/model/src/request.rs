@@ -1,6 +1,18 @@
-//! Words of a request: how a planner searches, what it minimises, and which rules it follows.
+//! Words of a request: its planner, how that searches, what it minimises, and which rules it follows.
 
 use crate::PlanMethod;
+
+searoom_geometry::words! {
+    /// A planner of this project. A library user's own planner has another name.
+    pub enum PlannerKind {
+        /// Motions in the plane, on a graph in space-time.
+        SpaceTime => "space-time",
+        /// Motions along given paths.
+        PathTime => "path-time",
+        /// Motions under forces.
+        OptimalControl => "optimal-control",
+    }
+}
 
 searoom_geometry::words! {
     /// Graph search algorithm.

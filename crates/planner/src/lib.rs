@@ -28,7 +28,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use no_plan::NoPlan;
 pub use optimal_control::WarmStart;
-pub use searoom_model::{ObjectiveKind, PlanMethod, SearchKind};
+pub use searoom_model::{ObjectiveKind, PlanMethod, PlannerKind, SearchKind};
 
 use std::time::Duration;
 

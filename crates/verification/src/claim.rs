@@ -3,8 +3,8 @@
 use super::motion;
 use super::sets;
 use searoom_document::{
-    InitialSetDocument, OwnShipDocument, PLAN_FORMAT, PLANNER_NAMES, PlanDocument,
-    PositionDocument, RelaxationKind, TargetDocument,
+    InitialSetDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument, PositionDocument,
+    RelaxationKind, TargetDocument,
 };
 use searoom_evaluation::{SpaceTimeSet, StageWeights, Violation};
 use searoom_geometry::Polygon;
@@ -12,16 +12,10 @@ use searoom_geometry::frame::{Pose, Vector, heading_from_course_deg, wrap};
 use searoom_geometry::tolerance;
 use searoom_input::Fault;
 use searoom_input::text::short_numbers;
+use searoom_model::PlannerKind;
 use searoom_model::target::{Motion, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Steered};
 use searoom_model::vessel::{ForceVector, Hull, OwnShip, VesselKind};
-
-/// Name of the planner whose plans follow paths.
-pub(super) const PATH_TIME: &str = "path-time";
-/// The planner whose plans are free in the plane.
-pub(super) const SPACE_TIME: &str = "space-time";
-/// Name of the planner whose plans are motions under forces.
-pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 
 /// Metres; the least leg of a scenario file.
 const SHORTEST_LEG_M: f64 = 1e-3;
@@ -76,6 +70,7 @@ pub(super) enum ClaimedMotion {
 #[derive(Debug)]
 pub(super) struct Claim<'a> {
     pub file: &'a PlanDocument,
+    pub planner: PlannerKind,
     pub own: OwnShip,
     pub desired: DesiredTrajectory,
     /// Paths to which own ship is restricted, if any.
@@ -110,7 +105,7 @@ impl<'a> Claim<'a> {
         if file.format != PLAN_FORMAT {
             return Err(fault("format", format!("'{}'", file.format), PLAN_FORMAT));
         }
-        word("planner", &file.planner, &PLANNER_NAMES)?;
+        let planner = word("planner", &file.planner, PlannerKind::WORDS)?;
         positive("horizon_s", file.horizon_s)?;
         let hold = (file.cost.as_ref()).map_or(0.0, |cost| cost.arrival_hold_s);
         within("cost.arrival_hold_s", hold, 0.0, LONGEST_HOLD_S)?;
@@ -134,7 +129,7 @@ impl<'a> Claim<'a> {
         if let Some(stay) = mission.stay_until_s {
             within("mission.stay_until_s", stay, 0.0, file.horizon_s)?;
         }
-        let paths = (file.planner == PATH_TIME).then(|| {
+        let paths = (planner == PlannerKind::PathTime).then(|| {
             let others = mission.alternatives.iter();
             let others = others.map(|path| points(path));
             std::iter::once(waypoints).chain(others).collect()
@@ -142,7 +137,7 @@ impl<'a> Claim<'a> {
         let targets = (file.targets.iter().enumerate())
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
-        let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
+        let names: Vec<_> = targets.iter().map(|t| (t.name.as_str(), ())).collect();
         for (index, relaxation) in file.relaxations.iter().enumerate() {
             let at = |key: &str| format!("relaxations[{index}].{key}");
             word(&at("target"), &relaxation.target, &names)?;
@@ -157,6 +152,7 @@ impl<'a> Claim<'a> {
             .collect::<Result<Vec<_>, _>>()?;
         let motion = motion::read(file, &mut faults)?;
         Ok(Self {
+            planner,
             own,
             desired,
             paths,
@@ -206,14 +202,15 @@ pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) ->
     ClaimError::at(path, format_args!("found {found}; allowed: {allowed}"))
 }
 
-/// Checks that a word is one of the allowed words.
-fn word(path: &str, found: &str, allowed: &[&str]) -> Result<(), ClaimError> {
-    if allowed.contains(&found) {
-        return Ok(());
+/// The value of an allowed word.
+fn word<T: Copy>(path: &str, found: &str, allowed: &[(&str, T)]) -> Result<T, ClaimError> {
+    if let Some((_, value)) = allowed.iter().find(|(word, _)| *word == found) {
+        return Ok(*value);
     }
-    let allowed = match allowed {
-        [] => "nothing".to_owned(),
-        words => words.join(", "),
+    let words: Vec<&str> = allowed.iter().map(|(word, _)| *word).collect();
+    let allowed = match words.is_empty() {
+        true => "nothing".to_owned(),
+        false => words.join(", "),
     };
     Err(fault(path, format!("'{found}'"), &allowed))
 }

@@ -1,11 +1,11 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
-use super::claim::{Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME};
+use super::claim::{Claim, ClaimedMotion};
 use super::mismatch;
 use searoom_document::{PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
 use searoom_evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use searoom_geometry::tolerance;
-use searoom_model::{Compliance, ObjectiveKind, SearchKind};
+use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
 
 /// Checks the reported safety and verdict against the evaluation.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
@@ -64,13 +64,13 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             found.push(mismatch("planner", &file.planner, so));
         }
     };
-    let forces = file.planner == OPTIMAL_CONTROL;
+    let forces = claim.planner == PlannerKind::OptimalControl;
     let has_control = file.optimal_control.is_some();
     planner(
         has_control && !forces,
         "that of a document with optimal_control",
     );
-    let on_paths = file.planner == PATH_TIME;
+    let on_paths = claim.planner == PlannerKind::PathTime;
     let has_diagram = file.path_time.is_some();
     planner(
         has_diagram && !on_paths,
@@ -78,15 +78,15 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     );
     let of_segments = matches!(claim.motion, Some(ClaimedMotion::Segments(_)));
     planner(forces && of_segments, "that of a plan of segments");
-    let objectives: &[ObjectiveKind] = match file.planner.as_str() {
-        OPTIMAL_CONTROL => &[ObjectiveKind::StageCost],
-        PATH_TIME => &[
+    let objectives: &[ObjectiveKind] = match claim.planner {
+        PlannerKind::OptimalControl => &[ObjectiveKind::StageCost],
+        PlannerKind::PathTime => &[
             ObjectiveKind::SpaceTimeError,
             ObjectiveKind::Time,
             ObjectiveKind::Length,
             ObjectiveKind::LengthRisk,
         ],
-        _ => &[ObjectiveKind::SpaceTimeError],
+        PlannerKind::SpaceTime => &[ObjectiveKind::SpaceTimeError],
     };
     if !objectives.contains(&file.objective) {
         found.push(mismatch("objective", file.objective, either(objectives)));
@@ -137,13 +137,13 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
     };
     check(claim.motion.is_some(), "none without a plan");
     let made_by = match method {
-        PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
-        PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
-        PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
-        PlanMethod::Other => {
-            ![OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME].contains(&file.planner.as_str())
+        PlanMethod::OptimalControl => claim.planner == PlannerKind::OptimalControl,
+        PlanMethod::PathTimeGraph => claim.planner == PlannerKind::PathTime,
+        PlanMethod::LeastHarm | PlanMethod::Remainder => {
+            claim.planner != PlannerKind::OptimalControl
         }
-        _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
+        PlanMethod::Other => false,
+        _ => claim.planner == PlannerKind::SpaceTime,
     };
     check(made_by, &format!("another with planner '{}'", file.planner));
     let searches: &[SearchKind] = match method {

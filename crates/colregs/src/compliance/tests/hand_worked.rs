@@ -94,7 +94,9 @@ fn monitors_are_those_worked_out_by_hand() {
             .map(|monitor| monitor.split(' ').collect())
             .collect();
         for found in monitors {
-            let expected = expected.iter().find(|words| words[0] == found.monitor.word());
+            let expected = expected
+                .iter()
+                .find(|words| words[0] == found.monitor.word());
             let Some([_, verdict, robustness, time]) = expected.map(|words| &words[..]) else {
                 assert_eq!(found.verdict, MonitorVerdict::Idle, "{legs}: {found:?}");
                 continue;

@@ -119,7 +119,10 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     let left = |turn_at: f64| {
         let legs = [(0.0, turn_at), (-0.9, 200.0)];
         let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).monitors[1];
-        assert_eq!((found.monitor, found.measure), (Monitor::CollisionCourse, Measure::Time));
+        assert_eq!(
+            (found.monitor, found.measure),
+            (Monitor::CollisionCourse, Measure::Time)
+        );
         (found.verdict, found.robustness)
     };
     let meets = (1440.0 - HULL.length) / 12.0;
