@@ -29,6 +29,7 @@ pub struct ScenarioComparisonDocument {
 /// Result of one candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EntryDocument {
+    /// Not an enum: the label of any planner, with its search and what made the plan.
     pub method: String,
     pub max_risk: f64,
     pub objective: Option<ObjectiveKind>,
@@ -44,6 +45,8 @@ pub struct EntryDocument {
     pub departure: Option<Departure>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<HeldVelocityDocument>,
+    /// Words of [`Paragraph`](searoom_colregs::Paragraph) and
+    /// [`Monitor`](searoom_colregs::compliance::Monitor).
     pub breaks: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collision: Option<CollisionDocument>,

@@ -249,7 +249,7 @@ pub struct SailedDocument {
     /// ends before the last waypoint.
     pub cost_m2: f64,
     pub first_plan_cost_m2: Option<f64>,
-    /// Rules and monitors that the sailed motion breaks toward any target, each once.
+    /// Words of the rules and monitors that the sailed motion breaks toward any target, each once.
     pub breaks: Vec<String>,
     pub turns: usize,
     pub speed_changes: usize,

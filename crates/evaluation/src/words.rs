@@ -142,27 +142,13 @@ pub fn facts(verified: bool, safe: bool) -> &'static str {
 
 #[test]
 fn the_word_of_an_outcome_says_the_worst_first() {
+    use PlanOutcome::{Deadline, Relaxed};
     for (outcome, safety, risk, word) in [
-        (
-            PlanOutcome::Relaxed,
-            Some(Safety::Collides),
-            1.0,
-            "COLLIDES",
-        ),
-        (
-            PlanOutcome::Relaxed,
-            Some(Safety::AtRisk),
-            0.2,
-            "at risk 0.20",
-        ),
-        (PlanOutcome::Relaxed, Some(Safety::Safe), 0.0, "relaxed"),
-        (
-            PlanOutcome::Deadline,
-            Some(Safety::Unsafe),
-            1.0,
-            "NOT SAFE, deadline",
-        ),
-        (PlanOutcome::Deadline, None, 0.0, "deadline"),
+        (Relaxed, Some(Safety::Collides), 1.0, "COLLIDES"),
+        (Relaxed, Some(Safety::AtRisk), 0.2, "at risk 0.20"),
+        (Relaxed, Some(Safety::Safe), 0.0, "relaxed"),
+        (Deadline, Some(Safety::Unsafe), 1.0, "NOT SAFE, deadline"),
+        (Deadline, None, 0.0, "deadline"),
     ] {
         assert_eq!(outcome_word(outcome, safety, risk), word);
     }

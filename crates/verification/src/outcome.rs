@@ -142,7 +142,10 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
         PlanMethod::LeastHarm | PlanMethod::Remainder => {
             claim.planner != PlannerKind::OptimalControl
         }
-        PlanMethod::Other => false,
+        // the planners of this project have methods of their own
+        PlanMethod::Other => match claim.planner {
+            PlannerKind::SpaceTime | PlannerKind::PathTime | PlannerKind::OptimalControl => false,
+        },
         _ => claim.planner == PlannerKind::SpaceTime,
     };
     check(made_by, &format!("another with planner '{}'", file.planner));

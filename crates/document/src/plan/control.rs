@@ -8,6 +8,7 @@ use searoom_geometry::frame::{Side, radians_from_deg};
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlDocument {
+    /// Not an enum: files may name one ship model by several words.
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
@@ -50,7 +51,9 @@ impl StartVelocityDocument {
 /// Result of one initial guess.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartAttemptDocument {
+    /// Not an enum: the kind of guess with its number.
     pub start: String,
+    /// A sentence of the solver.
     pub status: String,
     pub feasible: bool,
     pub objective: Option<f64>,
