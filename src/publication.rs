@@ -20,7 +20,7 @@ impl From<&Run> for PlanDocument {
         document.verified = found.is_empty();
         if !document.verified {
             let (safety, risk) = (safety.max(Safety::Unsafe), run.greatest_risk());
-            document.verdict = outcome_word(&document.outcome, Some(safety), risk);
+            document.verdict = outcome_word(document.outcome, Some(safety), risk);
             document.safe = Some(false);
         }
         document.violations = ViolationDocument::all(&found);

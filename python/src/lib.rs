@@ -8,7 +8,7 @@ mod simulation;
 mod value;
 
 use pyo3::prelude::*;
-use searoom::document::{ScenarioComparisonDocument, VerifiedPlanDocument};
+use searoom::document::{AssessedSets, ScenarioComparisonDocument, VerifiedPlanDocument};
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
@@ -132,7 +132,10 @@ fn py_assess<'py>(
             .map(|sets| if domains { sets.with_domain } else { sets.hard })
             .collect();
         let situation = OwnSituation::of(scenario, &obstacles);
-        let sets = if domains { "domains" } else { "hard" };
+        let sets = match domains {
+            true => AssessedSets::Domains,
+            false => AssessedSets::Hard,
+        };
         searoom::study::assess::assess(&scenario.title, sets, &situation, &query)
     })?;
     objects(py, &assessment)

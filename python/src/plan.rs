@@ -76,7 +76,7 @@ impl Plan {
 
     #[getter]
     fn outcome(&self) -> &str {
-        &self.document.outcome
+        self.document.outcome.word()
     }
 
     /// The word for the outcome: `solved`, `relaxed`, `at risk 0.20`, `NOT SAFE`, …

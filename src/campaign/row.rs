@@ -5,8 +5,8 @@ use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ReplanDocument, SailedDocument, SimulatedTargetDocument, SimulationDocument,
 };
+use crate::evaluation::PlanOutcome;
 use crate::frame::{Vector, clockwise_deg, deg_from_radians, relative_bearing};
-use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 use crate::target::ShipTrack;
@@ -99,17 +99,19 @@ pub const COLUMNS: [Column; 58] = [
     Column::number("land_m", |s| s.document?.land.as_ref()?.least_m),
     Column::word("roles", |s| {
         let roles = s.targets()?.iter().flat_map(|t| &t.conduct.roles);
-        joined(roles.map(|role| &role.role))
+        joined(roles.map(|role| role.role.word()))
     }),
     // both judges
     Column::count("broken", |s| Some(s.conduct()?.breaks.len())),
-    Column::word("breaks", |s| joined(s.conduct()?.breaks.iter())),
+    Column::word("breaks", |s| {
+        joined(s.conduct()?.breaks.iter().map(String::as_str))
+    }),
     Column::number("least_score", |s| {
         s.least(|t| t.conduct.scores.values().copied().min_by(f64::total_cmp))
     }),
     Column::count("rules_broken", |s| s.sum(|t| t.conduct.violations.len())),
     Column::count("monitors_violated", |s| {
-        let violated = MonitorVerdict::Violated.word();
+        let violated = MonitorVerdict::Violated;
         let of = |t: &SimulatedTargetDocument| {
             let monitors = t.conduct.monitors.iter();
             monitors.filter(|m| m.verdict == violated).count()
@@ -138,7 +140,7 @@ pub const COLUMNS: [Column; 58] = [
         s.plans(|p| (!p.relaxations.is_empty()).into())
     }),
     Column::count("plans_infeasible", |s| {
-        s.plans(|p| (p.verdict == Verdict::Infeasible.word()).into())
+        s.plans(|p| (p.verdict == PlanOutcome::Infeasible.word()).into())
     }),
     Column::count("no_plan", |s| Some(s.conduct()?.without_plan)),
     Column::count("unsafe_plans", |s| Some(s.conduct()?.unsafe_plans)),
@@ -212,8 +214,8 @@ impl Column {
 }
 
 /// Words with semicolons between them; `None` for none.
-fn joined<'w>(words: impl Iterator<Item = &'w String>) -> Option<String> {
-    let words: Vec<&str> = words.map(String::as_str).collect();
+fn joined<'w>(words: impl Iterator<Item = &'w str>) -> Option<String> {
+    let words: Vec<&str> = words.collect();
     (!words.is_empty()).then(|| words.join(";"))
 }
 

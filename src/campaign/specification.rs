@@ -41,14 +41,6 @@ const SPREAD_DEG: Range = Range::between(0.0, 180.0);
 const TURN_DEG: Range = Range::within(180.0);
 const TURN_RATE: Range = Range::between(0.0, 90.0);
 
-const CLASSES: [(&str, EncounterKind); 5] = [
-    ("head-on", EncounterKind::HeadOn),
-    ("give-way", EncounterKind::GiveWay),
-    ("stand-on", EncounterKind::StandOn),
-    ("overtaking", EncounterKind::Overtaking),
-    ("overtaken", EncounterKind::Overtaken),
-];
-
 /// A checked specification (docs/guide/campaigns.md).
 #[derive(Debug, Clone)]
 pub struct Specification {
@@ -286,9 +278,10 @@ fn class_stratum(
     base: Option<&Scenario>,
     shared_loop: &SimulationSettings,
 ) -> Option<Read> {
-    let words = CLASSES.map(|(word, _)| format!("\"{word}\"")).join(", ");
+    let classes = EncounterKind::ALL.map(|kind| (kind.name(), kind));
+    let words = classes.map(|(word, _)| format!("\"{word}\"")).join(", ");
     let class = own.require("class", format_args!("{words}; or scenario, a file"));
-    let kind = class.and_then(|field| field.choice(&CLASSES));
+    let kind = class.and_then(|field| field.choice(&classes));
     let own_speed = base.map_or(1.0, |base| base.own_ship.speed);
     let standard = Encounter::of(kind.unwrap_or(EncounterKind::HeadOn), own_speed);
     let degrees = |own: &mut Table, key, range, or: Distribution| {

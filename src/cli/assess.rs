@@ -1,5 +1,6 @@
 //! `searoom assess`: risk, closest approach and velocity obstacle, without planning.
 
+use searoom::document::AssessedSets;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
@@ -89,7 +90,10 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         })
         .collect();
     let situation = OwnSituation::of(scenario, &obstacles);
-    let sets = if args.domains { "domains" } else { "hard" };
+    let sets = match args.domains {
+        true => AssessedSets::Domains,
+        false => AssessedSets::Hard,
+    };
     let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = args.drawn.figure.as_ref().map(|path| {
         let title = format!("{}, {sets} sets", scenario.title);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use searoom::document::{ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument};
+use searoom::document::{ComparisonDocument, ScenarioComparisonDocument, SuiteOutcome};
 use searoom::report::figure::{FigureError, comparison_figure};
 use searoom::report::page::HtmlReport;
 use searoom::report::{ResultTable, comparison_table};
@@ -149,7 +149,7 @@ fn run(asked: &mut [Result<Compared, Refused>], bound: bool, output: &Output) {
             let entry = guarded(run).map_err(|fault| {
                 let (file, method) = (c.file.display(), candidate.method);
                 let error = format_args!("{file}, {method}: {fault}");
-                Refused::new(&c.file, INTERNAL_FAULT, error)
+                Refused::new(&c.file, SuiteOutcome::InternalFault, error)
             });
             bar.inc(1);
             (index, entry)

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
-use searoom::document::{INTERNAL_FAULT, UNREADABLE};
+use searoom::document::SuiteOutcome;
 use searoom::input::{Fault, InputError};
 
 use super::status::ExitStatus;
@@ -24,8 +24,8 @@ pub struct Refused {
     pub file: PathBuf,
     /// Title of a valid scenario that is not supported as requested.
     pub title: Option<String>,
-    /// Word of the outcome in documents.
-    pub outcome: &'static str,
+    /// Its outcome in documents.
+    pub outcome: SuiteOutcome,
     /// Error that includes the file name.
     pub error: String,
     /// The faults of the file, where it could be read.
@@ -33,7 +33,7 @@ pub struct Refused {
 }
 
 impl Refused {
-    pub fn new(file: &Path, outcome: &'static str, error: impl Display) -> Self {
+    pub fn new(file: &Path, outcome: SuiteOutcome, error: impl Display) -> Self {
         Self {
             file: file.to_owned(),
             title: None,
@@ -44,7 +44,7 @@ impl Refused {
     }
 
     pub fn unreadable(file: &Path, error: impl Display) -> Self {
-        Self::new(file, UNREADABLE, error)
+        Self::new(file, SuiteOutcome::Unreadable, error)
     }
 
     /// A file that cannot be read, or is wrong.
@@ -62,12 +62,12 @@ impl Refused {
     /// An internal fault, whose text does not include the file name.
     pub fn fault(file: &Path, fault: &str) -> Self {
         let error = format_args!("{}: {fault}", file.display());
-        Self::new(file, INTERNAL_FAULT, error)
+        Self::new(file, SuiteOutcome::InternalFault, error)
     }
 
     pub fn status(&self) -> ExitStatus {
         match self.outcome {
-            INTERNAL_FAULT => ExitStatus::InternalFault,
+            SuiteOutcome::InternalFault => ExitStatus::InternalFault,
             _ => ExitStatus::BadInput,
         }
     }

@@ -151,7 +151,7 @@ impl Contents {
             bytes: recorded.bytes,
             application: "searoom",
             rerun_version: recorded.version.clone(),
-            checksum: recorded.checksum.word(),
+            checksum: recorded.checksum,
             scenario: scenario.unwrap_or_default(),
             planner: field("planner"),
             search: field("search"),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use searoom::document::{NOT_APPLICABLE, PLAN_MEBIBYTES, PlanDocument};
+use searoom::document::{PLAN_MEBIBYTES, PlanDocument, SuiteOutcome};
 use searoom::pipeline::{self, Run};
 use searoom::replanning::remember;
 use searoom::scenario::import::Imported;
@@ -125,7 +125,11 @@ pub fn attempt(
         } = scene.scenario()?;
         let unfit = |scenario: &Scenario, wrong: &Path, faults| Refused {
             title: Some(scenario.title.clone()),
-            ..Refused::new(file, NOT_APPLICABLE, ScenarioError::faults(wrong, faults))
+            ..Refused::new(
+                file,
+                SuiteOutcome::NotApplicable,
+                ScenarioError::faults(wrong, faults),
+            )
         };
         if let Err(faults) = shared.apply(&mut scenario) {
             return Err(unfit(&scenario, file, scene.located(faults)));

@@ -4,9 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use searoom::document::{
-    NOT_APPLICABLE, SimulatedDocument, SimulationDocument, SimulationsDocument,
-};
+use searoom::document::{SimulatedDocument, SimulationDocument, SimulationsDocument, SuiteOutcome};
 use searoom::report::page::HtmlReport;
 use searoom::report::{simulation_text, simulations_line, write_atomically};
 use searoom::scenario::import::Imported;
@@ -51,7 +49,9 @@ pub fn simulate(args: &SimulateArgs, output: &Output) -> anyhow::Result<ExitStat
                     &mut report,
                     output,
                 )
-                .map_err(|error| Refused::new(file, NOT_APPLICABLE, format_args!("{error:#}")))
+                .map_err(|error| {
+                    Refused::new(file, SuiteOutcome::NotApplicable, format_args!("{error:#}"))
+                })
             })
         });
         status = status.max(match sailed {

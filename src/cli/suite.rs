@@ -1,6 +1,6 @@
 //! `searoom suite`: many scenarios, one row each.
 
-use searoom::document::{NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument};
+use searoom::document::{PlanDocument, SuiteDocument, SuiteOutcome, SuiteRunDocument};
 use searoom::report::page::HtmlReport;
 use searoom::report::{counted, printable, suite_table};
 
@@ -87,7 +87,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
              \"cautions\" with --json, say which"
         ));
     }
-    if let Some(scenarios) = count(|run| run.outcome == NOT_APPLICABLE) {
+    if let Some(scenarios) = count(|run| run.outcome == SuiteOutcome::NotApplicable) {
         output.note(&format_args!(
             "{scenarios} not applicable, skipped: \"reason\" with --json, and `searoom plan`, \
              say why"

@@ -2,6 +2,7 @@
 
 use searoom_document::{ConductDocument, EncounterDocument, RoleDocument, finite};
 
+use crate::colregs::compliance::Monitor;
 use crate::colregs::{Role, Situation};
 use crate::pipeline::Run;
 use crate::target::ShipTrack;
@@ -13,7 +14,7 @@ const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// A compliance monitor in words.
 pub(crate) struct MonitorWords {
-    pub(crate) number: &'static str,
+    pub(crate) monitor: Monitor,
     name: &'static str,
     /// The fault of own ship, in the present tense.
     pub(crate) breaks: &'static str,
@@ -23,37 +24,37 @@ pub(crate) struct MonitorWords {
 
 pub(crate) const MONITORS: [MonitorWords; 6] = [
     MonitorWords {
-        number: "S",
+        monitor: Monitor::Contact,
         name: "contact",
         breaks: "the hulls touch",
         violated: "did not keep the hulls apart",
     },
     MonitorWords {
-        number: "R1",
+        monitor: Monitor::CollisionCourse,
         name: "collision course",
         breaks: "holds a collision course until the hulls meet",
         violated: "held a collision course until the hulls met",
     },
     MonitorWords {
-        number: "R3",
+        monitor: Monitor::Crossing,
         name: "crossing",
         breaks: "in a crossing, alters too little or too late",
         violated: "did not turn TURN to starboard or halve its speed TIME",
     },
     MonitorWords {
-        number: "R4",
+        monitor: Monitor::HeadOn,
         name: "head-on",
         breaks: "head-on, turns to starboard too little or too late",
         violated: "did not turn TURN to starboard TIME",
     },
     MonitorWords {
-        number: "R5",
+        monitor: Monitor::Overtaking,
         name: "overtaking",
         breaks: "overtaking, alters too little or too late",
         violated: "did not turn TURN or halve its speed TIME",
     },
     MonitorWords {
-        number: "R6",
+        monitor: Monitor::StandOn,
         name: "stand-on",
         breaks: "does not stand on",
         violated: "did not hold its courseHOLD",
@@ -62,7 +63,7 @@ pub(crate) const MONITORS: [MonitorWords; 6] = [
 
 /// Rules and monitors in words: a monitor has its name before its number, as in `overtaking (R5)`.
 pub(crate) fn rules_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> String {
-    let word = |number: &str| match MONITORS.iter().find(|known| known.number == number) {
+    let word = |number: &str| match MONITORS.iter().find(|known| known.monitor.word() == number) {
         Some(known) => format!("{} ({number})", known.name),
         None => number.to_owned(),
     };
@@ -77,8 +78,8 @@ pub(crate) fn breaks_in_words<'a>(broken: impl IntoIterator<Item = &'a str>) -> 
 
 /// Own ship's role toward a target in the words of a chart: its roles along the motion, or the one
 /// on the desired trajectory in brackets. `None` without one.
-pub(crate) fn chart_role(along: &[RoleDocument], desired: &str) -> Option<String> {
-    let mut roles: Vec<&str> = along.iter().map(|state| state.role.as_str()).collect();
+pub(crate) fn chart_role(along: &[RoleDocument], desired: Role) -> Option<String> {
+    let mut roles: Vec<&str> = along.iter().map(|state| state.role.word()).collect();
     roles.dedup();
     match roles.is_empty() {
         false => Some(format!("own ship: {}", roles.join(", "))),
@@ -86,9 +87,9 @@ pub(crate) fn chart_role(along: &[RoleDocument], desired: &str) -> Option<String
     }
 }
 
-/// True for the names of roles, not for those of other states.
-pub(crate) fn has_role(word: &str) -> bool {
-    !["none", "static"].contains(&word)
+/// True for roles, not for other states.
+pub(crate) fn has_role(role: Role) -> bool {
+    !matches!(role, Role::None | Role::Static)
 }
 
 /// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
@@ -103,15 +104,15 @@ pub(crate) fn encounters(run: &Run) -> Vec<EncounterDocument> {
             let encounter = &outcome.sets.encounter;
             let crossing = passage
                 .zip(trajectory)
-                .filter(|_| is_crossing(encounter.role.word()));
+                .filter(|_| is_crossing(encounter.role));
             EncounterDocument {
                 target: target.name.clone(),
-                role: encounter.role.word().to_owned(),
+                role: encounter.role,
                 dcpa_m: passage.and_then(|p| finite(p.dcpa)),
                 tcpa_s: passage.and_then(|p| finite(p.tcpa)),
                 undisturbed_dcpa_m: finite(encounter.undisturbed_dcpa),
                 undisturbed_tcpa_s: finite(encounter.undisturbed_tcpa),
-                passing_side: passage.map(|p| p.passing_side.to_string()),
+                passing_side: passage.map(|p| p.passing_side),
                 crosses_astern: crossing
                     .zip(target.ship())
                     .and_then(|((p, t), ship)| crosses_astern(t, ship, p.tcpa)),
@@ -126,10 +127,9 @@ pub(crate) fn encounters(run: &Run) -> Vec<EncounterDocument> {
         .collect()
 }
 
-/// True for the names of the roles in a crossing.
-pub(crate) fn is_crossing(role: &str) -> bool {
-    let known = Role::with_rule().find(|(word, _)| *word == role);
-    known.is_some_and(|(_, role)| role.duties().situation == Some(Situation::Crossing))
+/// True for the roles in a crossing.
+pub(crate) fn is_crossing(role: Role) -> bool {
+    role.duties().situation == Some(Situation::Crossing)
 }
 
 /// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.

@@ -6,17 +6,19 @@ use std::collections::BTreeSet;
 use searoom_document::{
     ConductDocument, ControlDocument, CostDocument, EncounterDocument, EscapeDocument,
     ImprovementDocument, ManoeuvreDocument, MemoryDocument, MonitorDocument, PlanDocument,
-    PlanMethod, RelaxationDocument, SearchStatsDocument, TimingDocument, breaks, conduct_breaks,
+    PlanMethod, RelaxationDocument, RelaxationKind, SearchStatsDocument, TimingDocument, breaks,
+    conduct_breaks,
 };
 
 use super::encounter::{MONITORS, breaks_in_words, has_role, rules_in_words};
 use super::plan::legs::planned_legs;
 use super::plan::stay::{Stay, stay};
-use crate::colregs::Thresholds;
+use crate::colregs::compliance::{Measure, MonitorVerdict};
+use crate::colregs::{Role, Thresholds};
 use crate::evaluation::{facts, skipped_waypoints};
-use crate::frame::deg_from_radians;
+use crate::frame::{Side, deg_from_radians};
 use crate::input::Remarks;
-use crate::planner::SearchKind;
+use crate::scenario::Compliance;
 use crate::text::{
     Times, counted, knots, printable, rounded, signed, significant, square_metres, tenths, to_side,
 };
@@ -149,11 +151,8 @@ fn planner_words(plan: &PlanDocument) -> String {
         heuristic_weight,
         ..
     } = plan.search_stats;
-    let mut searches = SearchKind::WORDS.iter();
-    let searched = searches
-        .find(|(word, _)| *word == plan.search)
-        .filter(|_| expanded.is_some() && plan.trajectory.is_none() && plan.path_time.is_none())
-        .map(|(_, search)| search.label());
+    let is_searched = expanded.is_some() && plan.trajectory.is_none() && plan.path_time.is_none();
+    let searched = is_searched.then(|| plan.search.label());
     // the planner says the rest
     let made = plan.method.filter(|m| *m != PlanMethod::OptimalControl);
     let made = made.map(PlanMethod::label).or(searched);
@@ -244,12 +243,12 @@ fn relaxed(
     times: Times,
 ) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
-    let text = match relaxation.kind.as_str() {
-        "domain" => format!(
+    let text = match relaxation.kind {
+        RelaxationKind::Domain => format!(
             "the domain of '{target}', which is reduced by {} m",
             tenths(*amount)
         ),
-        "risk" => {
+        RelaxationKind::Risk => {
             let ends = plan.cost.as_ref().map_or(f64::INFINITY, |c| c.duration_s);
             let until = relaxation.until_s.map_or(String::new(), |time| {
                 if time >= ends {
@@ -261,15 +260,15 @@ fn relaxed(
             let text = format!("the set of '{target}', at a risk of up to {amount:.3}{until}");
             return ("enters", text);
         }
-        "arrival" => {
+        RelaxationKind::Arrival => {
             let left = significant(*amount);
             format!(
                 "the arrival: {left} m are left at the end of the plan because '{target}' is in the way"
             )
         }
-        _ => {
+        RelaxationKind::Compliance => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
-            let role = role.map_or("unknown", |e| &e.role);
+            let role = role.map_or("unknown", |e| e.role.word());
             format!(
                 "the rules: no plan was found that complies with them toward '{target}' (own ship: {role})"
             )
@@ -303,7 +302,7 @@ fn target_lines(plan: &PlanDocument, times: Times, add: &mut Add) {
     let matters = |e: &EncounterDocument| {
         let judged = (e.conduct.as_ref())
             .is_some_and(|c| !c.roles.is_empty() || !conduct_breaks(c).is_empty());
-        e.role != "none" || judged || altered.contains(&e.target)
+        e.role != Role::None || judged || altered.contains(&e.target)
     };
     let by = |key: fn(&EncounterDocument) -> Option<f64>| {
         let key = move |e: &EncounterDocument| key(e).unwrap_or(f64::INFINITY);
@@ -373,8 +372,8 @@ fn risk_note(
                         of collision, Rule 7(a), up to";
             Some(format!("{text} {limit:.0} m of the centres"))
         }
-        _ if plan.compliance != "rules"
-            || encounter.role != "none"
+        _ if plan.compliance != Compliance::Rules
+            || encounter.role != Role::None
             || !altered.contains(&encounter.target) =>
         {
             None
@@ -392,9 +391,9 @@ fn risk_note(
 
 /// Own ship's role on the desired trajectory, and its roles along the plan where these differ.
 fn roles(encounter: &EncounterDocument, times: Times) -> String {
-    let role = match encounter.role.as_str() {
-        "none" => "no role".to_owned(),
-        "static" => "at rest, so without a role".to_owned(),
+    let role = match encounter.role {
+        Role::None => "no role".to_owned(),
+        Role::Static => "at rest, so without a role".to_owned(),
         // as a bare word it would read as the duty of the target
         role => format!("own ship is {role}"),
     };
@@ -407,11 +406,11 @@ fn roles(encounter: &EncounterDocument, times: Times) -> String {
         format!("{} from {from} to {}", r.role, times.at(r.until_s, 0))
     });
     let along = format!("own ship is {}", along.collect::<Vec<_>>().join(", "));
-    let first = conduct.roles.first().map(|role| role.role.as_str());
+    let first = conduct.roles.first().map(|role| role.role);
     match first {
         Some(first) if first == encounter.role => along,
         Some(_) => format!("{role} on the desired trajectory; on the plan {along}"),
-        None if !has_role(&encounter.role) => role,
+        None if !has_role(encounter.role) => role,
         None => format!("{role} on the desired trajectory, no role on the plan"),
     }
 }
@@ -499,7 +498,11 @@ fn conduct_lines(plan: &PlanDocument, conduct: &ConductDocument, times: Times, a
         let time = times.at(violation.t_s, 0);
         add("", format!("breaks {rule} at {time}: {what}"));
     }
-    for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
+    for monitor in conduct
+        .monitors
+        .iter()
+        .filter(|m| m.verdict == MonitorVerdict::Violated)
+    {
         add("", monitor_text(plan, monitor, times));
     }
     // without a role nobody asks for the scores
@@ -538,8 +541,11 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument, times: Times) ->
         let factor = t.time_factor(plan.own_ship.length_m);
         format!("within {:.0} s", factor * t.monitor.response())
     });
-    let number = monitor.monitor.as_str();
-    let what = match MONITORS.iter().find(|known| known.number == number) {
+    let number = monitor.monitor.word();
+    let what = match MONITORS
+        .iter()
+        .find(|known| known.monitor == monitor.monitor)
+    {
         Some(known) => (known.violated)
             .replace("TURN", &turn)
             .replace("HOLD", &hold)
@@ -548,15 +554,15 @@ fn monitor_text(plan: &PlanDocument, monitor: &MonitorDocument, times: Times) ->
     };
     // avoids a negative zero; a violation is more than nothing, so that none reads 0
     let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
-    let short = match monitor.unit.as_str() {
+    let short = match monitor.unit {
         _ if short == 0.0 => String::new(),
-        "m" if short < 1.0 => format!(", missed by {} m", tenths(short.max(5e-5))),
-        "m" => format!(", missed by {:.1} m", 0.1 * (10.0 * short).ceil()),
-        "deg" => format!(", missed by {:.0}°", short.ceil()),
-        unit => format!(", missed by {:.0} {unit}", short.ceil()),
+        Measure::Distance if short < 1.0 => format!(", missed by {} m", tenths(short.max(5e-5))),
+        Measure::Distance => format!(", missed by {:.1} m", 0.1 * (10.0 * short).ceil()),
+        Measure::Angle => format!(", missed by {:.0}°", short.ceil()),
+        Measure::Time => format!(", missed by {:.0} s", short.ceil()),
     };
     let time = times.at(monitor.t_s.unwrap_or(f64::NAN), 0);
-    let name = rules_in_words([monitor.monitor.as_str()]);
+    let name = rules_in_words([number]);
     format!("breaks {name} at {time}: {what}{short}")
 }
 
@@ -735,7 +741,7 @@ fn control_lines(plan: &PlanDocument, control: &ControlDocument, add: &mut Add) 
         );
         for class in control.homotopy_classes.iter().take(LISTED) {
             let sides = class.sides.iter();
-            let sides: Vec<&str> = sides.map(|s| s.as_deref().unwrap_or("far")).collect();
+            let sides: Vec<&str> = sides.map(|s| s.map_or("far", Side::word)).collect();
             let cost = stage_cost(class.objective);
             add("", format!("{cost}: {}", sides.join(", ")));
         }
@@ -753,7 +759,7 @@ fn stage_cost(value: f64) -> String {
 
 /// Targets toward which own ship has a role, in order of nominal closest approach.
 pub(crate) fn met(encounters: &[EncounterDocument]) -> Vec<&EncounterDocument> {
-    let mut met: Vec<_> = encounters.iter().filter(|e| e.role != "none").collect();
+    let mut met: Vec<_> = encounters.iter().filter(|e| e.role != Role::None).collect();
     let time = |e: &EncounterDocument| e.undisturbed_tcpa_s.unwrap_or(f64::INFINITY);
     met.sort_by(|a, b| time(a).total_cmp(&time(b)));
     met
@@ -766,13 +772,14 @@ pub(crate) fn passing(encounter: &EncounterDocument) -> String {
         (None, _) => "–".to_owned(),
         (Some(side), Some(true)) => format!("{side}, astern"),
         (Some(side), Some(false)) => format!("{side}, ahead"),
-        (Some(side), None) => side.clone(),
+        (Some(side), None) => side.to_string(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colregs::compliance::Monitor;
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -781,14 +788,14 @@ mod tests {
         let text = include_str!("../../scenarios/colregs/give-way.toml");
         let run = pipeline::run(Scenario::parse(text).expect("valid"));
         let mut plan = PlanDocument::of(&run);
-        let mut said = |monitor: &str, unit: &str, large: bool, profile: &str| {
+        let mut said = |monitor: Monitor, unit: Measure, large: bool, profile: &str| {
             plan.own_ship.length_m = if large { 150.0 } else { 30.0 };
             plan.thresholds = profile.to_owned();
             let monitor = MonitorDocument {
-                monitor: monitor.to_owned(),
-                verdict: "violated".to_owned(),
+                monitor,
+                verdict: MonitorVerdict::Violated,
                 robustness: Some(-11.2),
-                unit: unit.to_owned(),
+                unit,
                 t_s: Some(40.4),
             };
             monitor_text(&plan, &monitor, Times::Seconds)
@@ -799,21 +806,21 @@ mod tests {
             Thresholds::standard().time_factor(150.0) * 200.0
         );
         assert_eq!(
-            said("R4", "deg", false, name),
+            said(Monitor::HeadOn, Measure::Angle, false, name),
             "breaks head-on (R4) at 40 s: did not turn 20° to starboard within 200 s and before the target \
              was past, missed by 12°"
         );
-        assert!(said("R3", "deg", true, name).contains(&late));
+        assert!(said(Monitor::Crossing, Measure::Angle, true, name).contains(&late));
         assert_eq!(
-            said("R6", "deg", false, name),
+            said(Monitor::StandOn, Measure::Angle, false, name),
             "breaks stand-on (R6) at 40 s: did not hold its course within 10°, missed by 12°"
         );
         assert_eq!(
-            said("S", "m", false, "mine"),
+            said(Monitor::Contact, Measure::Distance, false, "mine"),
             "breaks contact (S) at 40 s: did not keep the hulls apart, missed by 11.2 m"
         );
         // a profile of a file has limits of its own
-        assert!(said("R5", "deg", false, "mine").starts_with(
+        assert!(said(Monitor::Overtaking, Measure::Angle, false, "mine").starts_with(
             "breaks overtaking (R5) at 40 s: did not turn far enough or halve its speed in time and before"
         ));
     }

@@ -27,7 +27,7 @@ pub(super) fn memory(run: &Run) -> Option<MemoryDocument> {
             .map(|(target, known)| TargetMemoryDocument {
                 name: target.name.clone(),
                 role: known.role.as_ref().map(|risk| KnownRoleDocument {
-                    role: risk.role.word().to_owned(),
+                    role: risk.role,
                     own_ship: StateDocument::of(risk.time, &risk.own),
                     target: StateDocument::of(risk.time, &risk.target),
                 }),

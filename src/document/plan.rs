@@ -10,10 +10,11 @@ use control::control;
 use path_time::path_time_document;
 
 use searoom_document::{
-    CostDocument, DistantRow, EscapeDocument, ImprovementDocument, MissionDocument, NodeDocument,
-    ObstacleDocument, OutOfReachDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument,
-    PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
-    StartDocument, TargetDocument, TimingDocument, TrajectoryDocument, finite, vertices,
+    AmountUnit, CostDocument, DistantRow, EscapeDocument, EscapePolicy, ImprovementDocument,
+    MissionDocument, NodeDocument, ObstacleDocument, OutOfReachDocument, OwnShipDocument,
+    PLAN_FORMAT, PlanDocument, PositionDocument, RelaxationDocument, RelaxationKind,
+    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TargetDocument,
+    TimingDocument, TrajectoryDocument, finite, vertices,
 };
 
 use super::encounter::encounters;
@@ -21,8 +22,8 @@ use super::memory::{memory, planned_manoeuvre_document};
 use crate::evaluation::Evaluation;
 use crate::frame::{Pose, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
-use crate::pipeline::{Relaxation, Run, Verdict};
-use crate::planner::{Minimises, Objective, Plan, SearchStats};
+use crate::pipeline::{Relaxation, Run};
+use crate::planner::{Minimises, Objective, ObjectiveKind, Plan, SearchStats};
 use crate::scenario::{DistantTarget, Scenario};
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
@@ -35,16 +36,15 @@ const MOST_SAMPLES: u32 = 20_000;
 /// The document of a run before its verification: nothing is verified, and `violations` is empty.
 pub(crate) fn unverified(run: &Run) -> PlanDocument {
     let scenario = &run.scenario;
-    let verdict = Verdict::of(run);
     let mut document = PlanDocument {
         format: PLAN_FORMAT.to_owned(),
         scenario: scenario.title.clone(),
         planner: scenario.planner.facts().name.to_owned(),
-        search: scenario.search.word().to_owned(),
+        search: scenario.search,
         method: run.planned.method(),
-        compliance: scenario.compliance.word().to_owned(),
+        compliance: scenario.compliance,
         thresholds: scenario.judged_by().name.to_string(),
-        objective: objective(scenario).to_owned(),
+        objective: objective(scenario),
         risk_weight_m: match scenario.objective {
             Objective::LengthRisk { weight } => Some(weight),
             _ => None,
@@ -57,7 +57,7 @@ pub(crate) fn unverified(run: &Run) -> PlanDocument {
         mission: mission(run),
         land: run.land.pieces.iter().map(vertices).collect(),
         land_outer_of: run.land.simplified,
-        outcome: verdict.word().to_owned(),
+        outcome: run.outcome(),
         verdict: run.word(),
         reason: run.reason(),
         relaxations: run.relaxations.iter().map(relaxation).collect(),
@@ -126,11 +126,11 @@ fn out_of_reach(scenario: &Scenario) -> Option<OutOfReachDocument> {
     })
 }
 
-/// Name of the minimised quantity.
-pub(crate) fn objective(scenario: &Scenario) -> &'static str {
+/// Kind of the minimised quantity.
+pub(crate) fn objective(scenario: &Scenario) -> ObjectiveKind {
     match scenario.planner.facts().minimises {
-        Minimises::Own(name) => name,
-        Minimises::SpaceTimeError | Minimises::Objective => scenario.objective.word(),
+        Minimises::Own(kind) => kind,
+        Minimises::SpaceTimeError | Minimises::Objective => scenario.objective.kind(),
     }
 }
 
@@ -151,21 +151,28 @@ pub(crate) fn timing(run: &Run) -> TimingDocument {
 }
 
 pub(crate) fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
+    use RelaxationKind as Kind;
     let (kind, target, amount, unit, until_s) = match relaxation {
-        Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
+        Relaxation::Domain { target, amount } => {
+            (Kind::Domain, target, *amount, AmountUnit::Metres, None)
+        }
         Relaxation::Risk {
             target,
             amount,
             until,
-        } => ("risk", target, *amount, "1", *until),
-        Relaxation::Arrival { target, amount } => ("arrival", target, *amount, "m", None),
-        Relaxation::Compliance { target, .. } => ("compliance", target, 1.0, "1", None),
+        } => (Kind::Risk, target, *amount, AmountUnit::One, *until),
+        Relaxation::Arrival { target, amount } => {
+            (Kind::Arrival, target, *amount, AmountUnit::Metres, None)
+        }
+        Relaxation::Compliance { target, .. } => {
+            (Kind::Compliance, target, 1.0, AmountUnit::One, None)
+        }
     };
     RelaxationDocument {
-        kind: kind.to_owned(),
+        kind,
         target: target.clone(),
         amount,
-        unit: unit.to_owned(),
+        unit: Some(unit),
         until_s,
     }
 }
@@ -174,7 +181,7 @@ fn escape(run: &Run) -> Option<EscapeDocument> {
     let (escape, plan) = (run.planned.escape?, run.planned.outcome.plan()?);
     let held = |s: &&Segment| s.start_time < escape.held_until - tolerance::TIME_S;
     Some(EscapeDocument {
-        policy: "stand-on-hold".to_owned(),
+        policy: EscapePolicy::StandOnHold,
         held_until_s: escape.held_until,
         first_segment: plan.trajectory.segments().iter().take_while(held).count(),
         turn_deg: clockwise_deg(escape.turn),
@@ -342,18 +349,6 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::planner_words;
-
-    /// The planners' names and the verdicts, in the order in which a fault of a document lists them.
-    #[test]
-    fn the_words_of_a_document_are_those_of_the_planners_and_runs() {
-        assert_eq!(
-            searoom_document::PLANNER_NAMES,
-            planner_words().map(|(name, _)| name)
-        );
-        let verdicts: Vec<&str> = Verdict::WORDS.iter().map(|(word, _)| *word).collect();
-        assert_eq!(searoom_document::OUTCOMES, *verdicts);
-    }
 
     /// In the headline and in the legs.
     #[test]

@@ -16,7 +16,7 @@ mod thorough;
 pub use judge::{judge, judge_free};
 pub use land::{NearLand, land_obstacle, land_within_reach};
 pub use no_return::{NO_RETURN_STEP_S, NoReturn};
-pub use outcome::{Relaxation, Verdict};
+pub use outcome::Relaxation;
 pub use relaxation::{RISK_STEP, RelaxationLevel};
 pub use risk::peak_risk;
 pub use sets::{TargetSets, sets};

@@ -3,7 +3,7 @@
 use super::Run;
 use super::sets::TargetSets;
 use crate::colregs::Role;
-use crate::evaluation::{Safety, outcome_word, without_rules};
+use crate::evaluation::{PlanOutcome, Safety, outcome_word, without_rules};
 use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
 use crate::planner::Outcome;
 
@@ -78,39 +78,18 @@ pub(super) fn relaxations(
     });
     risks.chain(late).chain(domains).collect()
 }
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// A plan that satisfies the whole request.
-    Solved,
-    /// A plan that gives up a requirement.
-    Relaxed,
-    /// No plan.
-    Infeasible,
-    /// The time budget ran out, with a plan or without.
-    Deadline,
-}
-
-impl Verdict {
-    /// The verdict of a run.
-    pub fn of(run: &Run) -> Self {
-        match run.planned.outcome {
-            Outcome::Infeasible(_) => Self::Infeasible,
-            Outcome::Deadline(_) => Self::Deadline,
-            Outcome::Solved(_) if run.relaxations.is_empty() => Self::Solved,
-            Outcome::Solved(_) => Self::Relaxed,
-        }
-    }
-}
-
-searoom_geometry::words!(Verdict {
-    Solved => "solved",
-    Relaxed => "relaxed",
-    Infeasible => "infeasible",
-    Deadline => "deadline",
-});
 
 impl Run {
+    /// How it ended.
+    pub fn outcome(&self) -> PlanOutcome {
+        match self.planned.outcome {
+            Outcome::Infeasible(_) => PlanOutcome::Infeasible,
+            Outcome::Deadline(_) => PlanOutcome::Deadline,
+            Outcome::Solved(_) if self.relaxations.is_empty() => PlanOutcome::Solved,
+            Outcome::Solved(_) => PlanOutcome::Relaxed,
+        }
+    }
+
     /// Safety of the plan from start to arrival; `None` without a plan. An unverified plan is
     /// unsafe.
     pub fn safety(&self) -> Option<Safety> {
@@ -129,8 +108,7 @@ impl Run {
 
     /// The outcome in words, for reports.
     pub fn word(&self) -> String {
-        let ended = Verdict::of(self).word();
-        let word = outcome_word(ended, self.safety(), self.greatest_risk());
+        let word = outcome_word(self.outcome(), self.safety(), self.greatest_risk());
         without_rules(word, self.gives_up_rules())
     }
 

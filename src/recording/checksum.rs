@@ -15,6 +15,7 @@ use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::external::re_log_types::{LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreSource};
 
 use super::APPLICATION;
+use crate::document::Checksum;
 
 const PREFIX: &str = "checksum_";
 const DIGITS: usize = 16;
@@ -25,25 +26,6 @@ const LENGTH_DIGITS: usize = 12;
 
 /// The first message ends within these bytes.
 const HEAD: usize = 256;
-
-/// The state of a readable file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Checksum {
-    /// Every byte is as Searoom wrote it.
-    Valid,
-    /// Another program wrote the recording again, in other bytes: no checksum covers them.
-    Gone,
-}
-
-impl Checksum {
-    /// The word of documents.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Valid => "valid",
-            Self::Gone => "gone",
-        }
-    }
-}
 
 /// FNV-1a with 64 bits (draft-eastlake-fnv). A change of a single byte always changes it.
 pub fn checksum(parts: &[&[u8]]) -> u64 {

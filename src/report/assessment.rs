@@ -1,7 +1,7 @@
 //! Text of an assessment.
 
 use super::table::{Display, Grid, plain};
-use crate::document::{AssessmentDocument, InitialSetDocument};
+use crate::document::{AssessedSets, AssessmentDocument, InitialSetDocument};
 use crate::frame::{course_deg_from_heading, knots_from_mps};
 use crate::study::assess::OwnSituation;
 use crate::text::{counted, knots, tenths};
@@ -45,9 +45,9 @@ pub fn assessment_text(
 }
 
 fn sets(assessment: &AssessmentDocument) -> &'static str {
-    match assessment.sets.as_str() {
-        "domains" => "ship domains",
-        _ => "hard sets",
+    match assessment.sets {
+        AssessedSets::Domains => "ship domains",
+        AssessedSets::Hard => "hard sets",
     }
 }
 

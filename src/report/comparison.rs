@@ -92,7 +92,7 @@ fn row(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<Fiel
         datum(compared.scenario.clone().unwrap_or_default()),
         both(plain(&entry.method), &entry.method),
         number(Some(entry.max_risk), |risk| risk.to_string()),
-        both(verdict(&entry.verdict), &entry.outcome),
+        both(verdict(&entry.verdict), entry.outcome.to_string()),
         datum(cost.is_some_and(|c| c.arrived).to_string()),
         both(or_dash(cost.map(|_| departure(entry))), ""),
         degrees,

@@ -18,11 +18,11 @@ pub fn lint_text(document: &LintDocument, display: Display) -> String {
             grid.rows.push(vec![
                 plain(if index == 0 { name } else { "" }),
                 plain(&target.name),
-                plain(&target.role),
+                plain(target.role.word()),
                 or_dash(target.undisturbed_dcpa_m.map(tenths)),
                 or_dash(target.undisturbed_tcpa_s.map(tenths)),
                 or_dash(target.to_set_m.map(tenths)),
-                plain(&target.matters),
+                plain(target.matters.word()),
             ]);
         }
         findings.extend(scenario.findings.iter().map(|f| format!("{name}: {f}")));

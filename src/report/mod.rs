@@ -17,7 +17,6 @@ mod table;
 mod verification;
 
 pub use crate::output::{WriteError, write_atomically};
-pub use crate::pipeline::Verdict;
 pub use crate::text::{broken, counted, printable, printable_lines};
 pub use assessment::assessment_text;
 pub use campaign::{campaign_text, rare_contacts_text};

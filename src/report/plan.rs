@@ -117,9 +117,9 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Field> {
         }
         (!lines.is_empty()).then(|| lines.join("\n"))
     };
-    let roles = per_target(&|e| e.role.clone());
+    let roles = per_target(&|e| e.role.to_string());
     let roles = roles.or_else(|| run.search_stats.map(|_| "none".to_owned()));
-    let each_role: Vec<&str> = met.iter().map(|e| e.role.as_str()).collect();
+    let each_role: Vec<String> = met.iter().map(|e| e.role.to_string()).collect();
     let passing = or_dash(per_target(&passing).filter(|_| planned));
     let [degrees, side] = turned(run.departure);
     let method = run.method.map(|method| method.label().to_owned());
@@ -132,7 +132,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Field> {
             run.scenario.clone().unwrap_or_default(),
         ),
         datum(run.planner.clone().unwrap_or_default()),
-        both(verdict(&run.verdict), &run.outcome),
+        both(verdict(&run.verdict), run.outcome.to_string()),
         datum(cost.is_some_and(|c| c.arrived).to_string()),
         both(or_dash(roles), each_role.join(" ")),
         both(or_dash(cost.map(|_| manoeuvre(run.departure))), ""),
@@ -199,8 +199,8 @@ pub(super) fn monitors_key<'a>(broken: impl Iterator<Item = &'a str>) -> Option<
     let broken: Vec<&str> = broken.collect();
     let told = MONITORS
         .iter()
-        .filter(|monitor| broken.contains(&monitor.number));
-    let told = told.map(|monitor| format!("{}: {}", monitor.number, monitor.breaks));
+        .filter(|monitor| broken.contains(&monitor.monitor.word()));
+    let told = told.map(|monitor| format!("{}: {}", monitor.monitor, monitor.breaks));
     let told: Vec<String> = told.collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
@@ -338,7 +338,8 @@ pub fn no_return_reason(run: &Run) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{NOT_APPLICABLE, headline};
+    use crate::colregs::compliance::MonitorVerdict;
+    use crate::document::{SuiteOutcome, headline};
     use crate::pipeline;
     use crate::scenario::Scenario;
 
@@ -365,7 +366,11 @@ mod tests {
             width: None,
         };
         assert!(suite_text(&[planned()], colour).contains('\u{1b}'));
-        let failed = SuiteRunDocument::failed("x.toml".to_owned(), NOT_APPLICABLE, "no".to_owned());
+        let failed = SuiteRunDocument::failed(
+            "x.toml".to_owned(),
+            SuiteOutcome::NotApplicable,
+            "no".to_owned(),
+        );
         let both = suite_text(&[failed, busy], Display::default());
         assert!(both.find("x.toml") < both.find("a.toml"));
     }
@@ -409,7 +414,7 @@ mod tests {
             .as_mut()
             .expect("a ship")
             .monitors[0]
-            .verdict = "violated".to_owned();
+            .verdict = MonitorVerdict::Violated;
         let ends = format!("({red}verified, not safe{end}; {red}breaks contact (S){end})");
         assert!(
             first(&plan, true).ends_with(&ends),

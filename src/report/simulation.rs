@@ -7,7 +7,7 @@ use crate::document::{
     LastingAlarm, ReplanDocument, SailedDocument, SailedManoeuvreDocument, SimulatedTargetDocument,
     SimulationDocument, breaks_in_words, conduct_breaks, rules_in_words,
 };
-use crate::evaluation::NOT_BY_THE_RULES;
+use crate::evaluation::{NOT_BY_THE_RULES, PlanOutcome};
 use crate::text::{Times, counted, tenths, to_side};
 
 pub(super) const TIMES: &str = "Planning";
@@ -149,7 +149,7 @@ fn manoeuvres(sailed: &SailedDocument, times: Times) -> String {
 pub(super) fn targets_grid(targets: &[SimulatedTargetDocument], times: Times) -> Grid {
     let rows = targets.iter().map(|target| {
         let roles = target.conduct.roles.iter();
-        let roles: Vec<&str> = roles.map(|r| r.role.as_str()).collect();
+        let roles: Vec<&str> = roles.map(|r| r.role.word()).collect();
         let broken = conduct_breaks(&target.conduct);
         let clearance = match (target.least_clearance_m, target.contact_t_s) {
             (Some(metres), None) => plain(tenths(metres)),
@@ -158,7 +158,7 @@ pub(super) fn targets_grid(targets: &[SimulatedTargetDocument], times: Times) ->
         let lead = target.conduct.manoeuvre.as_ref().and_then(|m| m.lead_s);
         vec![
             plain(target.name.clone()),
-            plain(target.behaviour.clone()),
+            plain(target.behaviour.word()),
             or_dash((!roles.is_empty()).then(|| roles.join("\n"))),
             clearance,
             plain(times.figure(target.least_clearance_t_s, 0)),
@@ -200,7 +200,7 @@ pub(super) fn conduct_lines(
             .filter(|r| r.verdict == **word)
             .count()
     };
-    let given_up: String = ["relaxed", NOT_BY_THE_RULES]
+    let given_up: String = [PlanOutcome::Relaxed.word(), NOT_BY_THE_RULES]
         .iter()
         .map(|word| (with_verdict(word), word))
         .filter(|(count, _)| *count > 0)
@@ -294,18 +294,16 @@ pub(super) fn judges_grid(targets: &[SimulatedTargetDocument]) -> Grid {
         let scores = scores.map(|(rule, score)| format!("{} {score:.2}", rule.replace('_', " ")));
         let violations = conduct.violations.iter();
         let violations = violations.map(|v| format!("{}: {}, at {:.0} s", v.rule, v.what, v.t_s));
-        let monitors = |verdict: &str| -> Vec<String> {
+        let monitors = |verdict: MonitorVerdict| -> Vec<String> {
             let found = conduct.monitors.iter().filter(|m| m.verdict == verdict);
-            found
-                .map(|m| rules_in_words([m.monitor.as_str()]))
-                .collect()
+            found.map(|m| rules_in_words([m.monitor.word()])).collect()
         };
         vec![
             plain(target.name.clone()),
             lines(scores.collect(), Tone::Plain),
             lines(violations.collect(), Tone::Bad),
-            lines(monitors(MonitorVerdict::Satisfied.word()), Tone::Plain),
-            lines(monitors(MonitorVerdict::Violated.word()), Tone::Bad),
+            lines(monitors(MonitorVerdict::Satisfied), Tone::Plain),
+            lines(monitors(MonitorVerdict::Violated), Tone::Bad),
         ]
     });
     let header = "target, scores, rules broken, monitors satisfied, monitors violated";
@@ -341,7 +339,8 @@ pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
             remarks.push("not followed".to_owned());
         }
         if !replan.relaxations.is_empty() {
-            remarks.push(format!("relaxed: {}", replan.relaxations.join(", ")));
+            let kinds: Vec<&str> = replan.relaxations.iter().map(|kind| kind.word()).collect();
+            remarks.push(format!("relaxed: {}", kinds.join(", ")));
         }
         for (names, what) in outside
             .into_iter()

@@ -55,12 +55,8 @@ fn verdict_line(checked: &Verification) -> String {
         ),
         (Some(evaluation), 0) => {
             let facts = facts(true, checked.safe());
-            match outcome_word(
-                &checked.outcome,
-                Some(evaluation.safety),
-                checked.risk_taken,
-            ) {
-                word if word == checked.outcome => facts.to_owned(),
+            match outcome_word(checked.outcome, Some(evaluation.safety), checked.risk_taken) {
+                word if word == checked.outcome.word() => facts.to_owned(),
                 word => format!("{facts}: {word}"),
             }
         }

@@ -8,7 +8,7 @@ mod mistakes;
 
 use mistakes::mistakes;
 
-use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
+use crate::document::{LintScenarioDocument, LintTargetDocument, Matters, finite};
 use crate::frame::{Pose, Side, heading_of, relative_bearing};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{TargetSets, planned_sets};
@@ -21,11 +21,6 @@ const INSTANTS: usize = 400;
 
 /// Angle in radians (2°): a target closer to dead ahead or dead astern is on neither side.
 const ON_NO_SIDE: f64 = std::f64::consts::PI / 90.0;
-
-/// On the desired trajectory, own ship enters the hard set of the target.
-const MEETS: &str = "meets";
-/// Own ship cannot enter the set at any of its speeds on any course.
-const NEVER: &str = "never";
 
 /// Checks a scenario for consistency, and against the declarations of its file. O(targets ×
 /// instants).
@@ -82,19 +77,19 @@ fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> 
         }
         // negated on purpose: a NaN matters
         let matters = if !(to_set > 0.0) {
-            MEETS
+            Matters::Meets
         } else if !(to_reach > (fastest + top_speed(target)) * step) {
-            "clear"
+            Matters::Clear
         } else {
-            NEVER
+            Matters::Never
         };
         LintTargetDocument {
             name: target.name.clone(),
-            role: sets.encounter.role.word().to_owned(),
+            role: sets.encounter.role,
             undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
             undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
             to_set_m: finite(to_set),
-            matters: matters.to_owned(),
+            matters,
         }
     });
     checked.collect()
@@ -103,7 +98,7 @@ fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> 
 fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument]) -> Vec<String> {
     let mut findings = against_declared(scenario, declared);
     findings.extend(mistakes(scenario));
-    for target in targets.iter().filter(|t| t.matters == NEVER) {
+    for target in targets.iter().filter(|t| t.matters == Matters::Never) {
         findings.push(format!(
             "{}: never matters, out of reach within the horizon",
             target.name
@@ -114,7 +109,10 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
     findings.extend(met);
     if scenario.targets.is_empty() && scenario.out_of_reach.targets.is_empty() {
         findings.push("no targets".to_owned());
-    } else if !is_met && scenario.stay.is_none() && targets.iter().all(|t| t.matters != MEETS) {
+    } else if !is_met
+        && scenario.stay.is_none()
+        && targets.iter().all(|t| t.matters != Matters::Meets)
+    {
         findings.push("no target in the way: own ship may hold its course".to_owned());
     }
     findings

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use searoom::document::SimulationDocument;
+use searoom::document::{Alarm, SimulationDocument};
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::Polygon;
 use searoom::map::Map;
@@ -309,7 +309,7 @@ fn a_plan_that_takes_longer_than_the_delay_is_not_followed() {
     assert!(sailed.replans[0].followed && sailed.replans.len() > 5);
     assert!(sailed.replans[1..].iter().all(|replan| !replan.followed));
     let mut alarms = sailed.alarms.iter();
-    assert!(alarms.any(|alarm| alarm.alarm == "plan too late"));
+    assert!(alarms.any(|alarm| alarm.alarm == Alarm::PlanTooLate));
     // the first plan holds to the end
     assert!(!sailed.contact && sailed.arrived && !sailed.safe);
     let first = sailed.conduct.first_plan_cost_m2.expect("a plan");
@@ -404,7 +404,7 @@ fn own_ship_off_its_plan_asks_for_another() {
     let alarm = sailed
         .alarms
         .iter()
-        .find(|a| a.alarm == "beyond the tracking margin");
+        .find(|a| a.alarm == Alarm::BeyondMargin);
     assert!((first - alarm.expect("an alarm").t_s).abs() < 1e-6);
     scenario.own_ship.tracking_margin = 0.0;
     assert_eq!(sail(scenario).replans.len(), 1);
@@ -728,7 +728,7 @@ fn a_velocity_caught_in_mid_turn_is_not_kept() {
         let alarms = sailed
             .alarms
             .iter()
-            .filter(|a| a.alarm == "another velocity than assumed");
+            .filter(|a| a.alarm == Alarm::AnotherVelocity);
         assert!(
             (1..=3).contains(&alarms.count()),
             "{seed} {:?}",
@@ -763,7 +763,7 @@ fn a_moored_ship_is_at_rest_until_it_gets_under_way() {
             }
             // three standard deviations of a place are exceeded now and then
             let mut alarms = sailed.alarms.iter();
-            let moves = alarms.any(|alarm| alarm.alarm != "outside the set of the plan");
+            let moves = alarms.any(|alarm| alarm.alarm != Alarm::OutsideSet);
             assert!(!moves, "{sensor} {seed} {:?}", sailed.alarms);
         }
     }
@@ -841,7 +841,7 @@ fn a_target_that_plans_against_the_clock_says_so() {
         let mut scenario = parsed(&text);
         scenario.deadline = deadline;
         let alarms = sail(scenario).alarms.into_iter();
-        let cut = alarms.filter(|alarm| alarm.alarm == "plan cut by its deadline");
+        let cut = alarms.filter(|alarm| alarm.alarm == Alarm::PlanCut);
         cut.collect::<Vec<_>>()
     };
     let alarms = cut(0.0);
@@ -861,7 +861,7 @@ fn a_current_that_is_faster_than_own_ship_is_an_alarm() {
         let mut scenario = parsed(text);
         scenario.simulation.duration = Some(60.0);
         let alarms = sail(scenario).alarms.into_iter();
-        let found = alarms.filter(|alarm| alarm.alarm == "current faster than own ship");
+        let found = alarms.filter(|alarm| alarm.alarm == Alarm::Overpowered);
         found.collect::<Vec<_>>()
     };
     let alarms = found(&text);

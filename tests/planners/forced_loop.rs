@@ -1,6 +1,6 @@
 //! The closed loop of the optimal-control planner: its own vessel, driven by the planned forces.
 
-use searoom::document::{PlanDocument, SimulationDocument};
+use searoom::document::{Alarm, PlanDocument, SimulationDocument};
 use searoom::frame::{Pose, Vector};
 use searoom::scenario::{Behaviour, Scenario, Sensor, SensorKind, VesselModel};
 use searoom::simulation::Simulation;
@@ -118,7 +118,7 @@ fn without_a_plan_own_ship_goes_on_along_the_last_one() {
     let missing: Vec<_> = document.replans.iter().filter(none).collect();
     let times: Vec<f64> = missing.iter().map(|r| r.t_s).collect();
     assert_eq!(times, [100.0, 120.0]);
-    let alarms = document.alarms.iter().filter(|a| a.alarm == "no plan");
+    let alarms = document.alarms.iter().filter(|a| a.alarm == Alarm::NoPlan);
     assert_eq!(alarms.map(|a| a.t_s).collect::<Vec<_>>(), times);
     assert!(missing.iter().all(|r| !r.followed) && document.conduct.without_plan == 2);
     assert!(!document.safe && plans.len() == document.replans.len() - 2);

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
+use searoom::document::AssessedSets;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -239,7 +240,7 @@ fn the_answers_are_those_of_the_obstacles() {
                 velocities: std::vec![s.velocity(), velocity],
                 ..Query::default()
             };
-            let answer = assess("Random", "hard", &s, &query);
+            let answer = assess("Random", AssessedSets::Hard, &s, &query);
             let all = answer.hold_course.targets.iter();
             for (held, same) in all.zip(&answer.velocities[0].targets) {
                 assert_eq!((held.dcpa_m, held.tcpa_s), (same.dcpa_m, same.tcpa_s));
@@ -369,7 +370,7 @@ fn the_edge_of_a_set_belongs_to_it_in_every_key() {
                 .collect();
             let answer = assess(
                 "Edge",
-                "hard",
+                AssessedSets::Hard,
                 &s,
                 &Query {
                     points,
@@ -399,7 +400,7 @@ fn the_edge_of_a_set_belongs_to_it_in_every_key() {
                     velocities: std::vec![velocity],
                     ..Query::default()
                 };
-                let answer = assess("Touch", "hard", &s, &query);
+                let answer = assess("Touch", AssessedSets::Hard, &s, &query);
                 let (found, held) = (
                     &answer.velocities[0].targets[0],
                     &answer.hold_course.targets[0],
@@ -417,7 +418,7 @@ fn the_edge_of_a_set_belongs_to_it_in_every_key() {
                     points: std::vec![there],
                     ..Query::default()
                 };
-                let at_contact = assess("Contact", "hard", &s, &at_contact);
+                let at_contact = assess("Contact", AssessedSets::Hard, &s, &at_contact);
                 assert!(at_contact.points[0].targets[0].inside, "{at_contact:?}");
                 touched.add(true);
                 // what leaves every velocity obstacle is in none
@@ -437,7 +438,7 @@ fn the_edge_of_a_set_belongs_to_it_in_every_key() {
                     let mut altered = s;
                     altered.pose.heading += turn;
                     altered.speed += change;
-                    let free = assess("Altered", "hard", &altered, &Query::default());
+                    let free = assess("Altered", AssessedSets::Hard, &altered, &Query::default());
                     let held = &free.hold_course.targets[0];
                     assert!(held.dcpa_m > 0.0 && held.max_risk == 0.0, "{held:?}");
                 }

@@ -74,6 +74,16 @@ planner | /planner = "x" | planner: found 'x'; allowed: space-time, path-time, o
 compliance | /compliance = "x" | compliance: found 'x'; allowed: none, shape, rules
 objective | /objective = "x" | objective: found 'x'; allowed: space-time-error, time, length, length-risk, stage-cost
 outcome | /outcome = "x" | outcome: found 'x'; allowed: solved, relaxed, infeasible, deadline
+search | /search = "x" | search: found 'x'; allowed: a-star, dijkstra, thorough
+no word | /search = 3 | search: invalid type: integer `3`, expected a string
+method | /method = "x" | method: found 'x'; allowed: rules, a-star,
+role | /encounters/0/role = "x" | encounters[0].role: found 'x'; allowed: head-on, give-way,
+side | /encounters/0/passing_side = "x" | encounters[0].passing_side: found 'x'; allowed: port, starboard
+monitor | /encounters/0/monitors/1/monitor = "x" | encounters[0]: monitors[1].monitor: found 'x'; allowed: S, R1, R3
+verdict | /encounters/0/monitors/0/verdict = "x" | verdict: found 'x'; allowed: satisfied, violated, idle, undecided
+rule | /encounters/0/violations = [{"rule": "99", "what": "", "t_s": 0}] | violations[0].rule: found '99'; allowed: 13, 14(a)
+no conduct | /encounters/0/monitors remove | encounters[0]: missing field `monitors`
+phase | /phases/0/phase = "x" | phases[0].phase: found 'x'; allowed: free, hold, out, parallel, back
 no motion | /trajectory/segments = null | trajectory.segments: found null without optimal_control
 land | /land = [[[0.0, 0.0], [1.0, 1.0]]] | land[0]: found
 kind | /relaxations = [{"kind": "bogus", "target": "target", "amount": 1}] | relaxations[0].kind: found 'bogus'; allowed: compliance, domain, risk, arrival

@@ -22,6 +22,6 @@ pub use role::{Role, Sectors, SteadyShip, role_within};
 pub use rules::Duty;
 pub use rules::{
     APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, ClosedSide, CrossingAhead, Encountered,
-    MOST_SMALL_TURNS, MayAct, ON_COURSE, RoleDuties, SMALL_TURN, Situation,
+    MOST_SMALL_TURNS, MayAct, ON_COURSE, Paragraph, RoleDuties, SMALL_TURN, Situation,
 };
 pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};

@@ -33,49 +33,35 @@ impl Sectors {
 /// Radians: a bearing this close to dead ahead or astern has no side.
 const SIDE: f64 = 1e-9;
 
-/// Role of own ship toward a target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Role {
-    /// Rule 14.
-    HeadOn,
-    /// Rule 15, the target on own starboard side.
-    GiveWay,
-    /// Rule 17.
-    StandOn,
-    /// Rule 13, own ship overtakes.
-    Overtaking,
-    /// Rule 13, own ship is overtaken.
-    Overtaken,
-    /// Each on the other's starboard side: both keep clear.
-    BothGiveWay,
-    /// Each on the other's port side: treated like head-on.
-    PortToPort,
-    /// Rule 19(d)(i): in restricted visibility, the target forward of own beam.
-    Rule19Forward,
-    /// Rule 19(d)(ii): in restricted visibility, the target abeam or abaft the beam to starboard.
-    Rule19Starboard,
-    /// Rule 19(d)(ii): as before, to port.
-    Rule19Port,
-    /// The target does not move: no role.
-    Static,
-    /// No risk of collision.
-    None,
+searoom_geometry::words! {
+    /// Role of own ship toward a target.
+    pub enum Role {
+        /// Rule 14.
+        HeadOn => "head-on",
+        /// Rule 15, the target on own starboard side.
+        GiveWay => "give-way",
+        /// Rule 17.
+        StandOn => "stand-on",
+        /// Rule 13, own ship overtakes.
+        Overtaking => "overtaking",
+        /// Rule 13, own ship is overtaken.
+        Overtaken => "overtaken",
+        /// Each on the other's starboard side: both keep clear.
+        BothGiveWay => "both-give-way",
+        /// Each on the other's port side: treated like head-on.
+        PortToPort => "port-to-port",
+        /// Rule 19(d)(i): in restricted visibility, the target forward of own beam.
+        Rule19Forward => "rule-19-forward",
+        /// Rule 19(d)(ii): in restricted visibility, the target abeam or abaft the beam to starboard.
+        Rule19Starboard => "rule-19-starboard",
+        /// Rule 19(d)(ii): as before, to port.
+        Rule19Port => "rule-19-port",
+        /// The target does not move: no role.
+        Static => "static",
+        /// No risk of collision.
+        None => "none",
+    }
 }
-
-searoom_geometry::words!(Role {
-    HeadOn => "head-on",
-    GiveWay => "give-way",
-    StandOn => "stand-on",
-    Overtaking => "overtaking",
-    Overtaken => "overtaken",
-    BothGiveWay => "both-give-way",
-    PortToPort => "port-to-port",
-    Rule19Forward => "rule-19-forward",
-    Rule19Starboard => "rule-19-starboard",
-    Rule19Port => "rule-19-port",
-    Static => "static",
-    None => "none",
-});
 
 impl Role {
     /// The roles that own ship has while there is risk of collision, with their words.

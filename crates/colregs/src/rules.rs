@@ -1,6 +1,7 @@
 //! The collision regulations as a table: the duties of own ship in each role, and toward all
 //! targets.
 
+use super::compliance::Monitor;
 use super::role::{Role, SteadyShip};
 use super::thresholds::{MonitorLimits, ScoreLimits};
 use searoom_geometry::frame::Side;
@@ -33,7 +34,7 @@ pub struct RoleDuties {
     /// Number of the rule.
     pub rule: Option<u8>,
     /// Paragraph that a forbidden heading, passing side or crossing ahead violates.
-    pub paragraph: Option<&'static str>,
+    pub paragraph: Option<Paragraph>,
     /// How the two ships meet.
     pub situation: Option<Situation>,
     /// Keeps clear by a readily apparent alteration: Rules 13 to 16.
@@ -59,7 +60,33 @@ pub struct RoleDuties {
     /// Side of the target to which its domain is swept, because own ship must not pass there.
     pub closed_side: ClosedSide,
     /// Monitor that asks for an alteration.
-    pub alteration_monitor: Option<&'static str>,
+    pub alteration_monitor: Option<Monitor>,
+}
+
+searoom_geometry::words! {
+    /// A paragraph of the rules that own ship may violate.
+    pub enum Paragraph {
+        /// Overtaking.
+        Rule13 => "13",
+        /// Head-on: both alter to starboard.
+        Rule14A => "14(a)",
+        /// Crossing: own ship does not cross ahead of a ship on its starboard side.
+        Rule15 => "15",
+        /// The stand-on ship keeps course and speed.
+        Rule17AI => "17(a)(i)",
+        /// In extremis the stand-on ship acts too.
+        Rule17B => "17(b)",
+        /// The stand-on ship does not alter to port for a ship on its port side.
+        Rule17C => "17(c)",
+        /// In restricted visibility, no alteration to port for a ship forward of the beam.
+        Rule19DI => "19(d)(i)",
+        /// In restricted visibility, no alteration toward a ship abeam or abaft the beam.
+        Rule19DII => "19(d)(ii)",
+        /// Alterations are large enough to be readily apparent.
+        Rule8B => "8(b)",
+        /// The ships pass at a safe distance.
+        Rule8D => "8(d)",
+    }
 }
 
 /// How two ships meet.
@@ -131,7 +158,7 @@ const NONE: RoleDuties = RoleDuties {
 /// Rules 14(a) and (c): head-on, or already port to port.
 const RULE_14: RoleDuties = RoleDuties {
     rule: Some(14),
-    paragraph: Some("14(a)"),
+    paragraph: Some(Paragraph::Rule14A),
     situation: Some(Situation::HeadOn),
     keeps_clear: true,
     no_turn_to: Some(Side::Port),
@@ -144,7 +171,7 @@ const RULE_14: RoleDuties = RoleDuties {
 /// Rule 15: keeps out of the way of a crossing ship.
 const RULE_15: RoleDuties = RoleDuties {
     rule: Some(15),
-    paragraph: Some("15"),
+    paragraph: Some(Paragraph::Rule15),
     situation: Some(Situation::Crossing),
     keeps_clear: true,
     crossing_ahead_counts: true,
@@ -156,7 +183,7 @@ const RULE_19: RoleDuties = RoleDuties {
     rule: Some(19),
     situation: Some(Situation::NotInSight),
     keeps_clear: true,
-    alteration_monitor: Some("R5"),
+    alteration_monitor: Some(Monitor::Overtaking),
     ..NONE
 };
 
@@ -166,7 +193,7 @@ impl Role {
         match self {
             Self::HeadOn => RoleDuties {
                 first_turn_to: Some(Side::Starboard),
-                alteration_monitor: Some("R4"),
+                alteration_monitor: Some(Monitor::HeadOn),
                 ..RULE_14
             },
             Self::PortToPort => RULE_14,
@@ -175,20 +202,20 @@ impl Role {
                 no_turn_to: Some(Side::Port),
                 crossing_ahead: CrossingAhead::Forbidden,
                 closed_side: ClosedSide::Ahead,
-                alteration_monitor: Some("R3"),
+                alteration_monitor: Some(Monitor::Crossing),
                 ..RULE_15
             },
             Self::BothGiveWay => RULE_15,
             Self::Overtaking => RoleDuties {
                 rule: Some(13),
-                paragraph: Some("13"),
+                paragraph: Some(Paragraph::Rule13),
                 situation: Some(Situation::Overtaking),
                 keeps_clear: true,
                 may_speed_up: true,
                 crossing_ahead: CrossingAhead::Far,
                 crossing_ahead_counts: true,
                 closed_side: ClosedSide::AcrossWake,
-                alteration_monitor: Some("R5"),
+                alteration_monitor: Some(Monitor::Overtaking),
                 ..NONE
             },
             Self::Overtaken => RoleDuties {
@@ -200,7 +227,7 @@ impl Role {
             },
             Self::StandOn => RoleDuties {
                 rule: Some(17),
-                paragraph: Some("17(c)"),
+                paragraph: Some(Paragraph::Rule17C),
                 situation: Some(Situation::Crossing),
                 stands_on: true,
                 no_turn_to: Some(Side::Port),
@@ -208,20 +235,20 @@ impl Role {
                 ..NONE
             },
             Self::Rule19Forward => RoleDuties {
-                paragraph: Some("19(d)(i)"),
+                paragraph: Some(Paragraph::Rule19DI),
                 first_turn_to: Some(Side::Starboard),
                 no_turn_to: Some(Side::Port),
                 no_heading_to: Some(Side::Port),
                 ..RULE_19
             },
             Self::Rule19Starboard => RoleDuties {
-                paragraph: Some("19(d)(ii)"),
+                paragraph: Some(Paragraph::Rule19DII),
                 no_turn_to: Some(Side::Starboard),
                 no_heading_to: Some(Side::Starboard),
                 ..RULE_19
             },
             Self::Rule19Port => RoleDuties {
-                paragraph: Some("19(d)(ii)"),
+                paragraph: Some(Paragraph::Rule19DII),
                 no_turn_to: Some(Side::Port),
                 no_heading_to: Some(Side::Port),
                 ..RULE_19

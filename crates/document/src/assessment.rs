@@ -4,13 +4,24 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::targets::sets::InitialSetDocument;
+use searoom_model::target::Representation;
+
+searoom_geometry::words! {
+    /// Sets that are assessed.
+    pub enum AssessedSets {
+        /// The hard sets.
+        Hard => "hard",
+        /// The sets with the ship domains.
+        Domains => "domains",
+    }
+}
 
 /// Results of `assess`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AssessmentDocument {
     pub scenario: String,
     pub horizon_s: f64,
-    pub sets: String,
+    pub sets: AssessedSets,
     pub targets: Vec<TargetSectionsDocument>,
     pub points: Vec<PointDocument>,
     pub hold_course: HoldCourseDocument,
@@ -22,7 +33,7 @@ pub struct AssessmentDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetSectionsDocument {
     pub name: String,
-    pub representation: String,
+    pub representation: Representation,
     pub sections: Vec<SectionDocument>,
 }
 

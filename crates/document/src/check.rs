@@ -47,6 +47,16 @@ impl FaultDocument {
     }
 }
 
+searoom_geometry::words! {
+    /// The state of a readable recording.
+    pub enum Checksum {
+        /// Every byte is as Searoom wrote it.
+        Valid => "valid",
+        /// Another program wrote the recording again, in other bytes: no checksum covers them.
+        Gone => "gone",
+    }
+}
+
 /// Contents of a recording. The values of its documents are as they were written.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct InspectionDocument {
@@ -54,8 +64,7 @@ pub struct InspectionDocument {
     pub bytes: u64,
     pub application: &'static str,
     pub rerun_version: Option<String>,
-    /// `"valid"`, or `"gone"` where another program wrote the recording again.
-    pub checksum: &'static str,
+    pub checksum: Checksum,
     /// Fields from the plan document; null without one.
     #[schemars(with = "Option<String>")]
     pub scenario: Value,

@@ -7,6 +7,8 @@ use super::parts::{
     CostDocument, LowerBoundDocument, PositionDocument, SearchStatsDocument, TimingDocument,
 };
 use super::plan::departure::Departure;
+use searoom_evaluation::CandidateOutcome;
+use searoom_model::ObjectiveKind;
 
 /// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,10 +29,11 @@ pub struct ScenarioComparisonDocument {
 /// Result of one candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EntryDocument {
+    /// Not an enum: the label of any planner, with its search and what made the plan.
     pub method: String,
     pub max_risk: f64,
-    pub objective: Option<String>,
-    pub outcome: String,
+    pub objective: Option<ObjectiveKind>,
+    pub outcome: CandidateOutcome,
     pub verdict: String,
     pub reason: Option<String>,
     pub verified: bool,
@@ -42,6 +45,8 @@ pub struct EntryDocument {
     pub departure: Option<Departure>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<HeldVelocityDocument>,
+    /// Words of [`Paragraph`](searoom_colregs::Paragraph) and
+    /// [`Monitor`](searoom_colregs::compliance::Monitor).
     pub breaks: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collision: Option<CollisionDocument>,

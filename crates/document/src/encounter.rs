@@ -3,21 +3,24 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value};
 
-use searoom_colregs::compliance::{ComplianceReport, Measure, MonitorVerdict};
-use searoom_geometry::frame::deg_from_radians;
+use searoom_colregs::compliance::{ComplianceReport, Measure, Monitor, MonitorVerdict};
+use searoom_colregs::{Paragraph, Role};
+use searoom_geometry::frame::{Side, deg_from_radians};
 
 /// Encounter with a target. Without a plan, its figures are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EncounterDocument {
     pub target: String,
-    pub role: String,
+    pub role: Role,
     pub dcpa_m: Option<f64>,
     pub tcpa_s: Option<f64>,
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
-    pub passing_side: Option<String>,
+    pub passing_side: Option<Side>,
     #[serde(default)]
     pub crosses_astern: Option<bool>,
     pub max_risk: Option<f64>,
@@ -26,14 +29,28 @@ pub struct EncounterDocument {
     /// own ship where it lies. Absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub met_at_rest_s: Option<f64>,
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        flatten,
+        deserialize_with = "conduct",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub conduct: Option<ConductDocument>,
+}
+
+/// Reads the conduct where a key of it is present. serde alone would take a wrong word for none.
+fn conduct<'de, D: Deserializer<'de>>(from: D) -> Result<Option<ConductDocument>, D::Error> {
+    let keys = Map::deserialize(from)?;
+    let has_conduct = ["roles", "scores", "violations", "monitors"]
+        .iter()
+        .any(|key| keys.contains_key(*key));
+    let conduct = || serde_path_to_error::deserialize(Value::from(keys)).map_err(D::Error::custom);
+    has_conduct.then(conduct).transpose()
 }
 
 /// Role of own ship and its time interval along the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RoleDocument {
-    pub role: String,
+    pub role: Role,
     pub from_s: f64,
     pub until_s: f64,
 }
@@ -41,7 +58,7 @@ pub struct RoleDocument {
 /// Rule violation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RuleViolationDocument {
-    pub rule: String,
+    pub rule: Paragraph,
     pub what: String,
     pub t_s: f64,
 }
@@ -49,10 +66,10 @@ pub struct RuleViolationDocument {
 /// Verdict of a compliance monitor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MonitorDocument {
-    pub monitor: String,
-    pub verdict: String,
+    pub monitor: Monitor,
+    pub verdict: MonitorVerdict,
     pub robustness: Option<f64>,
-    pub unit: String,
+    pub unit: Measure,
     pub t_s: Option<f64>,
 }
 
@@ -80,7 +97,7 @@ pub struct ManoeuvreDocument {
 
 /// The rules and monitors that a plan breaks toward any target, sorted, each once. `None` where
 /// nothing is judged: without a plan, and without a target that is a ship.
-pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
+pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&'static str>> {
     let judged = || encounters.iter().filter_map(|e| e.conduct.as_ref());
     judged().next()?;
     let broken: BTreeSet<&str> = judged().flat_map(conduct_breaks).collect();
@@ -88,11 +105,11 @@ pub fn breaks(encounters: &[EncounterDocument]) -> Option<Vec<&str>> {
 }
 
 /// The rules and monitors that own ship breaks toward one target, sorted, each once.
-pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&str> {
+pub fn conduct_breaks(conduct: &ConductDocument) -> Vec<&'static str> {
     let violated = conduct.monitors.iter();
-    let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated.word());
-    let rules = conduct.violations.iter().map(|v| v.rule.as_str());
-    let broken = rules.chain(violated.map(|m| m.monitor.as_str()));
+    let violated = violated.filter(|m| m.verdict == MonitorVerdict::Violated);
+    let rules = conduct.violations.iter().map(|v| v.rule.word());
+    let broken = rules.chain(violated.map(|m| m.monitor.word()));
     let broken: BTreeSet<&str> = broken.collect();
     broken.into_iter().collect()
 }
@@ -101,7 +118,7 @@ impl ConductDocument {
     /// Converts a compliance report; angles are in degrees.
     pub fn of(conduct: &ComplianceReport) -> Self {
         let roles = conduct.roles.iter().map(|interval| RoleDocument {
-            role: interval.role.word().to_owned(),
+            role: interval.role,
             from_s: interval.from,
             until_s: interval.until,
         });
@@ -109,21 +126,20 @@ impl ConductDocument {
             .violations
             .iter()
             .map(|violation| RuleViolationDocument {
-                rule: violation.rule.to_owned(),
+                rule: violation.rule,
                 what: violation.what.clone(),
                 t_s: violation.time,
             });
         let monitors = conduct.monitors.iter().map(|finding| {
-            let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {
-                Measure::Distance => ("m", |metres| metres),
-                Measure::Angle => ("deg", deg_from_radians),
-                Measure::Time => ("s", |seconds| seconds),
+            let scale = match finding.measure {
+                Measure::Angle => deg_from_radians,
+                Measure::Distance | Measure::Time => |same: f64| same,
             };
             MonitorDocument {
-                monitor: finding.monitor.to_owned(),
-                verdict: finding.verdict.word().to_owned(),
+                monitor: finding.monitor,
+                verdict: finding.verdict,
                 robustness: finding.robustness.map(scale).filter(|r| r.is_finite()),
-                unit: unit.to_owned(),
+                unit: finding.measure,
                 t_s: finding.time,
             }
         });

@@ -42,6 +42,7 @@ pub use plan::motions::{PlannedLeg, STILL_MPS, is_same_motion};
 pub use plan::path_time::*;
 pub use plan::phases::*;
 pub use plan::*;
+pub use searoom_evaluation::{CandidateOutcome, PlanOutcome};
 pub use simulation::*;
 pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument, vertices};
@@ -157,7 +158,55 @@ impl Formatter for Rows {
 
 #[cfg(test)]
 mod tests {
-    use super::json;
+    use super::{SCHEMAS, json};
+
+    /// The words that the schema of a document lists for a type.
+    fn words(document: &str, kind: &str) -> String {
+        let (_, make) = SCHEMAS
+            .iter()
+            .find(|(name, _)| *name == document)
+            .expect(document);
+        let schema = make().to_value();
+        let each = schema["$defs"][kind]["oneOf"]
+            .as_array()
+            .expect(kind)
+            .iter();
+        let each = each.map(|word| word["const"].as_str().expect("a word"));
+        each.collect::<Vec<_>>().join(", ")
+    }
+
+    #[test]
+    fn schemas_list_the_words() {
+        for (document, kind, expected) in [
+            (
+                "plan",
+                "PlanOutcome",
+                "solved, relaxed, infeasible, deadline",
+            ),
+            ("plan", "SearchKind", "a-star, dijkstra, thorough"),
+            (
+                "plan",
+                "RelaxationKind",
+                "compliance, domain, risk, arrival",
+            ),
+            ("plan", "Measure", "m, deg, s"),
+            (
+                "compare",
+                "CandidateOutcome",
+                "solved, relaxed, infeasible, deadline, clear, collides",
+            ),
+            ("simulate", "SensorType", "exact, ais, radar"),
+            ("lint", "Matters", "meets, clear, never"),
+            ("assess", "AssessedSets", "hard, domains"),
+            ("inspect", "Checksum", "valid, gone"),
+        ] {
+            assert_eq!(words(document, kind), expected, "{document}");
+        }
+        let plan = (SCHEMAS[0].1)().to_value();
+        assert_eq!(plan["properties"]["outcome"]["$ref"], "#/$defs/PlanOutcome");
+        let about = &plan["$defs"]["PlanOutcome"]["oneOf"][0]["description"];
+        assert_eq!(about, "A plan that satisfies the whole request.");
+    }
 
     #[test]
     fn inner_arrays_are_on_one_line() {

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use searoom_colregs::Role;
+
 /// Findings for many scenarios, without planning.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LintDocument {
@@ -21,15 +23,27 @@ pub struct LintScenarioDocument {
     pub notes: Vec<String>,
 }
 
+searoom_geometry::words! {
+    /// Whether a target concerns own ship.
+    pub enum Matters {
+        /// On the desired trajectory, own ship enters the hard set of the target.
+        Meets => "meets",
+        /// It does not, and may enter the set on another way.
+        Clear => "clear",
+        /// Own ship cannot enter the set at any of its speeds on any course.
+        Never => "never",
+    }
+}
+
 /// One target on its nominal motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LintTargetDocument {
     pub name: String,
-    pub role: String,
+    pub role: Role,
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
     pub to_set_m: Option<f64>,
-    pub matters: String,
+    pub matters: Matters,
 }
 
 /// Summary counts.

@@ -43,18 +43,18 @@ pub struct TargetMemoryDocument {
 /// A role that own ship has had since before the plan, and both ships when it began.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KnownRoleDocument {
-    pub role: String,
+    pub role: Role,
     pub own_ship: StateDocument,
     pub target: StateDocument,
 }
 
 impl KnownRoleDocument {
-    /// The role, with times that count from `elapsed` seconds later; `None` for an unknown name.
+    /// The role, with times that count from `elapsed` seconds later; `None` without a rule.
     pub fn risk(&self, elapsed: f64) -> Option<Risk> {
-        let (_, role) = Role::with_rule().find(|(word, _)| *word == self.role)?;
+        self.role.rule()?;
         let (time, own) = self.own_ship.steady(elapsed);
         Some(Risk {
-            role,
+            role: self.role,
             time,
             own,
             target: self.target.steady(elapsed).1,

@@ -67,22 +67,55 @@ pub struct MissionDocument {
     pub alternatives: Vec<Vec<PositionDocument>>,
 }
 
+searoom_geometry::words! {
+    /// Requirement that a plan gives up.
+    pub enum RelaxationKind {
+        /// The rules.
+        Compliance => "compliance",
+        /// The ship domain of a target, reduced toward its hard set.
+        Domain => "domain",
+        /// The set of a target, which the plan enters.
+        Risk => "risk",
+        /// The arrival.
+        Arrival => "arrival",
+    }
+}
+
+searoom_geometry::words! {
+    /// Unit of an amount.
+    pub enum AmountUnit {
+        /// Metres.
+        Metres => "m",
+        /// Fraction.
+        One => "1",
+    }
+}
+
 /// Relaxation of one constraint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RelaxationDocument {
-    pub kind: String,
+    pub kind: RelaxationKind,
     pub target: String,
     pub amount: f64,
+    /// Absent in an old document.
     #[serde(default)]
-    pub unit: String,
+    pub unit: Option<AmountUnit>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
+}
+
+searoom_geometry::words! {
+    /// Why a plan has an escape.
+    pub enum EscapePolicy {
+        /// Own ship keeps course and speed, and leads out of every set from when it may act.
+        StandOnHold => "stand-on-hold",
+    }
 }
 
 /// Escape of a stand-on ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EscapeDocument {
-    pub policy: String,
+    pub policy: EscapePolicy,
     pub held_until_s: f64,
     pub first_segment: usize,
     pub turn_deg: f64,

@@ -23,6 +23,8 @@ use super::parts::{
 };
 use super::targets::TargetDocument;
 use departure::Departure;
+use searoom_evaluation::PlanOutcome;
+use searoom_model::{Compliance, ObjectiveKind, SearchKind};
 
 /// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -30,31 +32,23 @@ pub const PLAN_FORMAT: &str = "searoom-plan/1";
 /// Maximum size of a plan document in mebibytes; one with a hundred targets needs less than 1 MiB.
 pub const PLAN_MEBIBYTES: u64 = 64;
 
-/// Names that `planner` of a document may have.
-pub const PLANNER_NAMES: [&str; 3] = ["space-time", "path-time", "optimal-control"];
-
-/// Words that `outcome` of a document with a plan, or without one, may have.
-pub const OUTCOMES: [&str; 4] = [SOLVED, RELAXED, INFEASIBLE, DEADLINE];
-
-pub(crate) const SOLVED: &str = "solved";
-pub(crate) const RELAXED: &str = "relaxed";
-pub(crate) const INFEASIBLE: &str = "infeasible";
-pub(crate) const DEADLINE: &str = "deadline";
-
 /// Self-contained plan: everything needed to verify it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,
+    /// Not an enum: a user of the library may plan with a planner of another name, which `verify`
+    /// rejects.
     pub planner: String,
-    pub search: String,
+    pub search: SearchKind,
     /// Method that made the plan; null without one, absent in an old document.
     #[serde(default)]
     pub method: Option<PlanMethod>,
-    pub compliance: String,
+    pub compliance: Compliance,
+    /// Not an enum: a file may hold thresholds of another name.
     #[serde(default)]
     pub thresholds: String,
-    pub objective: String,
+    pub objective: ObjectiveKind,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
@@ -69,8 +63,8 @@ pub struct PlanDocument {
     /// Number of the map's pieces that `land` holds, where it is an outer approximation of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub land_outer_of: Option<usize>,
-    pub outcome: String,
-    /// Empty in an old document.
+    pub outcome: PlanOutcome,
+    /// The outcome for the reader, with the risk where one is taken. Empty in an old document.
     #[serde(default)]
     pub verdict: String,
     pub reason: Option<String>,

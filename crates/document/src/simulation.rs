@@ -9,19 +9,17 @@ use serde::{Deserialize, Serialize};
 
 use super::encounter::ConductDocument;
 use super::memory::StateDocument;
-use super::parts::{PositionDocument, SegmentDocument};
+use super::parts::{PositionDocument, RelaxationKind, SegmentDocument};
 use super::plan::departure::SailedManoeuvreDocument;
 use searoom_colregs::SteadyShip;
 use searoom_geometry::ConvexPolygon;
 use searoom_geometry::frame::{Pose, Vector, clockwise_deg, radians_from_deg};
 use searoom_model::trajectory::GroundSegment;
 use searoom_model::vessel::Hull;
+use searoom_model::{BehaviourKind, SensorType};
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
-
-/// The alarm of a ship that is farther off its plan than its tracking margin.
-pub const BEYOND_MARGIN: &str = "beyond the tracking margin";
 
 /// An alarm goes on where it is raised again within this many times between plans.
 const GOES_ON: f64 = 1.5;
@@ -72,7 +70,7 @@ impl SimulationDocument {
         let mut all: Vec<LastingAlarm> = Vec::new();
         for alarm in &self.alarms {
             let same = |a: &&mut LastingAlarm| {
-                (&a.first.alarm, &a.first.target) == (&alarm.alarm, &alarm.target)
+                (a.first.alarm, &a.first.target) == (alarm.alarm, &alarm.target)
                     && alarm.t_s - a.until_s <= goes_on
             };
             match all.iter_mut().rev().find(same) {
@@ -186,11 +184,12 @@ pub struct SimulationSettingsDocument {
     pub measured_delay: bool,
     pub duration_s: f64,
     pub seed: u64,
+    /// Not an enum: a kinematic model or one of a ship under forces.
     pub vessel: String,
     pub current_mps: [f64; 2],
     pub current_std_mps: f64,
     pub current_known: bool,
-    pub sensor: String,
+    pub sensor: SensorType,
     /// Distance of the centres beyond which no target is seen; absent without a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor_range_m: Option<f64>,
@@ -205,7 +204,7 @@ pub struct SimulationSettingsDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulatedTargetDocument {
     pub name: String,
-    pub behaviour: String,
+    pub behaviour: BehaviourKind,
     /// Of an explicit set, its extent east and north.
     pub length_m: f64,
     pub beam_m: f64,
@@ -250,7 +249,7 @@ pub struct SailedDocument {
     /// ends before the last waypoint.
     pub cost_m2: f64,
     pub first_plan_cost_m2: Option<f64>,
-    /// Rules and monitors that the sailed motion breaks toward any target, each once.
+    /// Words of the rules and monitors that the sailed motion breaks toward any target, each once.
     pub breaks: Vec<String>,
     pub turns: usize,
     pub speed_changes: usize,
@@ -271,11 +270,39 @@ pub struct SailedDocument {
     pub within_tracking_margin: bool,
 }
 
+searoom_geometry::words! {
+    /// What a navigator would be called for.
+    pub enum Alarm {
+        /// No measurement of a target for too long.
+        Stale => "stale",
+        /// A target has a velocity outside the set that the last plan assumed.
+        AnotherVelocity => "another velocity than assumed",
+        /// A target is where it could not be by the last plan.
+        AnotherPlace => "at another place than assumed",
+        /// A target leaves the set of the plan that own ship begins to follow.
+        OutsideSet => "outside the set of the plan",
+        /// A cycle yields no plan.
+        NoPlan => "no plan",
+        /// A plan took longer than the delay.
+        PlanTooLate => "plan too late",
+        /// A plan is not safe.
+        UnsafePlan => "unsafe plan",
+        /// The plan of a target that plans was cut by its deadline.
+        PlanCut => "plan cut by its deadline",
+        /// Own ship cannot make way against the current.
+        Overpowered => "current faster than own ship",
+        /// Own ship is farther off its plan than its tracking margin.
+        BeyondMargin => "beyond the tracking margin",
+        /// Own ship is so far off that the last plan is not remembered.
+        FarOff => "far off the plan",
+    }
+}
+
 /// Something that a navigator would be called for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AlarmDocument {
     pub t_s: f64,
-    pub alarm: String,
+    pub alarm: Alarm,
     pub target: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -306,7 +333,7 @@ pub struct ReplanDocument {
     /// Time of the data, and from which the plan holds.
     pub t_s: f64,
     pub start_t_s: f64,
-    /// Why it was made then.
+    /// Why it was made then, with the target of an event.
     pub reason: String,
     pub verdict: String,
     pub safe: bool,
@@ -317,7 +344,7 @@ pub struct ReplanDocument {
     #[serde(default)]
     pub left_out_m: f64,
     pub cost_m2: Option<f64>,
-    pub relaxations: Vec<String>,
+    pub relaxations: Vec<RelaxationKind>,
     /// First turn of the manoeuvre that is under way or planned, positive to starboard.
     pub turn_deg: Option<f64>,
     pub off_plan_m: f64,

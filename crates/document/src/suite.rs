@@ -7,19 +7,28 @@ use super::encounter::{EncounterDocument, breaks};
 use super::parts::{
     CostDocument, PlanMethod, RelaxationDocument, SearchStatsDocument, TimingDocument,
 };
+use super::plan::PlanDocument;
 use super::plan::departure::Departure;
-use super::plan::{DEADLINE, INFEASIBLE, PlanDocument, RELAXED, SOLVED};
-use searoom_evaluation::{NOT_BY_THE_RULES, outcome_word};
+use searoom_evaluation::{NOT_BY_THE_RULES, PlanOutcome};
 use searoom_input::text::counted;
 
-/// Outcome of a file that is not a scenario.
-pub const UNREADABLE: &str = "unreadable";
+searoom_evaluation::outcomes! {
+    /// How a run ended, or why there is none.
+    SuiteOutcome from PlanOutcome {
+        /// A file that is not a scenario.
+        Unreadable => "unreadable",
+        /// A run that ended in an internal fault.
+        InternalFault => "internal-fault",
+        /// A valid scenario that the requested planner or rules do not support.
+        NotApplicable => "not-applicable",
+    }
+}
 
-/// Outcome of a run that ended in an internal fault.
-pub const INTERNAL_FAULT: &str = "internal-fault";
-
-/// Outcome of a valid scenario that the requested planner or rules do not support.
-pub const NOT_APPLICABLE: &str = "not-applicable";
+impl Default for SuiteOutcome {
+    fn default() -> Self {
+        Self::Unreadable
+    }
+}
 
 /// Many runs in one document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,8 +37,9 @@ pub struct SuiteDocument {
     pub summary: SuiteSummaryDocument,
 }
 
-/// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
-/// `error`, or [`NOT_APPLICABLE`] with a `reason`. Keys without meaning are null.
+/// One run of a suite. Without a run, `outcome` is [`SuiteOutcome::Unreadable`] or
+/// [`SuiteOutcome::InternalFault`] with an `error`, or [`SuiteOutcome::NotApplicable`] with a
+/// `reason`. Keys without meaning are null.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteRunDocument {
     pub file: String,
@@ -38,7 +48,7 @@ pub struct SuiteRunDocument {
     /// Method that made the plan; null without one.
     #[serde(default)]
     pub method: Option<PlanMethod>,
-    pub outcome: String,
+    pub outcome: SuiteOutcome,
     pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -83,20 +93,20 @@ impl SuiteDocument {
     /// Builds the document of these runs with a summary.
     pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
         let count = |is: &dyn Fn(&SuiteRunDocument) -> bool| runs.iter().filter(|r| is(r)).count();
-        let ended = |word: &str| count(&|run| run.outcome == word);
+        let ended = |outcome: SuiteOutcome| count(&|run| run.outcome == outcome);
         let summary = SuiteSummaryDocument {
             scenarios: runs.len(),
-            solved: ended(SOLVED),
-            relaxed: ended(RELAXED),
+            solved: ended(SuiteOutcome::Solved),
+            relaxed: ended(SuiteOutcome::Relaxed),
             not_by_the_rules: count(&|run| run.verdict == NOT_BY_THE_RULES),
-            infeasible: ended(INFEASIBLE),
-            deadline: ended(DEADLINE),
-            not_applicable: ended(NOT_APPLICABLE),
-            unreadable: ended(UNREADABLE),
-            internal_faults: ended(INTERNAL_FAULT),
+            infeasible: ended(SuiteOutcome::Infeasible),
+            deadline: ended(SuiteOutcome::Deadline),
+            not_applicable: ended(SuiteOutcome::NotApplicable),
+            unreadable: ended(SuiteOutcome::Unreadable),
+            internal_faults: ended(SuiteOutcome::InternalFault),
             verified: count(&|run| run.verified),
             safe: count(&|run| run.safe),
-            not_safe: count(&|run| run.outcome == RELAXED && !run.safe),
+            not_safe: count(&|run| run.outcome == SuiteOutcome::Relaxed && !run.safe),
             breaks_rules: count(&|run| {
                 breaks(&run.encounters).is_some_and(|broken| !broken.is_empty())
             }),
@@ -119,7 +129,7 @@ impl std::fmt::Display for SuiteSummaryDocument {
             (self.infeasible, "infeasible"),
             (self.deadline, "out of time"),
             (self.not_applicable, "not applicable"),
-            (self.unreadable, UNREADABLE),
+            (self.unreadable, SuiteOutcome::Unreadable.word()),
             (self.internal_faults, "failed inside"),
         ] {
             if count > 0 {
@@ -141,7 +151,7 @@ impl SuiteRunDocument {
             file,
             scenario: Some(plan.scenario.clone()),
             planner: Some(plan.planner.clone()),
-            outcome: plan.outcome.clone(),
+            outcome: plan.outcome.into(),
             verdict: plan.verdict.clone(),
             error: None,
             reason: plan.reason.clone(),
@@ -166,16 +176,16 @@ impl SuiteRunDocument {
             scenario: Some(title),
             error: None,
             reason: Some(reason),
-            ..Self::failed(file, NOT_APPLICABLE, String::new())
+            ..Self::failed(file, SuiteOutcome::NotApplicable, String::new())
         }
     }
 
     /// Builds the entry of a file that yields no run.
-    pub fn failed(file: String, outcome: &str, error: String) -> Self {
+    pub fn failed(file: String, outcome: SuiteOutcome, error: String) -> Self {
         Self {
             file,
-            outcome: outcome.to_owned(),
-            verdict: outcome_word(outcome, None, 0.0),
+            outcome,
+            verdict: outcome.word().replace('-', " "),
             error: Some(error),
             ..Self::default()
         }

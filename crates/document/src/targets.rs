@@ -11,7 +11,9 @@ use searoom_geometry::frame::{
 };
 use searoom_geometry::{ConvexPolygon, ConvexSet};
 use searoom_input::Fault;
-use searoom_model::target::{DomainKind, KnownLeg, ShipTrack, Target, TimedVelocitySet};
+use searoom_model::target::{
+    DomainKind, KnownLeg, Representation, ShipTrack, Target, TimedVelocitySet,
+};
 use searoom_model::vessel::Hull;
 use sets::{InitialSetDocument, VelocitySetDocument};
 
@@ -19,7 +21,7 @@ use sets::{InitialSetDocument, VelocitySetDocument};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetDocument {
     pub name: String,
-    pub representation: String,
+    pub representation: Representation,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship: Option<ShipDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -87,7 +89,7 @@ impl TargetDocument {
         let sets = target.sets();
         Self {
             name: target.name.clone(),
-            representation: target.representation.word().to_owned(),
+            representation: target.representation,
             ship: target.ship().map(ship),
             initial_set: sets.map(|sets| (&sets.initial).into()),
             velocity_sets: sets

@@ -4,10 +4,29 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::ViolationDocument;
+use searoom_evaluation::PlanOutcome;
 
-const UNREADABLE: &str = "unreadable";
-/// Outcome of a document whose check exceeded the time limit.
-const UNPROVEN: &str = "unproven";
+searoom_evaluation::outcomes! {
+    /// Outcome of a checked plan or simulation, or why there is none.
+    VerifiedOutcome from PlanOutcome {
+        /// A simulation in which hulls met.
+        Contact => "contact",
+        /// A simulation without a contact, where every plan was safe and in time.
+        Safe => "no contact, safe",
+        /// A simulation without a contact, with a plan that was not safe or late.
+        NotSafe => "no contact, not safe",
+        /// A file that is no document.
+        Unreadable => "unreadable",
+        /// A document whose check exceeded the time limit.
+        Unproven => "unproven",
+    }
+}
+
+impl Default for VerifiedOutcome {
+    fn default() -> Self {
+        Self::Unreadable
+    }
+}
 
 /// All requested documents, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,7 +42,7 @@ pub struct VerifiedPlanDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
-    pub outcome: String,
+    pub outcome: VerifiedOutcome,
     pub error: Option<String>,
     pub verified: bool,
     pub safe: bool,
@@ -100,7 +119,7 @@ impl VerifiedPlanDocument {
     /// Builds the entry of a file whose check exceeded its time limit.
     pub fn unproven(file: String, error: String) -> Self {
         Self {
-            outcome: UNPROVEN.to_owned(),
+            outcome: VerifiedOutcome::Unproven,
             ..Self::unreadable(file, error)
         }
     }
@@ -109,7 +128,7 @@ impl VerifiedPlanDocument {
     pub fn unreadable(file: String, error: String) -> Self {
         Self {
             file,
-            outcome: UNREADABLE.to_owned(),
+            outcome: VerifiedOutcome::Unreadable,
             error: Some(error),
             ..Self::default()
         }

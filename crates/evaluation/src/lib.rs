@@ -40,7 +40,10 @@ pub use sets::moving_ellipse::shape_rounding;
 pub use sets::moving_slabs::MovingSlabs;
 pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};
-pub use words::{NOT_BY_THE_RULES, facts, outcome_word, skipped_waypoints, without_rules};
+pub use words::{
+    CandidateOutcome, NOT_BY_THE_RULES, PlanOutcome, facts, outcome_word, skipped_waypoints,
+    without_rules,
+};
 pub use words::{risk_figure, said_risk};
 
 use land::LandBodies;

@@ -2,23 +2,81 @@
 
 use super::Safety;
 
+/// Defines outcomes that begin with those of a plan.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! outcomes {
+    (
+        $(#[doc = $about:literal])+
+        $kind:ident $(from $plan:ident)? {
+            $($(#[doc = $doc:literal])+ $value:ident => $word:literal,)*
+        }
+    ) => {
+        searoom_geometry::words! {
+            $(#[doc = $about])+
+            pub enum $kind {
+                /// A plan that satisfies the whole request.
+                Solved => "solved",
+                /// A plan that gives up a requirement.
+                Relaxed => "relaxed",
+                /// No plan.
+                Infeasible => "infeasible",
+                /// The time budget ran out, with a plan or without.
+                Deadline => "deadline",
+                $($(#[doc = $doc])+ $value => $word,)*
+            }
+        }
+
+        $(impl From<$plan> for $kind {
+            fn from(outcome: $plan) -> Self {
+                match outcome {
+                    $plan::Solved => Self::Solved,
+                    $plan::Relaxed => Self::Relaxed,
+                    $plan::Infeasible => Self::Infeasible,
+                    $plan::Deadline => Self::Deadline,
+                }
+            }
+        })?
+    };
+}
+
+outcomes! {
+    /// How a run ended.
+    PlanOutcome {}
+}
+
+outcomes! {
+    /// How a run ended, or what a baseline without a planner does.
+    CandidateOutcome from PlanOutcome {
+        /// A baseline that enters no set.
+        Clear => "clear",
+        /// A baseline that enters a set.
+        Collides => "collides",
+    }
+}
+
 /// Returns the displayed word for an outcome, according to the safety of the motion.
 ///
-/// `outcome` is the word in the documents, `safety` the safety of the motion (`None` without a
-/// motion), and `risk` the largest risk taken. The outcome of a baseline may also be `"clear"`, or
-/// `"collides"` where it enters a set.
-pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String {
+/// `safety` is that of the motion (`None` without a motion), and `risk` the largest risk taken.
+pub fn outcome_word(
+    outcome: impl Into<CandidateOutcome>,
+    safety: Option<Safety>,
+    risk: f64,
+) -> String {
+    let outcome = outcome.into();
     let word = match safety {
         // Sets larger than the hard sets are entered, at a risk above the accepted one.
-        Some(Safety::Safe) if outcome == "collides" => "relaxed".to_owned(),
+        Some(Safety::Safe) if outcome == CandidateOutcome::Collides => {
+            PlanOutcome::Relaxed.to_string()
+        }
         Some(Safety::Collides) => "COLLIDES".to_owned(),
         Some(Safety::Unsafe) => "NOT SAFE".to_owned(),
         Some(Safety::AtRisk) => at_risk(risk),
         Some(Safety::Safe) if risk > 0.0 => at_risk(risk),
-        Some(Safety::Safe) | None => return outcome.replace('-', " "),
+        Some(Safety::Safe) | None => return outcome.to_string(),
     };
     match outcome {
-        "deadline" => format!("{word}, {outcome}"),
+        CandidateOutcome::Deadline => format!("{word}, {outcome}"),
         _ => word,
     }
 }
@@ -43,7 +101,7 @@ pub const NOT_BY_THE_RULES: &str = "not by the rules";
 /// The displayed word of a plan that may have given up the rules. Only `"relaxed"` says so little
 /// that it is replaced.
 pub fn without_rules(word: String, gives_up_rules: bool) -> String {
-    if gives_up_rules && word == "relaxed" {
+    if gives_up_rules && word == PlanOutcome::Relaxed.word() {
         NOT_BY_THE_RULES.to_owned()
     } else {
         word
@@ -84,12 +142,13 @@ pub fn facts(verified: bool, safe: bool) -> &'static str {
 
 #[test]
 fn the_word_of_an_outcome_says_the_worst_first() {
+    use PlanOutcome::{Deadline, Relaxed};
     for (outcome, safety, risk, word) in [
-        ("relaxed", Some(Safety::Collides), 1.0, "COLLIDES"),
-        ("relaxed", Some(Safety::AtRisk), 0.2, "at risk 0.20"),
-        ("relaxed", Some(Safety::Safe), 0.0, "relaxed"),
-        ("deadline", Some(Safety::Unsafe), 1.0, "NOT SAFE, deadline"),
-        ("deadline", None, 0.0, "deadline"),
+        (Relaxed, Some(Safety::Collides), 1.0, "COLLIDES"),
+        (Relaxed, Some(Safety::AtRisk), 0.2, "at risk 0.20"),
+        (Relaxed, Some(Safety::Safe), 0.0, "relaxed"),
+        (Deadline, Some(Safety::Unsafe), 1.0, "NOT SAFE, deadline"),
+        (Deadline, None, 0.0, "deadline"),
     ] {
         assert_eq!(outcome_word(outcome, safety, risk), word);
     }

@@ -54,16 +54,14 @@ impl Pose {
     }
 }
 
-/// A side of a ship.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-pub enum Side {
-    /// Left, looking ahead.
-    Port,
-    /// Right, looking ahead.
-    Starboard,
+crate::words! {
+    /// A side of a ship.
+    pub enum Side {
+        /// Left, looking ahead.
+        Port => "port",
+        /// Right, looking ahead.
+        Starboard => "starboard",
+    }
 }
 
 impl Side {
@@ -95,15 +93,6 @@ impl Side {
             std::cmp::Ordering::Less => Some(Self::Starboard),
             std::cmp::Ordering::Equal => None,
         }
-    }
-}
-
-impl std::fmt::Display for Side {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Port => "port",
-            Self::Starboard => "starboard",
-        })
     }
 }
 

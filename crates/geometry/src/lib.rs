@@ -20,7 +20,8 @@ mod parry;
 mod polygon;
 mod simplify;
 pub mod tolerance;
-mod words;
+#[doc(hidden)]
+pub mod words;
 
 pub use boxes::Window;
 pub use boxes::clipped;

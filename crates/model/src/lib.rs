@@ -13,8 +13,12 @@ mod geometry_fixtures;
 mod ship_fixtures;
 
 mod method;
+mod request;
+mod simulated;
 pub mod target;
 pub mod trajectory;
 pub mod vessel;
 
 pub use method::PlanMethod;
+pub use request::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
+pub use simulated::{BehaviourKind, SensorType};

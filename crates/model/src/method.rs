@@ -1,59 +1,40 @@
 //! The method that made a plan.
 
-/// Method that made a plan. The graph search that was asked for need not have run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-pub enum PlanMethod {
-    /// A manoeuvre by the rules of the road: a search of the graph of such manoeuvres.
-    Rules,
-    /// A* on the space-time graph, and the refinement of its plan and of standard manoeuvres.
-    AStar,
-    /// Dijkstra's algorithm on the space-time graph, and the refinement that follows A*.
-    Dijkstra,
-    /// The best of many searches among several targets.
-    Thorough,
-    /// Refinement of the plan of a search against other sets, without a search of its own.
-    WarmStart,
-    /// Hybrid A* over place, course and time, for a wide detour.
-    HybridAStar,
-    /// Search of the path-time graph.
-    PathTimeGraph,
-    /// Optimal control under forces.
-    OptimalControl,
-    /// The remainder of the last plan.
-    Remainder,
-    /// Escape with the least harm from sets that own ship is in.
-    LeastHarm,
-    /// Own ship slows or waits on its way, short of the sets or until ships have passed: dynamic
-    /// programming over length and time, or lower speeds in turn, without a graph.
-    Waiting,
-    /// Own ship lies at the last waypoint, leaves it while sets pass over it, and returns: a grid of
-    /// departures, without a graph.
-    OffStation,
-    /// Own ship stays where it is.
-    Stay,
-    /// A planner of a library user.
-    Other,
+searoom_geometry::words! {
+    /// Method that made a plan. The graph search that was asked for need not have run.
+    pub enum PlanMethod {
+        /// A manoeuvre by the rules of the road: a search of the graph of such manoeuvres.
+        Rules => "rules",
+        /// A* on the space-time graph, and the refinement of its plan and of standard manoeuvres.
+        AStar => "a-star",
+        /// Dijkstra's algorithm on the space-time graph, and the refinement that follows A*.
+        Dijkstra => "dijkstra",
+        /// The best of many searches among several targets.
+        Thorough => "thorough",
+        /// Refinement of the plan of a search against other sets, without a search of its own.
+        WarmStart => "warm-start",
+        /// Hybrid A* over place, course and time, for a wide detour.
+        HybridAStar => "hybrid-a-star",
+        /// Search of the path-time graph.
+        PathTimeGraph => "path-time-graph",
+        /// Optimal control under forces.
+        OptimalControl => "optimal-control",
+        /// The remainder of the last plan.
+        Remainder => "remainder",
+        /// Escape with the least harm from sets that own ship is in.
+        LeastHarm => "least-harm",
+        /// Own ship slows or waits on its way, short of the sets or until ships have passed: dynamic
+        /// programming over length and time, or lower speeds in turn, without a graph.
+        Waiting => "waiting",
+        /// Own ship lies at the last waypoint, leaves it while sets pass over it, and returns: a grid of
+        /// departures, without a graph.
+        OffStation => "off-station",
+        /// Own ship stays where it is.
+        Stay => "stay",
+        /// A planner of a library user.
+        Other => "other",
+    }
 }
-
-searoom_geometry::words!(PlanMethod {
-    Rules => "rules",
-    AStar => "a-star",
-    Dijkstra => "dijkstra",
-    Thorough => "thorough",
-    WarmStart => "warm-start",
-    HybridAStar => "hybrid-a-star",
-    PathTimeGraph => "path-time-graph",
-    OptimalControl => "optimal-control",
-    Remainder => "remainder",
-    LeastHarm => "least-harm",
-    Waiting => "waiting",
-    OffStation => "off-station",
-    Stay => "stay",
-    Other => "other",
-});
 
 impl PlanMethod {
     /// Name in tables, figures and texts.

@@ -459,19 +459,15 @@ pub enum Motion {
     Sets(Uncertainty),
 }
 
-/// Kind of a target's sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Representation {
-    /// Polygons, unchanged.
-    Polytope,
-    /// The smallest ellipses around them.
-    Ellipsoid,
+searoom_geometry::words! {
+    /// Kind of a target's sets.
+    pub enum Representation {
+        /// Polygons, unchanged.
+        Polytope => "polytope",
+        /// The smallest ellipses around them.
+        Ellipsoid => "ellipsoid",
+    }
 }
-
-searoom_geometry::words!(Representation {
-    Polytope => "polytope",
-    Ellipsoid => "ellipsoid",
-});
 
 /// A tracked target.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,8 @@
 //! Interface between planners and the rest of the program: facts and requests.
 
-use super::{NoPlan, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind};
+use super::{
+    NoPlan, ObjectiveKind, Outcome, PLANNERS, Plan, Planned, PlannerSettings, Problem, SearchKind,
+};
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_model::vessel::Hull;
 use searoom_sets::Obstacle;
@@ -122,8 +124,8 @@ pub enum Minimises {
     SpaceTimeError,
     /// Any [`super::Objective`].
     Objective,
-    /// A quantity of its own, with its name in documents.
-    Own(&'static str),
+    /// A quantity of its own.
+    Own(ObjectiveKind),
 }
 
 impl PartialEq for dyn Planner {

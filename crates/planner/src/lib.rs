@@ -28,7 +28,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use no_plan::NoPlan;
 pub use optimal_control::WarmStart;
-pub use searoom_model::PlanMethod;
+pub use searoom_model::{ObjectiveKind, PlanMethod, PlannerKind, SearchKind};
 pub use space_time::SpaceTimeSettings;
 
 use std::time::Duration;
@@ -104,43 +104,6 @@ impl Tidiness {
     }
 }
 
-/// Graph search algorithm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SearchKind {
-    /// A*: best first by cost plus an admissible lower bound of the cost to go.
-    AStar,
-    /// Dijkstra's algorithm: best first by cost.
-    Dijkstra,
-    /// The best of many searches among several targets, some with larger budgets. Ten times as slow.
-    Thorough,
-}
-
-searoom_geometry::words!(SearchKind {
-    AStar => "a-star",
-    Dijkstra => "dijkstra",
-    Thorough => "thorough",
-});
-
-impl SearchKind {
-    /// Name in tables and figures.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::AStar => "A*",
-            Self::Dijkstra => "Dijkstra",
-            Self::Thorough => "thorough",
-        }
-    }
-
-    /// The method of a plan that this search finds on the space-time graph.
-    pub(crate) fn method(self) -> PlanMethod {
-        match self {
-            Self::AStar => PlanMethod::AStar,
-            Self::Dijkstra => PlanMethod::Dijkstra,
-            Self::Thorough => PlanMethod::Thorough,
-        }
-    }
-}
-
 /// Quantity that a planner minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
@@ -158,13 +121,13 @@ pub enum Objective {
 }
 
 impl Objective {
-    /// Name in files.
-    pub fn word(self) -> &'static str {
+    /// Its kind, named in files.
+    pub fn kind(self) -> ObjectiveKind {
         match self {
-            Self::SpaceTimeError => "space-time-error",
-            Self::Time => "time",
-            Self::Length => "length",
-            Self::LengthRisk { .. } => "length-risk",
+            Self::SpaceTimeError => ObjectiveKind::SpaceTimeError,
+            Self::Time => ObjectiveKind::Time,
+            Self::Length => ObjectiveKind::Length,
+            Self::LengthRisk { .. } => ObjectiveKind::LengthRisk,
         }
     }
 

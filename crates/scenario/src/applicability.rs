@@ -19,7 +19,7 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     }
     if planner.minimises != Minimises::Objective && scenario.objective != Objective::SpaceTimeError
     {
-        let found = format!("\"{}\" for the {name} planner", scenario.objective.word());
+        let found = format!("\"{}\" for the {name} planner", scenario.objective.kind());
         let allowed = match planner.minimises {
             Minimises::Own(_) => "nothing: it minimises its own stage cost",
             _ => "\"space-time-error\", or the path-time planner",

@@ -28,6 +28,7 @@ pub use memory::Memory;
 pub use open_water::{open_water, simulation_of, true_motion};
 pub use out_of_reach::{DistantTarget, MOST_WITHOUT_SELECTION, OutOfReach};
 pub use searoom_input::{Fault, InputError as ScenarioError, Remarks};
+pub use searoom_model::{BehaviourKind, Compliance, SensorType};
 pub use simulation::{
     Behaviour, Current, Noise, NotReported, Sensor, SensorKind, SimulatedTarget,
     SimulationSettings, VesselModel,
@@ -52,18 +53,6 @@ use searoom_planner::{Objective, Planner, PlannerSettings, SearchKind, Tidiness}
 /// The JSON schema of a scenario file. It says what the reader accepts, key by key; what one key
 /// says of another is left to the reader.
 pub const SCHEMA: &str = include_str!("../../../docs/schema/scenario.schema.json");
-
-/// Degree to which a plan follows the collision regulations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Compliance {
-    /// Only the hard sets are avoided.
-    None,
-    /// Ship domains are avoided, so that the cheapest plan tends to follow the rules.
-    Shape,
-    /// Ship domains are avoided, and manoeuvres are restricted to readily apparent ones to the
-    /// correct side.
-    Rules,
-}
 
 /// A checked scenario in SI units and the east-north plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -234,20 +223,4 @@ impl Scenario {
 pub fn after(start: DateTime<Utc>, seconds: f64) -> Option<DateTime<Utc>> {
     let milliseconds = (1e3 * seconds).round() as i64;
     start.checked_add_signed(TimeDelta::try_milliseconds(milliseconds)?)
-}
-
-searoom_geometry::words!(Compliance {
-    None => "none",
-    Shape => "shape",
-    Rules => "rules",
-});
-
-impl Compliance {
-    /// True if ship domains are avoided.
-    pub fn shapes(self) -> bool {
-        match self {
-            Self::None => false,
-            Self::Shape | Self::Rules => true,
-        }
-    }
 }

@@ -92,8 +92,8 @@ fn tidiness(table: &mut Table, length: f64) -> (Option<bool>, Tidiness) {
 fn objective(table: &mut Table) -> Option<Objective> {
     use Objective::{Length, SpaceTimeError, Time};
     let weighed = Objective::LengthRisk { weight: 0.0 };
-    let all =
-        [SpaceTimeError, Time, Length, weighed].map(|objective| (objective.word(), objective));
+    let all = [SpaceTimeError, Time, Length, weighed]
+        .map(|objective| (objective.kind().word(), objective));
     let objective = table.choice("objective", &all);
     if objective == Some(weighed) {
         let weight = table.required_number("risk_weight_m", limits::DISTANCE)?;

@@ -6,6 +6,7 @@ use super::plane::Plane;
 use searoom_geometry::frame::{Vector, heading_from_course_deg, radians_from_deg};
 use searoom_input::{Field, Range, Table, every};
 use searoom_model::vessel::Hull;
+use searoom_model::{BehaviourKind, SensorType};
 
 /// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -236,16 +237,16 @@ pub enum Behaviour {
 }
 
 impl Behaviour {
-    /// Its word in files.
-    pub fn word(&self) -> &'static str {
+    /// Its kind, named in files.
+    pub fn kind(&self) -> BehaviourKind {
         match self {
-            Self::Constant => "constant",
-            Self::Random { .. } => "random",
-            Self::Extremes { .. } => "extremes",
-            Self::Pursuit { .. } => "pursuit",
-            Self::Track(_) => "track",
-            Self::GivesWay { .. } => "gives-way",
-            Self::Mutual => "mutual",
+            Self::Constant => BehaviourKind::Constant,
+            Self::Random { .. } => BehaviourKind::Random,
+            Self::Extremes { .. } => BehaviourKind::Extremes,
+            Self::Pursuit { .. } => BehaviourKind::Pursuit,
+            Self::Track(_) => BehaviourKind::Track,
+            Self::GivesWay { .. } => BehaviourKind::GivesWay,
+            Self::Mutual => BehaviourKind::Mutual,
         }
     }
 }
@@ -262,12 +263,12 @@ impl VesselModel {
 }
 
 impl SensorKind {
-    /// Its word in files.
-    pub fn word(self) -> &'static str {
+    /// Its type, named in files.
+    pub fn sensor_type(self) -> SensorType {
         match self {
-            Self::Exact => "exact",
-            Self::Ais { .. } => "ais",
-            Self::Radar => "radar",
+            Self::Exact => SensorType::Exact,
+            Self::Ais { .. } => SensorType::Ais,
+            Self::Radar => SensorType::Radar,
         }
     }
 }
@@ -400,16 +401,15 @@ fn noise(table: &mut Table, standard: Noise) -> Noise {
 }
 
 fn sensor(field: &Field) -> Option<Sensor> {
-    const AIS: SensorKind = SensorKind::Ais { class_a: true };
-    const KINDS: [(&str, SensorKind); 3] = [
-        ("exact", SensorKind::Exact),
-        ("ais", AIS),
-        ("radar", SensorKind::Radar),
-    ];
     let mut table = field.table("a table with the key kind")?;
-    let mut kind = table
+    let mut kind = match table
         .require_first("kind", "\"exact\", \"ais\" or \"radar\"")?
-        .choice(&KINDS)?;
+        .choice(SensorType::WORDS)?
+    {
+        SensorType::Exact => SensorKind::Exact,
+        SensorType::Ais => SensorKind::Ais { class_a: true },
+        SensorType::Radar => SensorKind::Radar,
+    };
     let range = table.number_or("range_m", limits::LENGTH, Sensor::EXACT.range);
     let mut default_hull = Sensor::EXACT.default_hull;
     let (interval, standard) = match kind {
@@ -540,42 +540,40 @@ fn not_reported(field: &Field) -> Option<NotReported> {
 }
 
 fn behaviour(field: &Field, plane: &Plane) -> Option<Behaviour> {
-    type Read = fn(&mut Table, &Plane) -> Option<Behaviour>;
-    const KINDS: [(&str, Read); 7] = [
-        ("constant", |_, _| Some(Behaviour::Constant)),
-        ("random", |table, _| {
-            let (every, factor) = every_and_factor(table);
-            Some(Behaviour::Random { every, factor })
-        }),
-        ("extremes", |table, _| {
-            let (every, factor) = every_and_factor(table);
-            Some(Behaviour::Extremes { every, factor })
-        }),
-        ("pursuit", |table, _| {
+    let mut table = field.table("a table with the key kind")?;
+    let kind = table
+        .require_first("kind", "a behaviour, such as \"constant\"")?
+        .choice(BehaviourKind::WORDS)?;
+    let behaviour = match kind {
+        BehaviourKind::Constant => Behaviour::Constant,
+        BehaviourKind::Random => {
+            let (every, factor) = every_and_factor(&mut table);
+            Behaviour::Random { every, factor }
+        }
+        BehaviourKind::Extremes => {
+            let (every, factor) = every_and_factor(&mut table);
+            Behaviour::Extremes { every, factor }
+        }
+        BehaviourKind::Pursuit => {
             let every = table.number_or("every_s", TIME_CONSTANT, 5.0);
-            Some(Behaviour::Pursuit { every })
-        }),
-        ("track", |table, plane| {
+            Behaviour::Pursuit { every }
+        }
+        BehaviourKind::Track => {
             let field = table.require_first("points", "a list of tables with t_s and position")?;
             let points = field.list(1..=limits::TRACK_POINTS, "tables with t_s and position")?;
-            track(&points, plane).map(Behaviour::Track)
-        }),
-        ("gives-way", |table, _| {
+            Behaviour::Track(track(&points, plane)?)
+        }
+        BehaviourKind::GivesWay => {
             let mut number = |key, range, default| table.number_or(key, range, default);
-            Some(Behaviour::GivesWay {
+            Behaviour::GivesWay {
                 turn: radians_from_deg(number("turn_deg", TURN_DEG, 40.0)),
                 before: number("before_cpa_s", limits::DURATION, 240.0),
                 probability: number("probability", PROBABILITY, 1.0),
                 turn_rate: radians_from_deg(number("turn_rate_deg_per_s", limits::TURN_RATE, 2.0)),
-            })
-        }),
-        ("mutual", |_, _| Some(Behaviour::Mutual)),
-    ];
-    let mut table = field.table("a table with the key kind")?;
-    let kind = table
-        .require_first("kind", "a behaviour, such as \"constant\"")?
-        .choice(&KINDS)?;
-    let behaviour = kind(&mut table, plane)?;
+            }
+        }
+        BehaviourKind::Mutual => Behaviour::Mutual,
+    };
     table.finish();
     Some(behaviour)
 }

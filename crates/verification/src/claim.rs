@@ -3,8 +3,8 @@
 use super::motion;
 use super::sets;
 use searoom_document::{
-    InitialSetDocument, OUTCOMES, OwnShipDocument, PLAN_FORMAT, PLANNER_NAMES, PlanDocument,
-    PositionDocument, TargetDocument,
+    InitialSetDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument, PositionDocument,
+    RelaxationKind, TargetDocument,
 };
 use searoom_evaluation::{SpaceTimeSet, StageWeights, Violation};
 use searoom_geometry::Polygon;
@@ -12,35 +12,16 @@ use searoom_geometry::frame::{Pose, Vector, heading_from_course_deg, wrap};
 use searoom_geometry::tolerance;
 use searoom_input::Fault;
 use searoom_input::text::short_numbers;
-use searoom_model::target::{
-    Motion, Representation, ShipTrack, Target, TimedVelocitySet, Uncertainty,
-};
+use searoom_model::PlannerKind;
+use searoom_model::target::{Motion, ShipTrack, Target, TimedVelocitySet, Uncertainty};
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Steered};
 use searoom_model::vessel::{ForceVector, Hull, OwnShip, VesselKind};
-
-/// Name of the planner whose plans follow paths.
-pub(super) const PATH_TIME: &str = "path-time";
-/// The planner whose plans are free in the plane.
-pub(super) const SPACE_TIME: &str = "space-time";
-/// Name of the planner whose plans are motions under forces.
-pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 
 /// Metres; the least leg of a scenario file.
 const SHORTEST_LEG_M: f64 = 1e-3;
 
 /// Most legs of a target's known route.
 const MOST_LEGS: usize = 12;
-
-const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
-const OBJECTIVES: [&str; 5] = [
-    "space-time-error",
-    "time",
-    "length",
-    "length-risk",
-    "stage-cost",
-];
-pub(super) const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
-pub(super) const ARRIVAL: &str = "arrival";
 
 /// Most keys listed in the error for a document of another format.
 const KEYS: usize = 5;
@@ -89,6 +70,7 @@ pub(super) enum ClaimedMotion {
 #[derive(Debug)]
 pub(super) struct Claim<'a> {
     pub file: &'a PlanDocument,
+    pub planner: PlannerKind,
     pub own: OwnShip,
     pub desired: DesiredTrajectory,
     /// Paths to which own ship is restricted, if any.
@@ -102,10 +84,14 @@ pub(super) struct Claim<'a> {
 }
 
 impl<'a> Claim<'a> {
+    /// Returns true where the document reports that the plan gives up this.
+    pub fn gives_up(&self, kind: RelaxationKind) -> bool {
+        self.file.relaxations.iter().any(|r| r.kind == kind)
+    }
+
     /// Returns true where the document reports that the plan does not arrive.
     pub fn gives_up_arrival(&self) -> bool {
-        let mut relaxations = self.file.relaxations.iter();
-        relaxations.any(|r| r.kind == ARRIVAL)
+        self.gives_up(RelaxationKind::Arrival)
     }
 
     /// Time after the end of the motion over which a clearance is reported, seconds.
@@ -119,10 +105,7 @@ impl<'a> Claim<'a> {
         if file.format != PLAN_FORMAT {
             return Err(fault("format", format!("'{}'", file.format), PLAN_FORMAT));
         }
-        word("planner", &file.planner, &PLANNER_NAMES)?;
-        word("compliance", &file.compliance, &COMPLIANCES)?;
-        word("objective", &file.objective, &OBJECTIVES)?;
-        word("outcome", &file.outcome, &OUTCOMES)?;
+        let planner = word("planner", &file.planner, PlannerKind::WORDS)?;
         positive("horizon_s", file.horizon_s)?;
         let hold = (file.cost.as_ref()).map_or(0.0, |cost| cost.arrival_hold_s);
         within("cost.arrival_hold_s", hold, 0.0, LONGEST_HOLD_S)?;
@@ -146,7 +129,7 @@ impl<'a> Claim<'a> {
         if let Some(stay) = mission.stay_until_s {
             within("mission.stay_until_s", stay, 0.0, file.horizon_s)?;
         }
-        let paths = (file.planner == PATH_TIME).then(|| {
+        let paths = (planner == PlannerKind::PathTime).then(|| {
             let others = mission.alternatives.iter();
             let others = others.map(|path| points(path));
             std::iter::once(waypoints).chain(others).collect()
@@ -154,10 +137,9 @@ impl<'a> Claim<'a> {
         let targets = (file.targets.iter().enumerate())
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
-        let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
+        let names: Vec<_> = targets.iter().map(|t| (t.name.as_str(), ())).collect();
         for (index, relaxation) in file.relaxations.iter().enumerate() {
             let at = |key: &str| format!("relaxations[{index}].{key}");
-            word(&at("kind"), &relaxation.kind, &KINDS)?;
             word(&at("target"), &relaxation.target, &names)?;
             not_negative(&at("amount"), relaxation.amount)?;
         }
@@ -170,6 +152,7 @@ impl<'a> Claim<'a> {
             .collect::<Result<Vec<_>, _>>()?;
         let motion = motion::read(file, &mut faults)?;
         Ok(Self {
+            planner,
             own,
             desired,
             paths,
@@ -219,14 +202,15 @@ pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) ->
     ClaimError::at(path, format_args!("found {found}; allowed: {allowed}"))
 }
 
-/// Checks that a word is one of the allowed words.
-fn word(path: &str, found: &str, allowed: &[&str]) -> Result<(), ClaimError> {
-    if allowed.contains(&found) {
-        return Ok(());
+/// The value of an allowed word.
+fn word<T: Copy>(path: &str, found: &str, allowed: &[(&str, T)]) -> Result<T, ClaimError> {
+    if let Some((_, value)) = allowed.iter().find(|(word, _)| *word == found) {
+        return Ok(*value);
     }
-    let allowed = match allowed {
-        [] => "nothing".to_owned(),
-        words => words.join(", "),
+    let words: Vec<&str> = allowed.iter().map(|(word, _)| *word).collect();
+    let allowed = match words.is_empty() {
+        true => "nothing".to_owned(),
+        false => words.join(", "),
     };
     Err(fault(path, format!("'{found}'"), &allowed))
 }
@@ -293,12 +277,6 @@ pub(super) fn placed<T>(path: &str, read: Result<T, Fault>) -> Result<T, ClaimEr
 }
 
 fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
-    let found = target.representation.as_str();
-    let mut known = Representation::WORDS.iter();
-    let Some((_, representation)) = known.find(|(word, _)| *word == found) else {
-        let field = format!("{path}.representation");
-        return Err(fault(&field, format!("'{found}'"), "polytope, ellipsoid"));
-    };
     let motion = match (&target.ship, &target.initial_set) {
         (Some(ship), None) if target.velocity_sets.is_empty() => {
             let at = |key: &str| format!("{path}.ship.{key}");
@@ -335,7 +313,7 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
     Ok(Target {
         name: target.name.clone(),
         motion,
-        representation: *representation,
+        representation: target.representation,
     })
 }
 

@@ -12,7 +12,7 @@ impl From<&Verification> for VerifiedPlanDocument {
         Self {
             scenario: Some(checked.scenario.clone()),
             planner: Some(checked.planner.clone()),
-            outcome: checked.outcome.clone(),
+            outcome: checked.outcome.into(),
             verified: checked.verified(),
             safe: checked.safe(),
             violations: ViolationDocument::all(&checked.violations),
@@ -42,7 +42,7 @@ impl From<&SimulationVerification> for VerifiedPlanDocument {
         let verified = checked.violations.is_empty();
         Self {
             scenario: Some(checked.scenario.clone()),
-            outcome: checked.outcome().to_owned(),
+            outcome: checked.outcome(),
             verified,
             safe: verified && checked.safe,
             violations: ViolationDocument::all(&checked.violations),

@@ -1,14 +1,15 @@
 //! Checks the figures of a document against its motion.
 
-use super::claim::{ARRIVAL, Claim, ClaimedMotion};
+use super::claim::{Claim, ClaimedMotion};
 use super::mismatch;
-use searoom_document::{PhaseDocument, PlanDocument};
+use searoom_document::{PhaseDocument, PlanDocument, RelaxationKind};
 use searoom_evaluation::{
     Evaluation, MovingSlabs, SpaceTimeSet, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
 };
 use searoom_geometry::ConvexSet;
 use searoom_geometry::frame::{Pose, Vector};
 use searoom_geometry::tolerance;
+use searoom_model::ObjectiveKind;
 use searoom_model::target::{Motion, Target};
 use searoom_model::trajectory::{ForceNode, Segment};
 
@@ -70,11 +71,11 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     same("cost.duration_s", Some(cost.duration_s), so);
     same("cost.length_m", Some(cost.length_m), evaluation.length);
     same("cost.delay_s", cost.delay_s, evaluation.delay);
-    let minimised = match file.objective.as_str() {
+    let minimised = match file.objective {
         _ if forces => driven(claim, cost.objective),
-        "space-time-error" => Some(evaluation.space_time_error),
-        "time" => Some(evaluation.duration),
-        "length" => Some(evaluation.length),
+        ObjectiveKind::SpaceTimeError => Some(evaluation.space_time_error),
+        ObjectiveKind::Time => Some(evaluation.duration),
+        ObjectiveKind::Length => Some(evaluation.length),
         _ => None,
     };
     if let Some(so) = minimised {
@@ -195,7 +196,7 @@ fn shape_rounding(target: &Target, time: f64) -> f64 {
 /// set is over the last waypoint at the horizon.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let mut relaxation = claim.file.relaxations.iter();
-    let given_up = relaxation.find(|r| r.kind == ARRIVAL)?;
+    let given_up = relaxation.find(|r| r.kind == RelaxationKind::Arrival)?;
     let said = given_up.amount;
     let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
         return None;

@@ -24,7 +24,7 @@ pub use simulation::{SimulationVerification, is_simulation, verify_simulations};
 
 use claim::{Claim, ClaimedMotion};
 
-use searoom_document::PlanDocument;
+use searoom_document::{PlanDocument, PlanOutcome};
 use searoom_evaluation::{
     Evaluation, Freedom, Request, Steering, Violation, evaluate, evaluate_steered,
 };
@@ -39,7 +39,7 @@ pub struct Verification {
     /// Name of the planner.
     pub planner: String,
     /// Outcome that the document reports.
-    pub outcome: String,
+    pub outcome: PlanOutcome,
     /// Accepted risk, in `[0, 1)`.
     pub max_risk: f64,
     /// Own ship's turning radius, metres.
@@ -178,7 +178,7 @@ fn verified(claim: &Claim, evaluation: Option<Evaluation>) -> Verification {
     Verification {
         scenario: claim.file.scenario.clone(),
         planner: claim.file.planner.clone(),
-        outcome: claim.file.outcome.clone(),
+        outcome: claim.file.outcome,
         max_risk: claim.file.max_risk,
         turning_radius: claim.own.turning_radius,
         risk_taken: claim.file.cost.as_ref().map_or(0.0, |cost| cost.max_risk),

@@ -6,11 +6,12 @@
 
 use std::collections::HashSet;
 
-use super::claim::{Claim, ClaimedMotion, OPTIMAL_CONTROL};
+use super::claim::{Claim, ClaimedMotion};
 use super::mismatch;
 use searoom_document::{DistantRow, OutOfReachDocument};
 use searoom_evaluation::Violation;
 use searoom_geometry::frame::Vector;
+use searoom_model::PlannerKind;
 
 /// Fraction of the distances, which are sums of many numbers, to which the least one is held.
 const ROUNDING: f64 = 1e-9;
@@ -29,7 +30,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             count,
         ));
     }
-    if claim.file.planner == OPTIMAL_CONTROL {
+    if claim.planner == PlannerKind::OptimalControl {
         let so = "nothing, because a motion under forces has no greatest speed";
         found.push(mismatch("out_of_reach", "there is some", so));
     }

@@ -1,10 +1,11 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
-use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME};
+use super::claim::{Claim, ClaimedMotion};
 use super::mismatch;
-use searoom_document::{PlanMethod, RelaxationDocument};
+use searoom_document::{PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
 use searoom_evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use searoom_geometry::tolerance;
+use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
 
 /// Checks the reported safety and verdict against the evaluation.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
@@ -18,8 +19,8 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
         found.push(mismatch("safe", said, safe));
     }
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
-    let word = outcome_word(&file.outcome, evaluation.map(|e| e.safety), risk);
-    let gives_up_rules = file.relaxations.iter().any(|r| r.kind == "compliance");
+    let word = outcome_word(file.outcome, evaluation.map(|e| e.safety), risk);
+    let gives_up_rules = claim.gives_up(RelaxationKind::Compliance);
     let word = without_rules(word, gives_up_rules);
     if file.verdict != word {
         let said = match file.verdict.as_str() {
@@ -32,12 +33,18 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
 }
 
 /// Outcomes of an answer with a plan or without, by whether it gives up nothing.
-pub(super) fn outcomes(has_plan: bool, gives_up_nothing: bool) -> [&'static str; 2] {
-    match (has_plan, gives_up_nothing) {
-        (false, _) => ["infeasible", "deadline"],
-        (true, true) => ["solved", "deadline"],
-        (true, false) => ["relaxed", "deadline"],
-    }
+pub(super) fn outcomes(has_plan: bool, gives_up_nothing: bool) -> [PlanOutcome; 2] {
+    let in_time = match (has_plan, gives_up_nothing) {
+        (false, _) => PlanOutcome::Infeasible,
+        (true, true) => PlanOutcome::Solved,
+        (true, false) => PlanOutcome::Relaxed,
+    };
+    [in_time, PlanOutcome::Deadline]
+}
+
+fn either(words: &[impl ToString]) -> String {
+    let words: Vec<String> = words.iter().map(ToString::to_string).collect();
+    words.join(" or ")
 }
 
 /// Checks outcome, planner and relaxations against the content.
@@ -48,23 +55,22 @@ pub(super) fn outcomes(has_plan: bool, gives_up_nothing: bool) -> [&'static str;
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
-    let outcome = file.outcome.as_str();
     let allowed = outcomes(claim.motion.is_some(), file.relaxations.is_empty());
-    if !allowed.contains(&outcome) {
-        found.push(mismatch("outcome", outcome, allowed.join(" or ")));
+    if !allowed.contains(&file.outcome) {
+        found.push(mismatch("outcome", file.outcome, either(&allowed)));
     }
     let mut planner = |wrong: bool, so: &str| {
         if wrong {
             found.push(mismatch("planner", &file.planner, so));
         }
     };
-    let forces = file.planner == OPTIMAL_CONTROL;
+    let forces = claim.planner == PlannerKind::OptimalControl;
     let has_control = file.optimal_control.is_some();
     planner(
         has_control && !forces,
         "that of a document with optimal_control",
     );
-    let on_paths = file.planner == PATH_TIME;
+    let on_paths = claim.planner == PlannerKind::PathTime;
     let has_diagram = file.path_time.is_some();
     planner(
         has_diagram && !on_paths,
@@ -72,31 +78,35 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     );
     let of_segments = matches!(claim.motion, Some(ClaimedMotion::Segments(_)));
     planner(forces && of_segments, "that of a plan of segments");
-    let objectives: &[&str] = match file.planner.as_str() {
-        OPTIMAL_CONTROL => &["stage-cost"],
-        PATH_TIME => &["space-time-error", "time", "length", "length-risk"],
-        _ => &["space-time-error"],
+    let objectives: &[ObjectiveKind] = match claim.planner {
+        PlannerKind::OptimalControl => &[ObjectiveKind::StageCost],
+        PlannerKind::PathTime => &[
+            ObjectiveKind::SpaceTimeError,
+            ObjectiveKind::Time,
+            ObjectiveKind::Length,
+            ObjectiveKind::LengthRisk,
+        ],
+        PlannerKind::SpaceTime => &[ObjectiveKind::SpaceTimeError],
     };
-    if !objectives.contains(&file.objective.as_str()) {
-        let so = objectives.join(" or ");
-        found.push(mismatch("objective", &file.objective, so));
+    if !objectives.contains(&file.objective) {
+        found.push(mismatch("objective", file.objective, either(objectives)));
     }
     for (index, relaxation) in file.relaxations.iter().enumerate() {
         let what = format!("relaxation of '{}'", relaxation.target);
-        let asked = match relaxation.kind.as_str() {
-            "compliance" => file.compliance == "rules",
-            "domain" => file.compliance != "none",
-            ARRIVAL => !forces,
-            _ => true,
+        let asked = match relaxation.kind {
+            RelaxationKind::Compliance => file.compliance == Compliance::Rules,
+            RelaxationKind::Domain => file.compliance != Compliance::None,
+            RelaxationKind::Arrival => !forces,
+            RelaxationKind::Risk => true,
         };
         if !asked {
             let so = format!(
                 "not possible with compliance '{}' and planner '{}'",
                 file.compliance, file.planner
             );
-            found.push(mismatch(&what, &relaxation.kind, so));
+            found.push(mismatch(&what, relaxation.kind, so));
         }
-        if relaxation.kind == "domain" && relaxation.amount == 0.0 {
+        if relaxation.kind == RelaxationKind::Domain && relaxation.amount == 0.0 {
             found.push(mismatch(&what, "a domain reduced by 0", "nothing given up"));
         }
         let again =
@@ -127,22 +137,25 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
     };
     check(claim.motion.is_some(), "none without a plan");
     let made_by = match method {
-        PlanMethod::OptimalControl => file.planner == OPTIMAL_CONTROL,
-        PlanMethod::PathTimeGraph => file.planner == PATH_TIME,
-        PlanMethod::LeastHarm | PlanMethod::Remainder => file.planner != OPTIMAL_CONTROL,
-        PlanMethod::Other => {
-            ![OPTIMAL_CONTROL, PATH_TIME, SPACE_TIME].contains(&file.planner.as_str())
+        PlanMethod::OptimalControl => claim.planner == PlannerKind::OptimalControl,
+        PlanMethod::PathTimeGraph => claim.planner == PlannerKind::PathTime,
+        PlanMethod::LeastHarm | PlanMethod::Remainder => {
+            claim.planner != PlannerKind::OptimalControl
         }
-        _ => ![OPTIMAL_CONTROL, PATH_TIME].contains(&file.planner.as_str()),
+        // the planners of this project have methods of their own
+        PlanMethod::Other => match claim.planner {
+            PlannerKind::SpaceTime | PlannerKind::PathTime | PlannerKind::OptimalControl => false,
+        },
+        _ => claim.planner == PlannerKind::SpaceTime,
     };
     check(made_by, &format!("another with planner '{}'", file.planner));
-    let searches: &[&str] = match method {
-        PlanMethod::AStar => &["a-star", "thorough"],
-        PlanMethod::Dijkstra => &["dijkstra"],
-        PlanMethod::Thorough => &["thorough"],
+    let searches: &[SearchKind] = match method {
+        PlanMethod::AStar => &[SearchKind::AStar, SearchKind::Thorough],
+        PlanMethod::Dijkstra => &[SearchKind::Dijkstra],
+        PlanMethod::Thorough => &[SearchKind::Thorough],
         _ => &[],
     };
-    let asked = searches.is_empty() || searches.contains(&file.search.as_str());
+    let asked = searches.is_empty() || searches.contains(&file.search);
     check(asked, &format!("another with search '{}'", file.search));
     if let Some(searched) = method.has_statistics() {
         let so = match searched {
@@ -152,8 +165,8 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
         check(file.search_stats.expanded.is_some() == searched, so);
     }
     if method == PlanMethod::Rules {
-        let gives_up = file.relaxations.iter().any(|r| r.kind == "compliance");
-        let by_rules = file.compliance == "rules" && !gives_up;
+        let gives_up = claim.gives_up(RelaxationKind::Compliance);
+        let by_rules = file.compliance == Compliance::Rules && !gives_up;
         check(
             by_rules,
             "another where the rules are not asked or given up",
@@ -168,8 +181,7 @@ pub(super) fn method(claim: &Claim) -> Vec<Violation> {
 }
 
 /// Outcomes of a plan that may enter a set.
-const OUTCOMES: [&str; 2] = ["relaxed", "deadline"];
-const RISK: &str = "risk";
+const OUTCOMES: [PlanOutcome; 2] = [PlanOutcome::Relaxed, PlanOutcome::Deadline];
 
 /// Returns released sets that the document does not report correctly: outcome, kind, amount and
 /// time.
@@ -178,12 +190,13 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
     let released = claim.file.relaxations.iter();
     for (relaxation, until) in released.filter_map(|r| Some((r, r.until_s?))) {
         let of = |key: &str| format!("relaxation of '{}', {key}", relaxation.target);
-        if !OUTCOMES.contains(&claim.file.outcome.as_str()) {
-            let so = OUTCOMES.join(" or ");
-            found.push(mismatch("outcome", &claim.file.outcome, so));
+        if !OUTCOMES.contains(&claim.file.outcome) {
+            let so = either(&OUTCOMES);
+            found.push(mismatch("outcome", claim.file.outcome, so));
         }
-        if relaxation.kind != RISK {
-            found.push(mismatch(&of("kind"), &relaxation.kind, RISK));
+        if relaxation.kind != RelaxationKind::Risk {
+            let so = RelaxationKind::Risk;
+            found.push(mismatch(&of("kind"), relaxation.kind, so));
         }
         if claim.file.max_risk > 0.0 {
             found.push(mismatch("max_risk", claim.file.max_risk, 0.0));

@@ -10,7 +10,7 @@ use super::coverage::largest;
 use super::figures::near;
 use super::mismatch;
 use super::motion::around;
-use searoom_document::EncounterDocument;
+use searoom_document::{EncounterDocument, RelaxationKind};
 use searoom_evaluation::{MovingSlabs, Request, SpaceTimeSet, Violation, least_margins};
 use searoom_geometry::ConvexPolygon;
 use searoom_geometry::frame::direction;
@@ -19,7 +19,7 @@ use searoom_model::target::Motion;
 use searoom_model::trajectory::Segment;
 
 /// Kind of the relaxation where risk is taken.
-const KIND: &str = "risk";
+const KIND: RelaxationKind = RelaxationKind::Risk;
 
 /// Checks the risk and its time for each target, the largest risk, and the reported relaxations.
 pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {

@@ -3,12 +3,13 @@
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::claim::{ClaimError, KINDS, fault};
+use super::claim::{ClaimError, fault};
 use super::mismatch;
 use super::outcome::outcomes;
 use searoom_document::{
-    BEYOND_MARGIN, GroundSegmentDocument, ReplanDocument, SIMULATION_FORMAT, SailedLandDocument,
-    SimulatedTargetDocument, SimulationDocument, SimulationsDocument, StateDocument,
+    Alarm, GroundSegmentDocument, RelaxationKind, ReplanDocument, SIMULATION_FORMAT,
+    SailedLandDocument, SimulatedTargetDocument, SimulationDocument, SimulationsDocument,
+    StateDocument, VerifiedOutcome,
 };
 use searoom_evaluation::{
     Body, MovingSlabs, Safety, Violation, least_land_distance, outcome_word, said_risk,
@@ -46,11 +47,11 @@ pub struct SimulationVerification {
 
 impl SimulationVerification {
     /// Whether hulls met, and whether every plan was safe.
-    pub fn outcome(&self) -> &'static str {
+    pub fn outcome(&self) -> VerifiedOutcome {
         match (self.contact, self.safe) {
-            (true, _) => "contact",
-            (false, true) => "no contact, safe",
-            (false, false) => "no contact, not safe",
+            (true, _) => VerifiedOutcome::Contact,
+            (false, true) => VerifiedOutcome::Safe,
+            (false, false) => VerifiedOutcome::NotSafe,
         }
     }
 }
@@ -358,7 +359,8 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     );
     let mut alarms = document.alarms.iter();
     require(
-        alarms.any(|alarm| alarm.alarm == BEYOND_MARGIN) != document.conduct.within_tracking_margin,
+        alarms.any(|alarm| alarm.alarm == Alarm::BeyondMargin)
+            != document.conduct.within_tracking_margin,
         "own ship beyond its tracking margin without an alarm, or an alarm without that",
         end,
     );
@@ -389,7 +391,7 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
 
 /// True where a plan with this cost, these relaxations and this safety may have its verdict.
 fn has_its_verdict(replan: &ReplanDocument) -> bool {
-    let given_up: Vec<&str> = replan.relaxations.iter().map(String::as_str).collect();
+    let given_up = &replan.relaxations;
     let has_plan = replan.cost_m2.is_some();
     let safeties: &[Option<Safety>] = match (has_plan, replan.safe) {
         (false, false) => &[None],
@@ -402,10 +404,9 @@ fn has_its_verdict(replan: &ReplanDocument) -> bool {
         .into_iter()
         .flat_map(|outcome| safeties.iter().map(move |safety| (outcome, *safety)))
         .map(|(outcome, safety)| outcome_word(outcome, safety, risk.unwrap_or(0.0)))
-        .map(|word| without_rules(word, given_up.contains(&"compliance")));
+        .map(|word| without_rules(word, given_up.contains(&RelaxationKind::Compliance)));
     words.into_iter().any(|word| word == replan.verdict)
-        && (!risk.is_some_and(|risk| risk > 0.0) || given_up.contains(&"risk"))
-        && given_up.iter().all(|kind| KINDS.contains(kind))
+        && (!risk.is_some_and(|risk| risk > 0.0) || given_up.contains(&RelaxationKind::Risk))
 }
 
 /// The least distance of the hulls, metres. A set that is no polygon is everywhere.

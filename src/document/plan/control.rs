@@ -51,11 +51,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
             .classes
             .iter()
             .map(|class| HomotopyClassDocument {
-                sides: class
-                    .sides
-                    .iter()
-                    .map(|side| side.map(|side| side.to_string()))
-                    .collect(),
+                sides: class.sides.clone(),
                 objective: class.objective,
                 starts: class.starts,
             })

@@ -3,6 +3,7 @@
 use searoom_document::{EncounterDocument, PlanDocument, PlannedLeg, STILL_MPS, is_same_motion};
 
 use super::reasons::{Before, follows_mission, lesser_turns, reason, waited_for};
+use crate::colregs::Role;
 use crate::document::lines::{distance_words, is_set, passing};
 use crate::frame::{heading_from_course_deg, heading_of, wrap};
 use crate::obstacle::LAND;
@@ -142,7 +143,7 @@ fn events(plan: &PlanDocument) -> Vec<(f64, String)> {
         events.extend(parts.map(|(time, what)| (time, what.to_owned())));
     }
     let has_role = |e: &&EncounterDocument| {
-        e.role != "none" || e.conduct.as_ref().is_some_and(|c| !c.roles.is_empty())
+        e.role != Role::None || e.conduct.as_ref().is_some_and(|c| !c.roles.is_empty())
     };
     let met = plan.encounters.iter().filter(has_role);
     events.extend(met.filter_map(|e| closest_approach(e, is_set(plan, &e.target))));

@@ -212,7 +212,7 @@ fn entered<'a>(plan: &'a PlanDocument, held: &[Segment]) -> Option<&'a str> {
         .any(|m| (m.begins_s - tolerance::TIME_S..m.returns_s).contains(&begins));
     let is_last = |set: &&ObstacleDocument| {
         let mut encounters = plan.encounters.iter();
-        is_by_rules && encounters.any(|e| e.target == set.name && !has_role(&e.role))
+        is_by_rules && encounters.any(|e| e.target == set.name && !has_role(e.role))
     };
     let (last, first): (Vec<_>, Vec<_>) = plan.obstacles.iter().partition(is_last);
     let ashore = ashore(plan, held).map(|time| (time, LAND));

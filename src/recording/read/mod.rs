@@ -4,7 +4,7 @@ mod frames;
 mod table;
 mod values;
 
-pub use super::checksum::Checksum;
+pub use crate::document::Checksum;
 pub use table::{EntityRow, EntityTable};
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -7,7 +7,7 @@ use super::path_time::{run_panel, target_colour};
 use super::plan::{DESIRED, FILLED, LAND, OTHER_SETS, land_areas};
 use super::sections::{PLAN, minutes_list};
 use super::{Figure, FigureError, FigureOptions, Panel, Stroke, Style};
-use crate::evaluation::{Safety, outcome_word};
+use crate::evaluation::{PlanOutcome, Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::labels::Needed;
@@ -180,7 +180,7 @@ fn named<'a>(name: &str, entries: impl IntoIterator<Item = &'a Entry>) -> String
         .filter(|e| e.safety() > Some(Safety::Safe));
     match unsafe_ones.max_by_key(|e| e.safety()) {
         Some(entry) => {
-            let word = outcome_word("relaxed", entry.safety(), entry.largest_risk());
+            let word = outcome_word(PlanOutcome::Relaxed, entry.safety(), entry.largest_risk());
             format!("{name}: {word}")
         }
         None => name.to_owned(),

@@ -257,7 +257,7 @@ fn traffic(run: &Run, encounters: &[EncounterDocument], style: &Style) -> Traffi
         let passage = passages.get(index).filter(|p| p.tcpa.is_finite());
         Charted {
             name: target.name.clone(),
-            role: met.and_then(|met| chart_role(roles.unwrap_or_default(), &met.role)),
+            role: met.and_then(|met| chart_role(roles.unwrap_or_default(), met.role)),
             hull: target.ship().map(|ship| ship.hull),
             track: sampled
                 .iter()

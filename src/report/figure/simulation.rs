@@ -2,6 +2,7 @@
 
 use super::plan::{Charted, Meeting, Moment, Traffic, marked_times, moments, traffic_chart};
 use super::{Figure, FigureError, FigureOptions, Panel, Style};
+use crate::colregs::Role;
 use crate::document::{SimulatedTargetDocument, SimulationDocument, chart_role};
 use crate::frame::{Pose, Vector};
 use crate::report::simulation::{headline, headline_parts};
@@ -85,7 +86,7 @@ fn traffic(simulation: &SimulationDocument, style: &Style) -> Traffic {
         };
         Charted {
             name: target.name.clone(),
-            role: chart_role(&target.conduct.roles, "none"),
+            role: chart_role(&target.conduct.roles, Role::None),
             hull: target.set_m.is_none().then(|| target.hull()),
             track: (sampled.iter())
                 .filter_map(|time| target.at(*time).map(|ship| ship.pose.position))

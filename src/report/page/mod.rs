@@ -23,7 +23,7 @@ use super::simulation::{
 use super::table::{Grid, ResultTable, Styled, Tone, verdict};
 use crate::document::{
     CampaignDocument, PlanDocument, ScenarioComparisonDocument, SimulationDocument, SuiteDocument,
-    SuiteRunDocument, TIME_LINE, headline, plan_lines,
+    SuiteOutcome, SuiteRunDocument, TIME_LINE, headline, plan_lines,
 };
 use crate::output::{WriteError, write_atomically};
 use crate::pipeline::Run;
@@ -79,7 +79,7 @@ impl HtmlReport {
     }
 
     /// Adds a file without a plan: a table row and the reason.
-    pub fn add_failure(&mut self, file: &str, outcome: &str, error: &str) {
+    pub fn add_failure(&mut self, file: &str, outcome: SuiteOutcome, error: &str) {
         let failed = SuiteRunDocument::failed(file.to_owned(), outcome, error.to_owned());
         let (word, tone) = verdict(&failed.verdict);
         self.row(failed);

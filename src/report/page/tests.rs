@@ -67,7 +67,7 @@ fn a_report_of_plans_has_rows_sections_and_figures() {
         let mut report = HtmlReport::new();
         add(&mut report, "a", "space-time");
         add(&mut report, "b", "path-time");
-        report.add_failure(NASTY, "unreadable", NASTY);
+        report.add_failure(NASTY, SuiteOutcome::Unreadable, NASTY);
         report
     };
     let report = build();
@@ -120,7 +120,7 @@ fn a_report_of_a_simulation_has_its_chart_and_tables_and_rows_link_to_their_sect
         }
         let mut report = HtmlReport::new();
         report.add_simulation(&subject("a"), &scenario, &simulation.record());
-        report.add_failure(NASTY, "unreadable", NASTY);
+        report.add_failure(NASTY, SuiteOutcome::Unreadable, NASTY);
         report
     };
     let report = build();

@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::colregs::SteadyShip;
 use crate::document::{
-    EstimateDocument, PlanDocument, PositionDocument, ReplanDocument, finite, relaxation,
+    Alarm, EstimateDocument, PlanDocument, PositionDocument, ReplanDocument, finite, relaxation,
 };
 use crate::frame::{Pose, Vector, clockwise_deg, course_deg_from_heading, deg_from_radians, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -108,7 +108,7 @@ impl Simulation {
             // the last plan is own ship's, so only a ship far off it is refused
             if remember(previous, &mut scenario).is_err() {
                 let reason = format!("{} m", tenths(off_plan_m));
-                self.alarm("far off the plan", None, Some(reason));
+                self.alarm(Alarm::FarOff, None, Some(reason));
             }
             let known = self.targets.iter().filter(|target| target.is_known());
             for (target, simulated) in scenario.targets.iter_mut().zip(known) {

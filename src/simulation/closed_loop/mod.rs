@@ -27,7 +27,7 @@ use sensor::TargetSensor;
 use tracker::Track;
 
 use crate::colregs::SteadyShip;
-use crate::document::{AlarmDocument, BEYOND_MARGIN, PlanDocument, ReplanDocument, SailedDocument};
+use crate::document::{Alarm, AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
@@ -453,7 +453,7 @@ impl Simulation {
         let is_off = margin > 0.0 && self.off_plan() > margin;
         first(|target| target.track.has_left(), "another velocity")
             .or_else(|| first(|target| target.is_acquired, "acquired"))
-            .or_else(|| is_off.then(|| BEYOND_MARGIN.to_owned()))
+            .or_else(|| is_off.then(|| Alarm::BeyondMargin.to_string()))
     }
 
     fn observe(&mut self) {
@@ -468,7 +468,7 @@ impl Simulation {
             if is_stale && !target.is_stale {
                 self.alarms.push(AlarmDocument {
                     t_s: self.time,
-                    alarm: "stale".to_owned(),
+                    alarm: Alarm::Stale,
                     target: Some(target.name.clone()),
                     reason: None,
                 });
@@ -503,10 +503,10 @@ impl Simulation {
             target.outside_sets += usize::from(left);
         }
         for name in &replan.outside_velocities {
-            self.alarm("another velocity than assumed", Some(name), None);
+            self.alarm(Alarm::AnotherVelocity, Some(name), None);
         }
         for name in &replan.outside_places {
-            self.alarm("at another place than assumed", Some(name), None);
+            self.alarm(Alarm::AnotherPlace, Some(name), None);
         }
         self.conduct.without_plan += usize::from(replan.cost_m2.is_none());
         self.conduct.unsafe_plans += usize::from(replan.cost_m2.is_some() && !replan.safe);
@@ -515,9 +515,9 @@ impl Simulation {
             self.out_of_time.clone_from(&reason);
         }
         if replan.cost_m2.is_none() {
-            self.alarm("no plan", None, reason);
+            self.alarm(Alarm::NoPlan, None, reason);
         } else if !replan.followed {
-            self.alarm("plan too late", None, None);
+            self.alarm(Alarm::PlanTooLate, None, None);
         } else if !replan.safe {
             let why = reason.map_or(String::new(), |reason| format!(", {reason}"));
             let why = format!("{}{why}", replan.verdict);
@@ -529,7 +529,7 @@ impl Simulation {
                     Relaxation::Risk { target, .. } => Some(target.as_str()),
                     _ => None,
                 });
-            self.alarm("unsafe plan", entered, Some(why));
+            self.alarm(Alarm::UnsafePlan, entered, Some(why));
         }
         let plan = run.planned.outcome.plan();
         let plan = plan.filter(|_| replan.followed);
@@ -561,10 +561,10 @@ impl Simulation {
         }
     }
 
-    fn alarm(&mut self, alarm: &str, target: Option<&str>, reason: Option<String>) {
+    fn alarm(&mut self, alarm: Alarm, target: Option<&str>, reason: Option<String>) {
         self.alarms.push(AlarmDocument {
             t_s: self.time,
-            alarm: alarm.to_owned(),
+            alarm,
             target: target.map(str::to_owned),
             reason,
         });
@@ -586,7 +586,7 @@ impl Simulation {
             }
         }
         for name in outside {
-            self.alarm("outside the set of the plan", Some(&name), None);
+            self.alarm(Alarm::OutsideSet, Some(&name), None);
         }
         self.active = plan;
     }
@@ -599,7 +599,7 @@ impl Simulation {
         let is_overpowered = current > most;
         if is_overpowered && !self.is_overpowered {
             let reason = format!("{current:.2} m/s of current, own ship makes {most:.2} m/s");
-            self.alarm("current faster than own ship", None, Some(reason));
+            self.alarm(Alarm::Overpowered, None, Some(reason));
         }
         self.is_overpowered = is_overpowered;
         for target in &mut self.targets {
@@ -609,7 +609,7 @@ impl Simulation {
             {
                 self.alarms.push(AlarmDocument {
                     t_s: time,
-                    alarm: "plan cut by its deadline".to_owned(),
+                    alarm: Alarm::PlanCut,
                     target: Some(target.name.clone()),
                     reason: Some(reason),
                 });
@@ -633,7 +633,7 @@ impl Simulation {
         let is_beyond = off > most;
         if is_beyond && !self.is_beyond {
             let reason = format!("{} m off the plan", tenths(off));
-            self.alarm(BEYOND_MARGIN, None, Some(reason));
+            self.alarm(Alarm::BeyondMargin, None, Some(reason));
         }
         self.is_beyond = is_beyond;
         if off > self.conduct.largest_off_plan_m {
@@ -811,7 +811,7 @@ fn faults(scenario: &Scenario, duration: f64) -> Vec<Fault> {
         refuse_if(
             missing != NotReported::default() && reports_all,
             &path,
-            format!("a sensor of kind {:?}", kind.word()),
+            format!("a sensor of kind {:?}", kind.sensor_type().word()),
             "\"ais\": other sensors report neither heading nor size",
         );
         let Hull { length, beam } = default;

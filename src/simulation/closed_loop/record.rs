@@ -12,7 +12,7 @@ use crate::evaluation::{counted_error_of_segments, least_land_distance};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window};
 use crate::planner::cost::{sailed_space_time_error, whole_space_time_error};
-use crate::scenario::VesselModel;
+use crate::scenario::{Behaviour, BehaviourKind, VesselModel};
 use crate::trajectory::{Segment, before_stay};
 
 impl Simulation {
@@ -171,7 +171,7 @@ impl Simulation {
             current_mps: [settings.current.mean.x, settings.current.mean.y],
             current_std_mps: settings.current.std,
             current_known: settings.current.known,
-            sensor: settings.sensor.kind.word().to_owned(),
+            sensor: settings.sensor.kind.sensor_type(),
             sensor_range_m: finite(settings.sensor.range),
             own_length_m: own.hull.length,
             own_beam_m: own.hull.beam,
@@ -232,7 +232,7 @@ fn simulated(
     let clearance = target.clearance.settled();
     SimulatedTargetDocument {
         name: target.name.clone(),
-        behaviour: behaviour.map_or("constant", |b| b.word()).to_owned(),
+        behaviour: behaviour.map_or(BehaviourKind::Constant, Behaviour::kind),
         length_m: target.truth.hull.length,
         beam_m: target.truth.hull.beam,
         least_clearance_m: finite(clearance.metres),

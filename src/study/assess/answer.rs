@@ -2,8 +2,9 @@
 
 use super::{OwnSituation, least_alteration};
 use crate::document::{
-    AlterationDocument, ApproachDocument, AssessmentDocument, HeldDocument, HoldCourseDocument,
-    PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
+    AlterationDocument, ApproachDocument, AssessedSets, AssessmentDocument, HeldDocument,
+    HoldCourseDocument, PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument,
+    VelocityDocument,
 };
 use crate::frame::{Vector, deg_from_radians};
 use crate::obstacle::{ClosestApproach, Obstacle, SpaceTimeObstacle};
@@ -29,12 +30,13 @@ pub struct Query {
     pub velocities: Vec<Vector>,
 }
 
-/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"domains"`. Cost per target:
+/// Answers a query about the scenario `title`. `sets` says which sets are those of
+/// the situation. Cost per target:
 /// O(n + m) per point and per velocity; O((n + m)²) at worst for the largest risk of holding
 /// course. For the alteration see [`least_alteration`].
 pub fn assess(
     title: &str,
-    sets: &str,
+    sets: AssessedSets,
     situation: &OwnSituation,
     query: &Query,
 ) -> AssessmentDocument {
@@ -44,7 +46,7 @@ pub fn assess(
     let degrees = |turn: Option<f64>| turn.map(deg_from_radians);
     let targets = obstacles.iter().map(|target| TargetSectionsDocument {
         name: target.name().to_owned(),
-        representation: target.representation().word().to_owned(),
+        representation: target.representation(),
         sections: (query.sections.iter())
             .map(|&t_s| SectionDocument {
                 t_s,
@@ -89,7 +91,7 @@ pub fn assess(
     AssessmentDocument {
         scenario: title.to_owned(),
         horizon_s: situation.horizon,
-        sets: sets.to_owned(),
+        sets,
         targets: targets.collect(),
         points: points.collect(),
         hold_course: HoldCourseDocument {

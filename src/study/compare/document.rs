@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
-    CollisionDocument, Compared, EntryDocument, HeldVelocityDocument, InapplicableDocument,
-    PositionDocument, TrackPointDocument, cost_of, departure, finite, minimised, objective,
-    samples, search_stats, timing,
+    CandidateOutcome, CollisionDocument, Compared, EntryDocument, HeldVelocityDocument,
+    InapplicableDocument, PositionDocument, TrackPointDocument, cost_of, departure, finite,
+    minimised, objective, samples, search_stats, timing,
 };
 use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
 use crate::frame::course_deg_from_heading;
 use crate::obstacle::LAND;
-use crate::pipeline::{Run, Verdict};
+use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use crate::trajectory::Segment;
 
@@ -44,12 +44,12 @@ impl Compared<Entry, Inapplicable> for Scenario {
         let max_risk = entry.candidate.max_risk;
         let largest_risk = entry.largest_risk();
         let outcome = match (run, motion) {
-            (Some(run), _) => Verdict::of(run).word(),
-            (None, None) => Verdict::Infeasible.word(),
-            _ if !verified => "collides",
+            (Some(run), _) => run.outcome().into(),
+            (None, None) => CandidateOutcome::Infeasible,
+            _ if !verified => CandidateOutcome::Collides,
             // clear of the level sets alone
-            _ if max_risk > 0.0 && largest_risk > 0.0 => Verdict::Relaxed.word(),
-            _ => "clear",
+            _ if max_risk > 0.0 && largest_risk > 0.0 => CandidateOutcome::Relaxed,
+            _ => CandidateOutcome::Clear,
         };
         let is_along_path = run.is_some_and(|run| run.planned.path_time.is_some());
         let radius = scenario.own_ship.turning_radius;
@@ -62,8 +62,8 @@ impl Compared<Entry, Inapplicable> for Scenario {
         EntryDocument {
             method: entry.name(),
             max_risk,
-            objective: run.map(|run| objective(&run.scenario).to_owned()),
-            outcome: outcome.to_owned(),
+            objective: run.map(|run| objective(&run.scenario)),
+            outcome,
             verdict: without_rules(
                 outcome_word(outcome, entry.safety(), largest_risk),
                 run.is_some_and(Run::gives_up_rules),

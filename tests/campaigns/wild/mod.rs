@@ -188,7 +188,7 @@ fn planned_and_verified(text: &str) -> Option<Found> {
         faults.entry(fault).or_insert(what);
     }
     Some(Found {
-        outcome: document.outcome,
+        outcome: document.outcome.to_string(),
         faults,
         times: [run.plan_time, whole, verification].map(|time| time.as_secs_f64()),
     })

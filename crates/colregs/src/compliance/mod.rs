@@ -10,21 +10,21 @@ mod role_intervals;
 mod samples;
 mod score;
 
-pub use monitor::{Measure, MonitorResult, MonitorVerdict, monitors};
+pub use monitor::{Measure, Monitor, MonitorResult, MonitorVerdict, monitors};
 pub use role_intervals::{RoleInterval, roles};
 pub use samples::EncounterSamples;
 pub use samples::OwnSamples;
 pub use score::Scores;
 use score::{around_ship_at_rest, scores};
 
-use super::{TargetMemory, Thresholds};
+use super::{Paragraph, TargetMemory, Thresholds};
 use searoom_model::target::ShipTrack;
 
 /// A rule that own ship violates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuleViolation {
-    /// The rule: `14(a)`, `17(c)`, ...
-    pub rule: &'static str,
+    /// The paragraph.
+    pub rule: Paragraph,
     /// Seconds.
     pub time: f64,
     /// Description.
@@ -150,8 +150,13 @@ impl ComplianceReport {
     /// Names of the violated rules and monitors; a rule may appear more than once.
     pub fn broken(&self) -> impl Iterator<Item = &'static str> {
         let violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
-        let monitors = self.monitors.iter().filter(violated).map(|f| f.monitor);
-        self.violations.iter().map(|b| b.rule).chain(monitors)
+        let monitors = self
+            .monitors
+            .iter()
+            .filter(violated)
+            .map(|f| f.monitor.word());
+        let rules = self.violations.iter().map(|b| b.rule.word());
+        rules.chain(monitors)
     }
 }
 

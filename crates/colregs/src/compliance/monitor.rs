@@ -6,48 +6,60 @@ use super::samples::{EncounterSample, EncounterSamples};
 use crate::{APPARENT_SPEED, APPARENT_TIME, MayAct, Role, Thresholds, role_within};
 use searoom_geometry::frame::wrap;
 
-/// Verdict of a monitor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MonitorVerdict {
-    /// The formula holds, and its premise was met.
-    Satisfied,
-    /// The formula does not hold.
-    Violated,
-    /// Its premise was never met.
-    Idle,
-    /// The trace ends before it is decided.
-    Undecided,
+searoom_geometry::words! {
+    /// Verdict of a monitor.
+    pub enum MonitorVerdict {
+        /// The formula holds, and its premise was met.
+        Satisfied => "satisfied",
+        /// The formula does not hold.
+        Violated => "violated",
+        /// Its premise was never met.
+        Idle => "idle",
+        /// The trace ends before it is decided.
+        Undecided => "undecided",
+    }
 }
 
-searoom_geometry::words!(MonitorVerdict {
-    Satisfied => "satisfied",
-    Violated => "violated",
-    Idle => "idle",
-    Undecided => "undecided",
-});
+searoom_geometry::words! {
+    /// Quantity of a robustness, with its unit in documents.
+    pub enum Measure {
+        /// Metres.
+        Distance => "m",
+        /// Radians; degrees in documents.
+        Angle => "deg",
+        /// Seconds.
+        Time => "s",
+    }
+}
 
-/// Unit of robustness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// Metres.
-    Distance,
-    /// Radians.
-    Angle,
-    /// Seconds.
-    Time,
+searoom_geometry::words! {
+    /// A monitor, by its number in documents.
+    pub enum Monitor {
+        /// No contact of the hulls.
+        Contact => "S",
+        /// In extremis.
+        CollisionCourse => "R1",
+        /// Crossing.
+        Crossing => "R3",
+        /// Head-on.
+        HeadOn => "R4",
+        /// Overtaking.
+        Overtaking => "R5",
+        /// Stand-on.
+        StandOn => "R6",
+    }
 }
 
 /// Result of one monitor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MonitorResult {
-    /// `S`, `R1` (in extremis), `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6`
-    /// (stand-on).
-    pub monitor: &'static str,
+    /// The monitor.
+    pub monitor: Monitor,
     /// The verdict.
     pub verdict: MonitorVerdict,
     /// Least margin by which the formula holds, negative if violated; `None` if idle.
     pub robustness: Option<f64>,
-    /// Unit of the robustness.
+    /// Quantity of the robustness.
     pub measure: Measure,
     /// Time of the least margin, seconds; `None` if idle.
     pub time: Option<f64>,
@@ -112,7 +124,7 @@ impl Trace<'_> {
     /// `G(role begins and persists -> F[react + 2 manoeuvre](not past until turn >= m.turn))`,
     /// the turn to starboard, or to either side. Where a lower speed may replace the turn, it is
     /// held for [`APPARENT_TIME`].
-    fn alters(&self, monitor: &'static str, either_side: bool, may_slow: bool) -> MonitorResult {
+    fn alters(&self, monitor: Monitor, either_side: bool, may_slow: bool) -> MonitorResult {
         let m = &self.t.monitor;
         let mut worst: Option<(f64, f64)> = None;
         let mut open = false;
@@ -159,7 +171,7 @@ impl Trace<'_> {
                 }
             }
         }
-        Self::result("R6", Measure::Angle, worst, false)
+        Self::result(Monitor::StandOn, Measure::Angle, worst, false)
     }
 
     /// First time at which own ship need not hold its course, as it keeps clear or may act.
@@ -202,7 +214,7 @@ impl Trace<'_> {
                 worst = (sample.apart, sample.time);
             }
         }
-        Self::result("S", Measure::Distance, Some(worst), false)
+        Self::result(Monitor::Contact, Measure::Distance, Some(worst), false)
     }
 
     /// `G(in extremis -> F not in extremis, before the hulls meet)`. In extremis, the hulls meet
@@ -214,7 +226,7 @@ impl Trace<'_> {
         let worst = in_extremis
             .map(|s| (s.meets_in, s.time))
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        let result = Self::result("R1", Measure::Time, worst, false);
+        let result = Self::result(Monitor::CollisionCourse, Measure::Time, worst, false);
         let open = self.samples.last().is_some_and(|s| within(&s));
         match result.verdict {
             MonitorVerdict::Satisfied if open => MonitorResult {
@@ -226,7 +238,7 @@ impl Trace<'_> {
     }
 
     fn result(
-        monitor: &'static str,
+        monitor: Monitor,
         measure: Measure,
         worst: Option<(f64, f64)>,
         open: bool,
@@ -289,9 +301,9 @@ pub fn monitors(
     [
         trace.apart(),
         trace.leaves_extremis(),
-        trace.alters("R3", false, true),
-        trace.alters("R4", false, false),
-        trace.alters("R5", true, true),
+        trace.alters(Monitor::Crossing, false, true),
+        trace.alters(Monitor::HeadOn, false, false),
+        trace.alters(Monitor::Overtaking, true, true),
         trace.holds(),
     ]
 }

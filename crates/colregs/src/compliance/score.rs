@@ -10,7 +10,7 @@ use super::samples::{
     EncounterSample, EncounterSamples, alterations, speed_changed, speed_changes,
 };
 use super::{Manoeuvre, RuleViolation};
-use crate::{APPARENT_SPEED, MayAct, Role, Situation, Thresholds};
+use crate::{APPARENT_SPEED, MayAct, Paragraph, Role, Situation, Thresholds};
 use searoom_geometry::frame::{Side, deg_from_radians, wrap};
 
 /// Scores of own ship toward one target; 1 is best. `None` if the rule does not apply.
@@ -407,7 +407,7 @@ impl<'a> Act<'a> {
     fn violations(&self) -> Vec<RuleViolation> {
         let (s, closest, duties) = (&self.t.score, self.closest(), self.role.duties());
         let mut found = Vec::new();
-        let mut violation = |rule: &'static str, time: f64, what: String| {
+        let mut violation = |rule: Paragraph, time: f64, what: String| {
             found.push(RuleViolation { rule, time, what });
         };
         if duties.stands_on {
@@ -416,13 +416,13 @@ impl<'a> Act<'a> {
             if let Some(sample) = self.turned(s.hold).filter(must_hold) {
                 let hold = deg_from_radians(s.hold);
                 let what = format!("does not hold its course within {hold:.0} deg");
-                violation("17(a)(i)", sample.time, what);
+                violation(Paragraph::Rule17AI, sample.time, what);
             }
             let changed = speed_changed(self.samples, self.ordered_speed, s.steady_speed);
             if let Some(time) = changed.filter(|time| *time < freed) {
                 let share = 100.0 * s.steady_speed;
                 let what = format!("does not hold its speed within {share:.0} %");
-                violation("17(a)(i)", time, what);
+                violation(Paragraph::Rule17AI, time, what);
             }
         }
         if let Some(rule) = duties.paragraph {
@@ -444,7 +444,7 @@ impl<'a> Act<'a> {
                 .filter(|sample| sample.time < self.until);
             if let Some(sample) = turned {
                 let what = match rule {
-                    "19(d)(ii)" => "turns toward a ship abeam or abaft the beam",
+                    Paragraph::Rule19DII => "turns toward a ship abeam or abaft the beam",
                     _ => "heads to port of its first course before the other has passed",
                 };
                 violation(rule, sample.time, what.to_owned());
@@ -461,18 +461,18 @@ impl<'a> Act<'a> {
         // negated on purpose: a NaN is a collision
         if duties.stands_on && !(closest.apart > 0.0) {
             let what = "holds on into a collision".to_owned();
-            violation("17(b)", closest.time, what);
+            violation(Paragraph::Rule17B, closest.time, what);
         }
         if duties.keeps_clear {
             if let Some(time) = self.succession() {
                 let what = "makes a succession of small alterations".to_owned();
-                violation("8(b)", time, what);
+                violation(Paragraph::Rule8B, time, what);
             }
             let least = s.least_lengths * self.length;
             if !(closest.apart >= least) {
                 let apart = closest.apart;
                 let what = format!("passes at {apart:.0} m, less than {least:.0} m");
-                violation("8(d)", closest.time, what);
+                violation(Paragraph::Rule8D, closest.time, what);
             }
         }
         found.sort_by(|a, b| a.time.total_cmp(&b.time));

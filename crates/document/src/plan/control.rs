@@ -3,11 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use searoom_geometry::frame::radians_from_deg;
+use searoom_geometry::frame::{Side, radians_from_deg};
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlDocument {
+    /// Not an enum: files may name one ship model by several words.
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
@@ -50,7 +51,9 @@ impl StartVelocityDocument {
 /// Result of one initial guess.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartAttemptDocument {
+    /// Not an enum: the kind of guess with its number.
     pub start: String,
+    /// A sentence of the solver.
     pub status: String,
     pub feasible: bool,
     pub objective: Option<f64>,
@@ -60,7 +63,7 @@ pub struct StartAttemptDocument {
 /// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HomotopyClassDocument {
-    pub sides: Vec<Option<String>>,
+    pub sides: Vec<Option<Side>>,
     pub objective: f64,
     pub starts: usize,
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Path-time diagram; points are `[s_m, t_s]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathTimeDocument {
+    /// Not an enum: an alternative has a number.
     pub path: String,
     pub legs: Vec<PathLegDocument>,
     pub obstacles: Vec<PathObstacleDocument>,

@@ -11,29 +11,21 @@ use searoom_colregs::ON_COURSE;
 use searoom_geometry::frame::{heading_from_course_deg, wrap};
 use searoom_geometry::tolerance;
 
-/// Own ship's action in a part of a plan by the rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Phase {
-    /// Follows the mission.
-    Free,
-    /// Stands on: keeps course and speed until its escape begins.
-    Hold,
-    /// Has altered course or speed for a target.
-    Out,
-    /// Steers its first course again, beside the mission.
-    Parallel,
-    /// Returns to the mission; the targets are past and clear.
-    Back,
+searoom_geometry::words! {
+    /// Own ship's action in a part of a plan by the rules.
+    pub enum Phase {
+        /// Follows the mission.
+        Free => "free",
+        /// Stands on: keeps course and speed until its escape begins.
+        Hold => "hold",
+        /// Has altered course or speed for a target.
+        Out => "out",
+        /// Steers its first course again, beside the mission.
+        Parallel => "parallel",
+        /// Returns to the mission; the targets are past and clear.
+        Back => "back",
+    }
 }
-
-searoom_geometry::words!(Phase {
-    Free => "free",
-    Hold => "hold",
-    Out => "out",
-    Parallel => "parallel",
-    Back => "back",
-});
 
 /// A phase and its time interval, seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -115,6 +107,7 @@ fn parallel_from(legs: &[PlannedLeg], manoeuvre: &PlannedManoeuvreDocument) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parts::EscapePolicy;
     use searoom_geometry::frame::{Pose, Vector};
     use searoom_model::trajectory::Segment;
 
@@ -157,7 +150,7 @@ mod tests {
         held_until_s: Option<f64>,
     ) -> Vec<(&'static str, f64)> {
         let escape = held_until_s.map(|held_until_s| EscapeDocument {
-            policy: "stand-on-hold".to_owned(),
+            policy: EscapePolicy::StandOnHold,
             held_until_s,
             first_segment: 1,
             turn_deg: 0.0,

@@ -42,7 +42,8 @@ pub struct CampaignTimingDocument {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GroupDocument {
     pub name: String,
-    /// Class of the rows; null where they are of several.
+    /// Class of the rows; null where they are of several. Not an enum: it is the text in the
+    /// index of the campaign's folder.
     pub class: Option<String>,
     /// Rows that were sailed: the trials of every share.
     pub rows: u64,

@@ -36,7 +36,9 @@ pub use task::{Controls, Profile, Task, force, node, state};
 pub use transcription::Weights;
 pub use warm_start::WarmStart;
 
-use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
+use super::{
+    Minimises, ObjectiveKind, PlanRequest, Planned, Planner, PlannerFacts, PlannerKind, SearchKind,
+};
 use searoom_sets::Obstacle;
 
 /// Chooses the forces on a ship with dynamics.
@@ -45,9 +47,9 @@ pub struct OptimalControlPlanner;
 impl Planner for OptimalControlPlanner {
     fn facts(&self) -> &'static PlannerFacts {
         &PlannerFacts {
-            name: "optimal-control",
+            name: const { PlannerKind::OptimalControl.word() },
             label: "optimal control",
-            minimises: Minimises::Own("stage-cost"),
+            minimises: Minimises::Own(ObjectiveKind::StageCost),
             follows_paths: false,
             keeps_off_land: false,
             keeps_rules: false,

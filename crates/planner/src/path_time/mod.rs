@@ -30,7 +30,7 @@ use super::clock::Clock;
 use super::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
     NominalTarget, Objective, Outcome, Plan, PlanMethod, PlanRequest, Planned, Planner,
-    PlannerFacts, Problem, SearchKind,
+    PlannerFacts, PlannerKind, Problem, SearchKind,
 };
 use crate::search::{Counts, Fate, Search, Stop};
 use graph::{Graph, State};
@@ -59,7 +59,7 @@ pub struct PathTimePlanner;
 impl Planner for PathTimePlanner {
     fn facts(&self) -> &'static PlannerFacts {
         &PlannerFacts {
-            name: "path-time",
+            name: const { PlannerKind::PathTime.word() },
             label: "path-time",
             minimises: Minimises::Objective,
             follows_paths: true,

@@ -43,7 +43,7 @@ use std::cell::RefCell;
 use super::clock::Clock;
 use super::{
     ExploredGraph, Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanMethod, PlanRequest,
-    Planned, Planner, PlannerFacts, Problem, SearchKind, SearchStats,
+    Planned, Planner, PlannerFacts, PlannerKind, Problem, SearchKind, SearchStats,
 };
 use crate::search::{Search, Stop};
 use context::Context;
@@ -75,7 +75,7 @@ pub struct SpaceTimePlanner;
 impl Planner for SpaceTimePlanner {
     fn facts(&self) -> &'static PlannerFacts {
         &PlannerFacts {
-            name: "space-time",
+            name: const { PlannerKind::SpaceTime.word() },
             label: "space-time",
             minimises: Minimises::SpaceTimeError,
             follows_paths: false,

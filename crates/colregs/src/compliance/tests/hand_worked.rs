@@ -88,13 +88,15 @@ const MONITORS: &str = "
 fn monitors_are_those_worked_out_by_hand() {
     for [legs, target, expected] in rows(MONITORS) {
         let monitors = report(legs, target).monitors;
-        let names = monitors.each_ref().map(|f| f.monitor);
+        let names = monitors.each_ref().map(|f| f.monitor.word());
         assert_eq!(names, ["S", "R1", "R3", "R4", "R5", "R6"]);
         let expected: Vec<Vec<&str>> = (expected.split("; "))
             .map(|monitor| monitor.split(' ').collect())
             .collect();
         for found in monitors {
-            let expected = expected.iter().find(|words| words[0] == found.monitor);
+            let expected = expected
+                .iter()
+                .find(|words| words[0] == found.monitor.word());
             let Some([_, verdict, robustness, time]) = expected.map(|words| &words[..]) else {
                 assert_eq!(found.verdict, MonitorVerdict::Idle, "{legs}: {found:?}");
                 continue;

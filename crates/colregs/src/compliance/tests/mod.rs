@@ -88,13 +88,13 @@ fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> Com
 }
 
 fn rules(c: &ComplianceReport) -> Vec<&'static str> {
-    c.violations.iter().map(|b| b.rule).collect()
+    c.violations.iter().map(|b| b.rule.word()).collect()
 }
 
 fn violated(c: &ComplianceReport) -> Vec<&'static str> {
     let is_violated = |f: &&MonitorResult| f.verdict == MonitorVerdict::Violated;
     let broken = c.monitors.iter().filter(is_violated);
-    broken.map(|f| f.monitor).collect()
+    broken.map(|f| f.monitor.word()).collect()
 }
 
 #[test]
@@ -119,7 +119,10 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     let left = |turn_at: f64| {
         let legs = [(0.0, turn_at), (-0.9, 200.0)];
         let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).monitors[1];
-        assert_eq!((found.monitor, found.measure), ("R1", Measure::Time));
+        assert_eq!(
+            (found.monitor, found.measure),
+            (Monitor::CollisionCourse, Measure::Time)
+        );
         (found.verdict, found.robustness)
     };
     let meets = (1440.0 - HULL.length) / 12.0;
