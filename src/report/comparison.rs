@@ -1,6 +1,6 @@
 //! Comparison of planners as a table, and the rows of its data.
 
-use super::plan::{CLEARANCE, broken, manoeuvre, monitors_key, nodes, time, turned};
+use super::plan::{CLEARANCE, breaks_field, manoeuvre, monitors_key, nodes, time, turned};
 use super::table::{
     Field, ResultTable, both, datum, fact, number, or_dash, plain, verdict, verified, yes_or_no,
 };
@@ -82,7 +82,7 @@ fn row(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<Fiel
     };
     let [degrees, side] = turned(entry.departure);
     let safe = cost.map(|_| entry.safe);
-    // a baseline is checked without a plan document
+    // tables show the check of plans alone, data that of baselines, too
     let checked = cost.map(|_| entry.verified);
     let planned = checked.filter(|_| entry.search_stats.is_some());
     let breaks = entry.breaks.as_ref();
@@ -113,7 +113,7 @@ fn row(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<Fiel
         time(entry.timing.as_ref()),
         fact(verified(planned, safe), checked),
         fact(yes_or_no(safe), safe),
-        broken(breaks),
+        breaks_field(breaks),
         datum(entry.reason.clone().unwrap_or_default()),
     ]
 }

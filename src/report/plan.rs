@@ -145,7 +145,7 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Field> {
         of(|c| c.length_m),
         number(cost.and_then(|c| c.min_clearance_m), tenths),
         number(risks.max_by(f64::total_cmp), risk_figure),
-        broken(breaks(&run.encounters)),
+        breaks_field(breaks(&run.encounters)),
         both(or_dash(method.clone()), method.unwrap_or_default()),
         nodes(run.search_stats.as_ref()),
         time(run.timing.as_ref()),
@@ -180,7 +180,7 @@ pub(super) fn time(timing: Option<&TimingDocument>) -> Field {
     })
 }
 
-pub(super) fn broken(broken: Option<Vec<&str>>) -> Field {
+pub(super) fn breaks_field(broken: Option<Vec<&str>>) -> Field {
     let numbers = broken.as_ref().map_or_else(String::new, |b| b.join(" "));
     both(rules_broken(broken), numbers)
 }

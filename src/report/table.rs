@@ -87,8 +87,8 @@ impl Grid {
         self
     }
 
-    /// Allows lines of a column to be broken where most other columns are dropped, so that before
-    /// each row is one line.
+    /// Allows lines of a column to be broken only after most other columns are dropped, so that in a
+    /// wide terminal each row is one line.
     pub fn breaking_last(mut self, name: &'static str, least: usize) -> Self {
         self.breaking_last.push((name, least));
         self
@@ -262,7 +262,7 @@ pub(super) fn in_cell(text: &str) -> String {
 /// A text for LaTeX in any font encoding: no character of it is a command.
 fn in_tex(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    // `\\` before it would take it for its option
+    // `\\` of the row before would read it as its argument
     if text.starts_with(['[', '*']) {
         escaped.push_str("{}");
     }
@@ -334,7 +334,7 @@ pub(super) fn datum(datum: impl Into<String>) -> Field {
 pub struct ResultTable {
     title: Option<String>,
     pub(super) grid: Grid,
-    /// Sentences below the table, each behind the column that it explains; empty for none.
+    /// Sentences below the table, each with the name of the column it explains, or an empty one.
     pub(super) remarks: Vec<(&'static str, String)>,
     /// The keys of the data, and the values of each row.
     records: Vec<Vec<String>>,
