@@ -199,7 +199,7 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/replans/1/verdict", "infeasible".into()),
             ("/replans/1/verdict", "fine".into()),
             ("/replans/1/verdict", "".into()),
-            ("/replans/1/relaxations", serde_json::json!(["speed"])),
+            ("/replans/1/relaxations", serde_json::json!(["domain"])),
             ("/replans/1/cost_m2", serde_json::Value::Null),
             ("/replans/1/estimates", serde_json::json!([])),
             ("/replans", serde_json::json!([])),
@@ -216,5 +216,28 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
         }
         check(&|document| document["sailed"][1]["crab_angle_deg"] = 3.3.into()).code(1);
         check(&|document| document["sailed"] = 3.into()).code(2);
+        for (pointer, value, said) in [
+            (
+                "/replans/1/relaxations",
+                serde_json::json!(["speed"]),
+                "allowed: compliance, domain",
+            ),
+            (
+                "/settings/sensor",
+                "eyes".into(),
+                "settings.sensor: found 'eyes'; allowed: exact, ais",
+            ),
+            (
+                "/targets/0/behaviour",
+                "wild".into(),
+                "allowed: constant, random, extremes",
+            ),
+        ] {
+            let unknown = check(&|document| {
+                *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);
+            });
+            let shown = stderr(&unknown.code(2));
+            assert!(shown.contains(said), "{pointer}: {shown}");
+        }
     }
 }
