@@ -1,16 +1,9 @@
 //! Settings of the space-time planner that a campaign varies: `--set group.name=value`.
 
-use std::sync::OnceLock;
-
 use searoom::planner::SpaceTimeSettings;
 use toml::{Table, Value};
 
-static SETTINGS: OnceLock<SpaceTimeSettings> = OnceLock::new();
-
-/// The settings that scenes of campaigns are planned with.
-pub fn settings() -> &'static SpaceTimeSettings {
-    SETTINGS.get().unwrap_or(&SpaceTimeSettings::DEFAULT)
-}
+use super::encounter_generator::SETTINGS;
 
 /// Plans with changed settings from now on. Each change is a line of TOML with a dotted key.
 pub fn set(changes: &[String]) -> Result<(), String> {

@@ -11,11 +11,16 @@ pub use searoom::campaign::EncounterKind;
 use searoom::campaign::{Distribution, Encounter};
 use searoom::colregs::Thresholds;
 use searoom::frame::{Pose, Vector, wrap};
-use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
+use searoom::planner::{
+    DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind, SpaceTimeSettings,
+};
 use searoom::scenario::{Compliance, Memory, Remarks, Scenario, SimulationSettings};
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
+
+/// Settings of the space-time planner that scenes are planned with.
+pub static SETTINGS: std::sync::OnceLock<SpaceTimeSettings> = std::sync::OnceLock::new();
 
 /// m/s, own ship's desired speed.
 const OWN_SPEED: f64 = 5.0;
@@ -231,7 +236,7 @@ fn scene_at(
             planner: DEFAULT_PLANNER,
             objective: Objective::SpaceTimeError,
             settings: PlannerSettings {
-                space_time: super::ablation::settings(),
+                space_time: SETTINGS.get_or_init(SpaceTimeSettings::default),
                 ..PlannerSettings::at_length(OWN_HULL.length)
             },
             search: SearchKind::AStar,
