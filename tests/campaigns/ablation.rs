@@ -19,7 +19,20 @@ fn changed(changes: &[String]) -> Result<SpaceTimeSettings, String> {
             .map_err(|_| format!("--set {change}: not of the form group.name=value"))?;
         replace(&mut all, parsed);
     }
+    if let Some(found) = unbounded(&Value::Table(all.clone())) {
+        return Err(format!("--set: {found} is not finite"));
+    }
     all.try_into().map_err(|e| format!("--set: {e}"))
+}
+
+/// A number that is infinite or none.
+fn unbounded(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(number) => (!number.is_finite()).then_some(*number),
+        Value::Array(values) => values.iter().find_map(unbounded),
+        Value::Table(table) => table.values().find_map(unbounded),
+        _ => None,
+    }
 }
 
 /// Replaces values at any depth; a name that is not there is added, and refused afterwards.
@@ -51,6 +64,7 @@ fn a_setting_is_changed_and_an_unknown_one_is_refused() {
         ("conflicts.led_s=1", "unknown field `led_s`"),
         ("conflicts.lead_s=\"1\"", "invalid type"),
         ("conflicts", "not of the form group.name=value"),
+        ("conflicts.lead_s=inf", "inf is not finite"),
     ] {
         let error = with(change).expect_err("refused");
         assert!(error.contains(found), "{error}");

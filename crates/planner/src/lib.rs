@@ -253,9 +253,9 @@ pub struct Plan {
     pub cost: f64,
     /// Method that made it.
     pub method: PlanMethod,
-    /// Cost of the first plan on the graph before refinement, in the same unit. For one target it
-    /// is the graph's optimum; for several it is at most four times that. `None` where the graph
-    /// had no plan.
+    /// Cost of the first plan on the graph before refinement, in the same unit. For one target, and
+    /// for several of which the mission meets one alone, it is the graph's optimum around that one; for
+    /// several it is at most four times that. `None` where the graph had no plan.
     pub graph_cost: Option<f64>,
     /// Remaining length of the shortest path to the last waypoint at the end, metres; 0 for a plan
     /// that arrives. Along paths a plan that does not arrive extends to the horizon.

@@ -26,9 +26,10 @@ pub(super) struct Level {
     claims: RelaxationLevel,
     applies: Applies,
     source: Source,
-    /// Scale factors of all domains that are planned against, in this order. A planner may find a way around a
+    /// Scale factors of all domains that a search plans against, in this order. A planner may find a way around a
     /// larger set and miss it for a smaller one, so some rows also plan against more than they require.
     scales: &'static [f64],
+    /// What a search or a detour keeps of the domains; a remainder keeps what it is clear of.
     keeps: Keeps,
 }
 
@@ -52,8 +53,10 @@ enum Applies {
 /// Where the plan of a row comes from.
 #[derive(Clone, Copy)]
 enum Source {
-    /// A search; where a risk is accepted, also for a plan that takes none.
+    /// A search.
     Search,
+    /// Besides, where a risk is accepted, a search for a plan that takes none.
+    SearchAtNoRisk,
     /// The remainder of the last plan, if it is clear of the hard sets.
     Remainder,
     /// Besides, if it breaks no rule.
@@ -97,7 +100,8 @@ const fn row(
 
 pub(super) const LAWFUL_REMAINDER: Level = row(Rules, IfRules, LawfulRemainder, &[HARD], Along);
 pub(super) const BY_THE_RULES: Level = row(Rules, IfRulesAndDomains, Search, &[HALF, HARD], Along);
-pub(super) const CLEAR_OF_DOMAINS: Level = row(Domains, IfRules, Search, &[FULL], AsPlanned);
+pub(super) const CLEAR_OF_DOMAINS: Level =
+    row(Domains, IfRules, SearchAtNoRisk, &[FULL], AsPlanned);
 pub(super) const REMAINDER: Level = row(ReducedDomains, IfDomains, Remainder, &[HARD], Along);
 
 /// The rows below the request, in the order in which they are asked. Where none has a plan, the motion with the
@@ -144,9 +148,15 @@ impl Relaxer<'_> {
         };
         match level.source {
             Search if claims == Waiting && self.is_infeasible_alone() => None,
-            Search => scales[..tried].iter().find_map(|scale| {
-                let found = self.at_most_the_risk(claims, &self.scales(*scale), &accepted);
-                let found = (!found.is_infeasible()).then(|| self.kept(found, level));
+            Search | SearchAtNoRisk => scales[..tried].iter().find_map(|scale| {
+                let scales = self.scales(*scale);
+                let found = match level.source {
+                    SearchAtNoRisk => self.at_most_the_risk(claims, &scales, &accepted),
+                    _ => self.attempt(claims, &scales, self.scenario.max_risk),
+                };
+                // by the rules, time that is up is for the levels below to say: they give up less
+                let is_late = claims == Rules && found.trajectory().is_none();
+                let found = (!found.is_infeasible() && !is_late).then(|| self.kept(found, level));
                 found.filter(&accepted)
             }),
             Remainder => Some(self.remainder_clear_of_hard_sets(claims)?.0),

@@ -27,8 +27,8 @@ use searoom::scenario::Compliance;
 struct Options {
     #[command(subcommand)]
     campaign: Campaign,
-    /// Changes a setting of the space-time planner, as in `--set conflicts.lead_s=200`: an ablation. Scenes that
-    /// are read from scenario files keep the settings that plans are made with
+    /// Changes a setting of the space-time planner, as in `--set conflicts.lead_s=200`: an ablation. Values
+    /// are not checked beyond their type, and some, such as a zero interval, do not end
     #[arg(long, global = true, value_name = "GROUP.NAME=VALUE")]
     set: Vec<String>,
 }
@@ -325,10 +325,22 @@ fn run(campaign: Campaign) -> Report {
 
 fn main() -> ExitCode {
     let Options { campaign, set } = Options::parse();
-    if let Err(error) = campaigns::ablation::set(&set) {
+    let is_used = !matches!(
+        campaign,
+        Campaign::PathTime(_)
+            | Campaign::Control { .. }
+            | Campaign::Mutations { .. }
+            | Campaign::Wild { .. }
+    );
+    let done = match set.is_empty() || is_used {
+        true => campaigns::ablation::set(&set),
+        false => Err("--set: not for campaigns of other planners and of scenario files".to_owned()),
+    };
+    if let Err(error) = done {
         eprintln!("{error}");
         return ExitCode::from(2);
     }
+    set.iter().for_each(|change| println!("with {change}"));
     // a wrong plan may panic with its seed
     let Ok(report) = catch_unwind(|| run(campaign)) else {
         return ExitCode::FAILURE;

@@ -316,19 +316,20 @@ fn plan_with(
         Some(_) => conflicts_of(problem, proxies, &nominal_motion),
         None => Vec::new(),
     };
-    let search = |context: &Context, others: Option<&mut Vec<Vec<Segment>>>| {
+    let search = |context: &Context, others: Option<&mut Vec<Vec<Segment>>>, clock| {
         let targets = by_obstacle(context.proxies).count();
         let budgets = &problem.settings.budgets;
         let budget = budgets.of(targets, others.is_some(), problem.search);
         attempt(context, budget, &nominal_motion, &conflicts, others, clock)
     };
-    // where the nominal motion meets one obstacle alone, its plan is as cheap as if no other were there, if
-    // it is clear of them: so a ship that is never near changes nothing
-    let met = met_alone(proxies, &nominal_motion)
-        .filter(|_| others.is_none() && problem.search != SearchKind::Thorough);
+    // where the nominal motion meets one obstacle alone, the plan around that one is the answer if it is clear of
+    // the others, so that a ship that is never near changes nothing. Half of the time is left for all of them
+    let is_asked = others.is_none() && problem.search != SearchKind::Thorough;
+    let met = met_alone(proxies, &nominal_motion).filter(|_| is_asked && grounding.is_none());
     let around_one = met.map(|proxies| {
         let proxies = &proxies[..];
-        search(&Context { proxies, ..context }, None)
+        let half = Clock::new(clock.left() / 2);
+        search(&Context { proxies, ..context }, None, half)
     });
     let is_clear = |best: &Attempt| {
         let plan = best.plan.as_ref();
@@ -336,7 +337,7 @@ fn plan_with(
     };
     let best = match around_one.filter(is_clear) {
         Some(best) => best,
-        None => search(&context, others),
+        None => search(&context, others, clock),
     };
     let outcome = match (best.plan, best.timed_out) {
         (plan, true) => Outcome::Deadline(plan),

@@ -2,9 +2,10 @@
 //!
 //! Each is a number that changes which plans are found, or how long that takes, and never whether a plan is
 //! clear: tolerances and sampling intervals of tests stay beside the test. [`SpaceTimeSettings::DEFAULT`] is what
-//! plans are made with. Others serve ablations: `campaign … --set group.name=value` (docs/reference/benchmarks.md).
+//! plans are made with. Others serve ablations: `campaign … --set group.name=value` (docs/reference/development.md).
 //!
-//! Metres and seconds of searches are those of the normalised problem, whose turning radius is `size.turn_m`.
+//! Metres and seconds of searches without rules and land are those of the normalised problem, whose turning
+//! radius is `size.turn_m` unless the first set met is very small or large.
 
 use crate::SearchKind;
 
@@ -62,8 +63,8 @@ settings! {
         turn_m: f64 = 100.0,
         /// Desired speed, m/s.
         speed_mps: f64 = 5.0,
-        /// Where the first set met has a radius at contact below `smallest_m` or above `largest_m`, the set
-        /// determines the size, m.
+        /// Where the first set met has a radius at contact below `smallest_m` or above `largest_m`, m, the size
+        /// follows from that set.
         smallest_m: f64 = 10.0,
         /// See `smallest_m`.
         largest_m: f64 = 210.0,
@@ -89,8 +90,7 @@ settings! {
 
     /// Conflicts of the nominal motion.
     ConflictSettings {
-        /// Conflicts that all begin within this time are left to one manoeuvre, s. With 40 s *J* of four and ten
-        /// targets is 1 and 2 % lower, at twice the time (docs/reference/measured.md).
+        /// Conflicts that all begin within this time are left to one manoeuvre, s.
         apart_s: f64 = 120.0,
         /// Largest lead of a departure before a conflict, s.
         lead_s: f64 = 67.0,
@@ -103,6 +103,8 @@ settings! {
     GraphSettings {
         /// Times before the first contact at which a manoeuvre may begin, besides t = 0, s.
         leads_s: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0],
+        /// Contacts that begin within this time of another are one, s.
+        contacts_apart_s: f64 = 50.0,
         /// Largest turn toward a vertex, rad.
         max_turn: f64 = 2.0,
         /// Largest duration of an interception, s.
@@ -246,6 +248,9 @@ settings! {
         least_gain: f64 = 0.05,
         /// Relative decrease that counts as no progress.
         stalled: f64 = 1e-3,
+        /// Largest number of steps of a refinement, whatever its budget. It should be more than `fine_from`, because
+        /// only a manoeuvre with fine chords counts as clear.
+        max_steps: usize = 40,
         /// Longest arc per chord in the search for approaches at first, rad.
         coarse_chord: f64 = 0.15,
         /// Number of rounds after which chords are fine.
@@ -309,14 +314,14 @@ settings! {
         iterations: usize = 12,
     }
 
-    /// Graph of manoeuvres by the rules. Times are for a ship that sails its turning radius in `turn_s`, and
-    /// grow with a slower one's.
+    /// Graph of manoeuvres by the rules.
     RuleSettings {
-        /// Time in which own ship sails its turning radius, s.
+        /// Time in which a harbour vessel sails its turning radius, s. Where own ship takes longer, the times between
+        /// departures, of parallel courses and of the pattern search grow as much.
         turn_s: f64 = 20.0,
         /// First turns, as multiples of the least readily apparent turn of 30°.
         turns: [f64; 6] = [1.0, 1.5, 2.2, 3.0, 4.0, 5.0],
-        /// First turns from a given departure, as multiples of it.
+        /// First turns from a given departure, as multiples of 30°.
         all_turns: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5],
         /// First turns without roles, as multiples of 30°.
         plain_turns: [f64; 4] = [0.3, 0.8, 1.5, 3.0],
@@ -335,7 +340,7 @@ settings! {
         /// Ratio of the costs above which own ship is on time again by a change of speed that is too short.
         short_price: f64 = 2.0,
         /// Most departures.
-        most_departures: f64 = 6.0,
+        most_departures: usize = 6,
         /// Least time between two departures, s: in a short window they differ little.
         departures_apart_s: f64 = 8.0,
         /// Time within which the first alteration follows a risk that begins late, s.
@@ -411,7 +416,8 @@ impl BudgetSettings {
 )]
 pub struct SearchBudget {
     /// `(max_expansions, heuristic_weight)` of each search stage. The limit counts all expansions so far and
-    /// bounds memory and time. A stage starts where the earlier ones found no plan; equal ones are one.
+    /// bounds memory and time. A stage starts where the earlier ones found no plan; a stage that repeats the one
+    /// before does nothing.
     pub stages: [(usize, f64); 3],
     /// Largest number of iterations of a refinement.
     pub max_iterations: usize,

@@ -31,16 +31,7 @@ use searoom_model::trajectory::Segment;
 use searoom_model::vessel::OwnShip;
 use searoom_sets::{PolytopeObstacle, Track, along_track};
 
-/// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
-/// Largest turn toward a vertex, radians.
-/// Largest duration of an interception, seconds.
-/// Seconds for which a course is held beyond a vertex, one after another.
-/// Angles between the return lines and the route, radians.
-/// Largest number of consecutive vertices.
-/// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
-/// Larger sets are simplified first.
-/// Metres. Obstacles farther than this from the nominal motion get no nodes.
-/// Length in seconds of the pieces of the nominal motion in this test.
+/// Length of the pieces of the nominal motion in the test which obstacles are relevant, seconds.
 const PIECE_S: f64 = 5.0;
 
 /// Space-time graph of one problem.
@@ -77,7 +68,7 @@ impl<'a> Graph<'a> {
             )
             .collect();
         contacts.sort_by(f64::total_cmp);
-        contacts.dedup_by(|a, b| *a - *b < settings.leads_s[3]);
+        contacts.dedup_by(|a, b| *a - *b < settings.contacts_apart_s);
         // short pieces: the bound is loose on long ones
         let pieces: Vec<Segment> = nominal_motion
             .iter()

@@ -25,9 +25,7 @@ use crate::space_time::refinement::trial::Trial;
 use searoom_geometry::frame::Side;
 use searoom_model::trajectory::Segment;
 
-/// Longest turn of one segment variable, radians: in a step of the programme, and where a step is
-/// restored or corrected. With a small turning radius a step of some metres would be thousands of
-/// turns, each with its closest approaches.
+/// Longest turn of one segment variable where a step is restored or corrected, radians.
 const LONGEST_RESTORED_ARC: f64 = std::f64::consts::TAU;
 
 /// Depth in metres that needs no correction.
@@ -303,7 +301,7 @@ impl Refinement {
             self.stalled = 0;
             return;
         }
-        if self.steps >= context.problem.settings.budgets.one_target.max_iterations || !advanced {
+        if self.steps >= settings.max_steps || !advanced {
             self.finish(context);
         }
     }

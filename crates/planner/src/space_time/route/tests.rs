@@ -22,6 +22,7 @@ fn line(slowness: f64, length: f64) -> Route {
         }],
         least_change: 0.0,
         speed_time: 0.0,
+        alternation: [130.0, 17.0, 50.0],
         speeds: vec![0.0, 2.0, 4.0],
     }
 }
@@ -33,7 +34,7 @@ fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
         let route = line(slowness, 1000.0);
         let (speed, length) = route.speed_and_length(&route.pieces[0], 0.0, 1000.0, 0.0);
         assert_eq!(speed, if fastest { 4.0 } else { 2.0 }, "{slowness}");
-        assert!(length >= LEAST_ALTERNATION_M, "{slowness}: {length}");
+        assert!(length >= route.alternation[1], "{slowness}: {length}");
     }
 }
 
@@ -43,6 +44,7 @@ fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
 fn a_slip_in_the_schedule_adds_few_segments() {
     let route = Route {
         speed_time: 30.0,
+        alternation: [400.0, 50.0, 50.0],
         ..line(0.375, 1000.0)
     };
     for late in [-1e-4, -1e-5, 0.0, 1e-5, 1e-4] {
@@ -66,6 +68,7 @@ fn the_speed_alternates_seldom_on_a_long_line() {
 fn a_ship_that_is_little_early_keeps_its_speed() {
     let route = Route {
         speed_time: 30.0,
+        alternation: [400.0, 50.0, 50.0],
         ..line(0.25, 1000.0)
     };
     let speeds = |early: f64| -> Vec<f64> {

@@ -18,7 +18,9 @@ impl Manoeuvres<'_, '_> {
     pub(super) fn departures(&self, from: f64, latest: f64) -> Vec<f64> {
         let (window, settings) = (latest - from, self.settings());
         let parts = (window / (settings.departures_apart_s * self.unit)).ceil();
-        let parts = parts.clamp(1.0, settings.most_departures - 1.0) as usize;
+        let parts = (parts as usize)
+            .min(settings.most_departures.saturating_sub(1))
+            .max(1);
         let share = |part: usize| 1.0 - part as f64 / parts as f64;
         let times = (0..=parts).map(|part| self.tidy_time(from + share(part) * window));
         let mut times: Vec<f64> = times.collect();

@@ -39,7 +39,7 @@ const SPARE: f64 = 1.001;
 /// Tangents nearer to each other than this are one, radians.
 const SAME_TANGENT: f64 = 0.03;
 
-/// Sampled instants of the escape of a stand-on ship, and bisection steps after that.
+/// Bisection steps for the last escape of a stand-on ship, after the samples.
 const HALVINGS: usize = 5;
 
 /// The numbers of a manoeuvre that no contact decides.

@@ -34,7 +34,8 @@ pub(crate) struct Corner {
     pub position: Vector,
 }
 
-/// At least two and at most [`MAX_CORNERS`] corners that a manoeuvre goes through after it leaves the nominal motion at the first of them.
+/// At least two and at most [`MAX_CORNERS`] corners that a manoeuvre goes through after it leaves the nominal
+/// motion at the first of them.
 pub(crate) struct Corners<'c> {
     pub nominal_motion: &'c [Segment],
     pub corners: &'c [Corner],

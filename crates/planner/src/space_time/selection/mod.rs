@@ -305,6 +305,9 @@ impl<'a> Selection<'a> {
         let best = self.best.iter();
         let mut ways: Vec<_> = best.map(|b| (b.motion.clone(), b.cost)).collect();
         for refinement in ranked(running) {
+            if ways.len() >= settings.most_ways {
+                break;
+            }
             let Some(motion) = refinement.best_motion(&self.context) else {
                 break;
             };
@@ -314,9 +317,6 @@ impl<'a> Selection<'a> {
             };
             if !ways.iter().any(is_same) && self.is_clear(&motion) {
                 ways.push((motion, cost));
-            }
-            if ways.len() == settings.most_ways {
-                break;
             }
         }
         let others = ways.into_iter().skip(1);
@@ -388,7 +388,7 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
 /// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`. None is
 /// dearer than the cheapest by more than a fraction: insertions can gain more than its lead.
 fn leaders(running: &[Refinement], most: usize, margin: f64) -> Vec<(InitialGuess, f64)> {
-    let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
+    let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most.min(running.len()));
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
