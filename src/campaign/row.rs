@@ -3,9 +3,8 @@
 use super::specification::{RowScenario, Specification, Stratum};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    ReplanDocument, SailedDocument, SimulatedTargetDocument, SimulationDocument,
+    PlanOutcome, ReplanDocument, SailedDocument, SimulatedTargetDocument, SimulationDocument,
 };
-use crate::evaluation::PlanOutcome;
 use crate::frame::{Vector, clockwise_deg, deg_from_radians, relative_bearing};
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;

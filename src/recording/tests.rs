@@ -811,7 +811,7 @@ fn a_simulation_is_read_back_as_it_was_sailed() {
         .expect("judged")
         .roles[0]
         .role;
-    assert_eq!(role, "head-on");
+    assert_eq!(role.word(), "head-on");
     let names = labels(&recorded, "chart/map/names");
     assert!(
         names.contains(&format!("{NAME}\nown ship: {role}")),

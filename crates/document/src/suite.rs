@@ -14,19 +14,13 @@ use searoom_input::text::counted;
 
 searoom_evaluation::outcomes! {
     /// How a run ended, or why there is none.
-    SuiteOutcome from PlanOutcome {
+    SuiteOutcome from PlanOutcome default Unreadable {
         /// A file that is not a scenario.
         Unreadable => "unreadable",
         /// A run that ended in an internal fault.
         InternalFault => "internal-fault",
         /// A valid scenario that the requested planner or rules do not support.
         NotApplicable => "not-applicable",
-    }
-}
-
-impl Default for SuiteOutcome {
-    fn default() -> Self {
-        Self::Unreadable
     }
 }
 

@@ -8,7 +8,7 @@ use searoom_evaluation::PlanOutcome;
 
 searoom_evaluation::outcomes! {
     /// Outcome of a checked plan or simulation, or why there is none.
-    VerifiedOutcome from PlanOutcome {
+    VerifiedOutcome from PlanOutcome default Unreadable {
         /// A simulation in which hulls met.
         Contact => "contact",
         /// A simulation without a contact, where every plan was safe and in time.
@@ -19,12 +19,6 @@ searoom_evaluation::outcomes! {
         Unreadable => "unreadable",
         /// A document whose check exceeded the time limit.
         Unproven => "unproven",
-    }
-}
-
-impl Default for VerifiedOutcome {
-    fn default() -> Self {
-        Self::Unreadable
     }
 }
 

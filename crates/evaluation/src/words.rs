@@ -8,7 +8,7 @@ use super::Safety;
 macro_rules! outcomes {
     (
         $(#[doc = $about:literal])+
-        $kind:ident $(from $plan:ident)? {
+        $kind:ident $(from $plan:ident)? $(default $default:ident)? {
             $($(#[doc = $doc:literal])+ $value:ident => $word:literal,)*
         }
     ) => {
@@ -35,6 +35,12 @@ macro_rules! outcomes {
                     $plan::Infeasible => Self::Infeasible,
                     $plan::Deadline => Self::Deadline,
                 }
+            }
+        })?
+
+        $(impl Default for $kind {
+            fn default() -> Self {
+                Self::$default
             }
         })?
     };

@@ -1,7 +1,7 @@
 //! One simulation, prepared for the views.
 
 use super::{Canvas, Palette, cursor_times, with_sea};
-use crate::colregs::{self, SteadyShip};
+use crate::colregs::{self, Role, SteadyShip};
 use crate::document::{
     EncounterDocument, PlanDocument, RoleDocument, SampleDocument, SegmentDocument,
     SimulatedTargetDocument, SimulationDocument, has_role,
@@ -127,7 +127,7 @@ impl<'a> ClosedLoop<'a> {
                 match all.last_mut().filter(goes_on) {
                     Some(last) => last.until_s = until_s,
                     None => all.push(RoleDocument {
-                        role: state.role.clone(),
+                        role: state.role,
                         from_s,
                         until_s,
                     }),
@@ -138,11 +138,11 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Own ship's role toward a target on the desired trajectory, the first that a plan has.
-    pub fn desired_role(&self, target: &str) -> &'a str {
+    pub fn desired_role(&self, target: &str) -> Role {
         let met = self.plans.iter().flat_map(|plan| plan.encounters);
         let met = met.filter(|met| met.target == target);
-        let mut roles = met.map(|met| met.role.as_str());
-        roles.find(|role| has_role(role)).unwrap_or("none")
+        let mut roles = met.map(|met| met.role);
+        roles.find(|role| has_role(*role)).unwrap_or(Role::None)
     }
 
     /// Metres between own ship and where its plan has it; at the start of a plan, where the one

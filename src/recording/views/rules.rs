@@ -2,6 +2,7 @@
 
 use rerun::{Color, Points2D, Points3D, StateChange, StateConfiguration, TimeColumn};
 
+use crate::colregs::Role;
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
     ConductDocument, EncounterDocument, EscapeDocument, PlanDocument, RoleDocument, chart_role,
@@ -50,7 +51,7 @@ pub struct Judged<'a> {
     pub color: Color,
     pub roles: Vec<RoleDocument>,
     /// The one on the desired trajectory, or none.
-    pub desired: &'a str,
+    pub desired: Role,
     /// `None` without a plan.
     pub conduct: Option<&'a ConductDocument>,
 }
@@ -61,12 +62,12 @@ impl<'a> Judged<'a> {
         let judged = |(index, encounter): (usize, &'a EncounterDocument)| {
             let conduct = encounter.conduct.as_ref();
             let roles = conduct.map(|conduct| conduct.roles.clone());
-            let is_met = conduct.is_some() || has_role(&encounter.role);
+            let is_met = conduct.is_some() || has_role(encounter.role);
             is_met.then(|| Self {
                 target: &encounter.target,
                 color: canvas.target_color(index),
                 roles: roles.unwrap_or_default(),
-                desired: &encounter.role,
+                desired: encounter.role,
                 conduct,
             })
         };
@@ -80,10 +81,10 @@ impl<'a> Judged<'a> {
     /// When own ship violates rules and monitors, and their short names, in order of time.
     fn violated(&self) -> Vec<(f64, String)> {
         let rules = self.conduct.iter().flat_map(|conduct| &conduct.violations);
-        let rules = rules.map(|violation| (violation.t_s, violation.rule.clone()));
+        let rules = rules.map(|violation| (violation.t_s, violation.rule.to_string()));
         let monitors = self.conduct.iter().flat_map(|conduct| &conduct.monitors);
-        let monitors = monitors.filter(|m| m.verdict == MonitorVerdict::Violated.word());
-        let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), m.monitor.clone()));
+        let monitors = monitors.filter(|m| m.verdict == MonitorVerdict::Violated);
+        let monitors = monitors.map(|m| (m.t_s.unwrap_or(0.0), m.monitor.to_string()));
         let mut all: Vec<(f64, String)> = rules.chain(monitors).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all
@@ -274,6 +275,7 @@ pub fn log_marks_in_volume(rec: &mut Recorder, canvas: &Canvas, marks: &[Mark]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colregs::Paragraph;
     use crate::pipeline;
     use crate::recording::canvas::ViewModel;
     use crate::scenario::{Compliance, Scenario};
@@ -299,7 +301,10 @@ mod tests {
     fn a_rule_is_broken_from_its_moment_on() {
         stand_on(Compliance::Shape, |model, plan, judged, lanes, end| {
             let conduct = judged[0].conduct.expect("judged");
-            let violation = conduct.violations.iter().find(|b| b.rule == "17(c)");
+            let violation = conduct
+                .violations
+                .iter()
+                .find(|b| b.rule == Paragraph::Rule17C);
             let violation = violation.expect("a turn to port");
             let [roles, broken] = lanes else {
                 panic!("two lanes");
@@ -325,7 +330,7 @@ mod tests {
             let one = |judged: &Judged| name_with_role(std::slice::from_ref(judged), "target", 0.0);
             assert_eq!(one(&later), "target\nown ship: stand-on from 1:00");
             later.roles.clear();
-            later.desired = "head-on";
+            later.desired = Role::HeadOn;
             assert_eq!(one(&later), "target\nown ship: head-on (desired)");
             let lane = &later.lanes(end).next().expect("a lane");
             assert_eq!(lane.at(0.0), "head-on (desired): own ship to target");

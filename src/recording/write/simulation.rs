@@ -154,7 +154,7 @@ fn outcomes(document: &SimulationDocument) -> Vec<Event> {
     let mut events = Vec::new();
     let mut before = None;
     for replan in &document.replans {
-        let mut relaxed: Vec<&str> = replan.relaxations.iter().map(String::as_str).collect();
+        let mut relaxed: Vec<&str> = replan.relaxations.iter().map(|kind| kind.word()).collect();
         relaxed.sort_unstable();
         relaxed.dedup();
         let outcome = Some((replan.verdict.as_str(), relaxed.clone()));
