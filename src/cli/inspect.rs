@@ -190,7 +190,7 @@ impl Contents {
         )];
         lines.push(match (&self.plan, &self.compared, &self.sailed) {
             (Some(plan), _, _) => plan_document_text(plan, display),
-            (None, Some(compared), _) => comparison_table(compared, display),
+            (None, Some(compared), _) => comparison_table(compared).text(display),
             (None, None, Some(sailed)) => simulation_text(sailed, display),
             (None, None, None) => "no plan document in it".to_owned(),
         });
