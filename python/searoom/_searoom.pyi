@@ -1,6 +1,6 @@
 """Types of the native part."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, final
@@ -87,6 +87,13 @@ class Scenario:
         seed: int | None = None,
     ) -> Scenario:
         """The scenario with other settings, as the options of the command line do it."""
+    def to_dict(self) -> dict[str, Any]:
+        """The scenario as a dict with the keys of a scenario file, without the settings of `replace`: what
+        `from_dict` reads."""
+    def with_targets(self, targets: Iterable[dict[str, Any]]) -> Scenario:
+        """The scenario with these targets in place of its own, each a dict with the keys of a scenario file,
+        and with the settings of `replace`."""
+    def __reduce__(self) -> tuple[Any, tuple[str, Path, dict[str, Any], list[str]]]: ...
     @staticmethod
     def _restored(text: str, folder: str | PathLike[str], notes: list[str]) -> Scenario:
         """The scenario of a pickle."""
@@ -154,6 +161,8 @@ class Plan:
         """The plan document as the command line writes it."""
     def save(self, file: str | PathLike[str]) -> None:
         """Writes the plan document. The file is whole or unchanged."""
+    def _repr_html_(self) -> str:
+        """For notebooks: a chart from above, and the text."""
     def to_dataframe(self) -> pandas.DataFrame:
         """The samples as a table, indexed by time. Needs pandas."""
     def to_xarray(self) -> xarray.Dataset:

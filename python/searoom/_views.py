@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -58,6 +60,65 @@ def restored(text: str, folder: Path, settings: dict[str, Any], notes: list[str]
     return Scenario._restored(text, folder, notes).replace(**settings)
 
 
+def with_targets(scenario: Scenario, targets: Iterable[dict[str, Any]]) -> Scenario:
+    """The scenario with other targets, and with its settings."""
+    from searoom._searoom import Scenario
+
+    _, (_, folder, settings, _) = scenario.__reduce__()
+    values = scenario.to_dict() | {"targets": list(targets)}
+    return Scenario.from_dict(values, folder).replace(**settings)
+
+
+def html(plan: Plan) -> str:
+    """A plan as a notebook shows it: a chart from above with the sets at the closest approach, and the text.
+    Without a plan the text alone."""
+    from searoom._searoom import NoPlanError
+
+    text = f"<pre>{escape(str(plan))}</pre>"
+    try:
+        samples = plan.sample()
+    except NoPlanError:
+        return text
+    time = min(max(closest_approach(plan), 0.0), float(samples.t_s[-1]))
+    now = plan.sample([time])
+    sections = plan.sections(time)
+    ways = plan.document["mission"]["waypoints"]
+    way = np.array([[w["east_m"], w["north_m"]] for w in ways])
+    track = np.column_stack([samples.east_m, samples.north_m])
+    low, high = frame([way, track, *sections.values()])
+    size = high - low
+
+    def points(rows: NDArray[np.float64]) -> str:
+        # north is up
+        return " ".join(f"{east - low[0]:.1f},{high[1] - north:.1f}" for east, north in rows)
+
+    line = 'fill="none" vector-effect="non-scaling-stroke"'
+    shapes = [f'<polyline points="{points(way)}" {line} stroke="gray" stroke-dasharray="6 4"/>']
+    for name, section in sections.items():
+        title = f"<title>{escape(name)} at {time:.0f} s</title>"
+        shapes.append(f'<polygon points="{points(section)}" fill="crimson" opacity="0.4">{title}</polygon>')
+    shapes.append(f'<polyline points="{points(track)}" {line} stroke="royalblue" stroke-width="2"/>')
+    here = points(np.column_stack([now.east_m, now.north_m])).split(",")
+    dot = f'r="{0.01 * float(size.max()):.1f}" fill="royalblue"'
+    shapes.append(
+        f'<circle cx="{here[0]}" cy="{here[1]}" {dot}><title>own ship at {time:.0f} s</title></circle>'
+    )
+    box = f"0 0 {size[0]:.1f} {size[1]:.1f}"
+    style = "max-width: 100%; max-height: 30em"
+    chart = f'<svg viewBox="{box}" width="600" style="{style}">{"".join(shapes)}</svg>'
+    return f"<div>{chart}{text}</div>"
+
+
+def frame(
+    shapes: Iterable[NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The south-west and the north-east corner around points, with a margin of a twentieth."""
+    rows = np.vstack([shape for shape in shapes if len(shape)])
+    low, high = rows.min(axis=0), rows.max(axis=0)
+    margin = max(0.05 * float((high - low).max()), 1.0)
+    return low - margin, high + margin
+
+
 def dataframe(samples: Samples) -> pandas.DataFrame:
     """The samples as a table, indexed by time."""
     import pandas
@@ -84,10 +145,12 @@ def plot(
     """Draws a plan in the plane with matplotlib, and returns the axes.
 
     The desired path is dashed, the plan solid. The sets are those at `at_s`, by default the time
-    of the closest approach; own ship is marked at that time. Raises `NoPlanError` without a plan.
+    of the closest approach; own ship is marked at that time. New axes are framed by the path, the plan and
+    the sets, and not by the land. Raises `NoPlanError` without a plan.
     """
     import matplotlib.pyplot as plt
 
+    is_new = ax is None
     if ax is None:
         ax = plt.subplots(layout="constrained")[1]
     document = plan.document
@@ -102,10 +165,15 @@ def plot(
     time = min(max(time, 0.0), end)
     now = plan.sample([time])
     ax.plot(now.east_m, now.north_m, "o", color="C0", label=f"own ship at {time:.0f} s")
-    for index, (name, section) in enumerate(plan.sections(time).items()):
+    sections = plan.sections(time)
+    for index, (name, section) in enumerate(sections.items()):
         ax.fill(*section.T, alpha=0.3, color=f"C{1 + index % 9}", label=f"{name} at {time:.0f} s")
     ax.set(title=f"{document['scenario']}: {plan.verdict}", xlabel="east, m", ylabel="north, m")
-    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_aspect("equal", adjustable="box" if is_new else "datalim")
+    if is_new:
+        track = np.column_stack([samples.east_m, samples.north_m])
+        low, high = frame([way, track, *sections.values()])
+        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.legend()
     return ax
 

@@ -204,6 +204,13 @@ impl Plan {
         views.call_method1("dataset", (self.sample(py, None)?, &self.document.scenario))
     }
 
+    /// For notebooks: a chart from above, and the text.
+    fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("searoom._views")?
+            .call_method1("html", (slf,))
+    }
+
     fn __str__(&self) -> String {
         let display = Display::default();
         let text = plan_document_text(&self.document, display);

@@ -194,6 +194,22 @@ impl Scenario {
         &self.text
     }
 
+    /// The scenario as a dict with the keys of a scenario file, without the settings of `replace`: what
+    /// `from_dict` reads.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("tomllib")?.call_method1("loads", (&self.text,))
+    }
+
+    /// The scenario with these targets in place of its own, each a dict with the keys of a scenario file,
+    /// and with the settings of `replace`.
+    fn with_targets<'py>(
+        slf: Bound<'py, Self>,
+        targets: Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let views = slf.py().import("searoom._views")?;
+        views.call_method1("with_targets", (slf, targets))
+    }
+
     /// For `pickle`: text and settings. The map has to be there where it is read again.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let scenario = &self.inner;

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import tomllib
+import xml.etree.ElementTree
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -171,6 +172,59 @@ def test_the_lock_is_released_while_planning() -> None:
         counted += 1
     thread.join()
     assert counted > 3
+
+
+def test_a_scenario_is_its_dict_again() -> None:
+    for file in COLREGS:
+        read = searoom.Scenario.read(file)
+        assert read.to_dict() == tomllib.loads(file.read_text())
+        made = searoom.Scenario.from_dict(read.to_dict())
+        assert without_times(searoom.plan(made).document) == without_times(searoom.plan(read).document)
+
+
+def test_other_targets_keep_the_settings() -> None:
+    asked = scenario("colregs/head-on.toml").replace(compliance="none", max_risk=0.1)
+    [target] = asked.to_dict()["targets"]
+    others = [target | {"name": name} for name in ("first", "second")]
+    found = asked.with_targets(others)
+    assert found.targets == ["first", "second"]
+    assert found.compliance == "none"
+    assert searoom.plan(found).document["max_risk"] == 0.1
+    assert asked.with_targets([]).targets == []
+    with pytest.raises(searoom.InputError, match="targets"):
+        asked.with_targets([target | {"length_m": -1.0}])
+
+
+def test_a_notebook_shows_a_plan() -> None:
+    renamed = scenario("colregs/give-way.toml")
+    [target] = renamed.to_dict()["targets"]
+    plan = searoom.plan(renamed.with_targets([target | {"name": "<b> & co"}]))
+    html = plan._repr_html_()
+    chart = xml.etree.ElementTree.fromstring(html)
+    titles = [title.text for title in chart.iter("title")]
+    assert any(title is not None and title.startswith("<b> & co at ") for title in titles)
+    assert plan.verdict in html
+    # own ship's track lies within the frame
+    svg = chart.find("svg")
+    assert svg is not None
+    width, height = map(float, svg.attrib["viewBox"].split()[2:])
+    *_, track = svg.iter("polyline")
+    places = [tuple(map(float, place.split(","))) for place in track.attrib["points"].split()]
+    assert len(places) > 100
+    assert all(0 < east < width and 0 < south < height for east, south in places)
+    # the way begins in the west and ends in the east
+    assert places[0][0] < places[-1][0]
+
+
+def test_a_chart_is_framed_by_the_ships_and_not_by_the_land() -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    plan = searoom.plan(scenario("harbour/munkholmen.toml"))
+    assert plan.document["land"]
+    axes = searoom.plot(plan)
+    samples = plan.sample()
+    width = np.ptp(axes.get_xlim())
+    extent = max(np.ptp(samples.east_m), np.ptp(samples.north_m))
+    assert width < 3 * extent
 
 
 def test_a_pickled_scenario_is_the_same() -> None:
