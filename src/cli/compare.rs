@@ -39,7 +39,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     }
     let figure = args.written.drawn.figure.as_deref();
     figure.map_or(Ok(()), prepare_figure)?;
-    args.tables.prepare()?;
+    args.tables.prepare(&args.paths)?;
     let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
     let wanted = Wanted {

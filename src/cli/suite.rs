@@ -54,7 +54,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()?
     };
-    args.tables.prepare()?;
+    args.tables.prepare(&args.paths)?;
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());
     let mut tally = Tally::default();

@@ -256,7 +256,9 @@ impl Grid {
 }
 
 pub(super) fn in_cell(text: &str) -> String {
-    text.replace('|', "\\|").replace(['\n', '\r'], " ")
+    // a backslash before a bar would escape itself, and end the cell
+    let text = text.replace('\\', "\\\\").replace('|', "\\|");
+    text.replace(['\n', '\r'], " ")
 }
 
 /// A text for LaTeX in any font encoding: no character of it is a command.

@@ -70,10 +70,10 @@ fn a_comparison_has_a_line_for_each_method_in_160_columns() {
 
 /// Cells of a line of Markdown.
 fn markdown_cells(line: &str) -> Vec<String> {
-    let line = line.replace("\\|", "\u{0}");
+    let line = line.replace("\\\\", "\u{1}").replace("\\|", "\u{0}");
     let cells = line.trim_matches('|').split('|');
     cells
-        .map(|cell| cell.trim().replace('\u{0}', "|"))
+        .map(|cell| cell.trim().replace('\u{0}', "|").replace('\u{1}', "\\"))
         .collect()
 }
 
@@ -156,12 +156,12 @@ fn tex_rows(text: &str) -> Vec<Vec<String>> {
 #[test]
 fn suite_and_compare_write_one_table_in_three_formats() {
     let folder = Folder::new();
-    let odd = "[R&D] 50%_#1 {$x} ~^ a\\b <c|d>.toml";
+    let odd = "[R&D] 50%_#1 {$x} ~^ a\\|b <c|d>.toml";
     let odd = folder.write(
         odd,
         HEAD_ON.replace("\"Head-on\"", "'Head-on, 50% \\ | {x}'"),
     );
-    let name = "[R&D] 50%_#1 {$x} ~^ a\\b <c|d>.toml";
+    let name = "[R&D] 50%_#1 {$x} ~^ a\\|b <c|d>.toml";
     for (asked, key) in [("suite", "runs"), ("compare", "comparisons")] {
         let [csv, md, tex] = ["a.csv", "new/a.md", "a.tex"].map(|file| folder.at(file));
         let words = [asked, &odd, "scenarios/colregs", "--json"];
@@ -238,6 +238,19 @@ fn a_table_needs_the_name_of_a_file() {
         ",
     );
     assert_eq!(folder.names("."), ["file"]);
+    // what is read, or written by another option, is not overwritten
+    folder.write("in.toml", HEAD_ON);
+    folder.refuses(
+        "
+        suite DIR/in.toml --quiet --csv DIR/in.toml | --csv: DIR/in.toml: a scenario file
+        compare DIR --quiet --md DIR/./in.toml | a scenario file, which would be overwritten
+        suite DIR --quiet --csv DIR/a --md DIR/a | --md: DIR/a: the file of --csv, too; name another
+        suite DIR --quiet --csv DIR/a --tex DIR/./a | --tex: DIR/./a: the file of --csv, too
+        ",
+    );
+    let kept = fs::read_to_string(folder.at("in.toml")).expect("the scenario");
+    assert_eq!(kept, HEAD_ON);
+    assert_eq!(folder.names("."), ["file", "in.toml"]);
     let printed = stdout(&run("suite scenarios/colregs --quiet --csv /dev/stdout").success());
     assert!(
         printed.starts_with("file,scenario,planner,outcome,"),

@@ -318,15 +318,34 @@ impl TableFiles {
             .filter_map(|(option, file)| Some((option, file.as_ref()?)))
     }
 
-    /// Rejects what names no file, and creates the folders of the files.
-    pub fn prepare(&self) -> anyhow::Result<()> {
-        self.files().try_for_each(|(option, file)| {
+    /// Rejects what names no file, one that another option names, and one of the paths that are `read`, and
+    /// creates the folders of the files.
+    pub fn prepare(&self, read: &[PathBuf]) -> anyhow::Result<()> {
+        let inputs: Vec<PathBuf> = read
+            .iter()
+            .filter_map(|path| path.canonicalize().ok())
+            .collect();
+        let mut taken: Vec<(&str, PathBuf)> = Vec::new();
+        for (option, file) in self.files() {
             if file.as_os_str() == "-" {
                 bail!("{option}: found -; allowed: a file, or /dev/stdout for standard output");
             }
             refuse_folder(option, file, "name a file")?;
-            make_parent(file)
-        })
+            make_parent(file)?;
+            let place = place(file);
+            if inputs.contains(&place) || place.extension().is_some_and(|e| e == "toml") {
+                let file = file.display();
+                bail!(
+                    "{option}: {file}: a scenario file, which would be overwritten; name another"
+                );
+            }
+            if let Some((other, _)) = taken.iter().find(|(_, of)| *of == place) {
+                let file = file.display();
+                bail!("{option}: {file}: the file of {other}, too; name another");
+            }
+            taken.push((option, place));
+        }
+        Ok(())
     }
 
     /// Writes the files that are asked for, with all tables in each.
@@ -352,6 +371,19 @@ impl TableFiles {
         }
         status
     }
+}
+
+/// Where a file is, or will be in a folder that exists: links and `..` lead there, too.
+fn place(file: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = file
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+        Some(folder.join(file.file_name()?))
+    };
+    let found = file.canonicalize().ok().or_else(in_folder);
+    found.unwrap_or_else(|| file.to_owned())
 }
 
 /// The rows of tables with the same keys, which come once.
