@@ -90,7 +90,7 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
             continue;
         }
         if on_water {
-            found.push(Conflict::at(time, f64::INFINITY));
+            found.push(Conflict::at(time));
         }
         on_water = false;
         if let Some(conflict) = found.last_mut() {

@@ -150,19 +150,14 @@ settings! {
             max_iterations: 16,
             iterations_once_clear: 5,
             leaders: 1,
-            insert_twice: false,
             ..ONE_TARGET
         },
     }
 
     /// Predefined manoeuvres.
     GuessSettings {
-        /// Slenderness of a conflict from which the manoeuvres for slender ones are tried.
+        /// Ratio of the distance sailed in a conflict to its offset from which the manoeuvres for slender ones are tried.
         slender_from: f64 = 2.5,
-        /// Ratio of the offset astern to the lateral one below which waiting is tried as well.
-        waiting_ratio: f64 = 1.2,
-        /// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
-        pass_ahead_ratio: f64 = 1.2,
         /// Largest number of conflicts with manoeuvres of their own, earliest first.
         max_conflicts: usize = 2,
         /// Largest number of ways past the sets, where others than the cheapest are asked for.
@@ -171,20 +166,6 @@ settings! {
         same_way: f64 = 0.02,
         /// Return angles, rad; the smallest that fits is used.
         return_angles: [f64; 4] = [0.3, 0.5, 0.8, 1.1],
-        /// Turn of a waiting manoeuvre, rad.
-        waiting_turn: f64 = 0.6,
-        /// Distance beyond the route behind a target that passed ahead, m.
-        overshoot_m: f64 = 20.0,
-        /// Return angle of that manoeuvre, rad.
-        overshoot_return: f64 = 0.08,
-        /// Largest ratio of the fast time to the available time of a manoeuvre that passes ahead.
-        max_fast_ratio: f64 = 1.6,
-        /// Outbound turn of that manoeuvre, rad.
-        ahead_turn: f64 = 0.5,
-        /// Return turn of that manoeuvre, rad.
-        ahead_return: f64 = 0.3,
-        /// Lines of that manoeuvre, m.
-        ahead_out_m: f64 = 40.0,
     }
 
     /// Coarse grid and hybrid A*.
@@ -234,10 +215,6 @@ settings! {
         /// Its part that grows with the cost of the initial guess, 1/m. Later the penalty is at least the sum of
         /// the multipliers.
         penalty_per_cost: f64 = 0.01,
-        /// Factor of the penalty for a refinement that has converged inside a set.
-        penalty_factor: f64 = 6.0,
-        /// Largest number of such increases.
-        max_raises: usize = 3,
         /// Factor of a step that does not fit or gain.
         backtrack: f64 = 0.4,
         /// Largest number of them. Then the programme is solved again in a smaller trust region.
@@ -271,12 +248,10 @@ settings! {
         max_insertions: usize = 8,
         /// Least predicted gain of the insertions, as a fraction of the cost.
         min_predicted_gain: f64 = 1e-3,
-        /// Length above which lines are divided for the first and for the second insertion, m.
-        uncut_m: [f64; 2] = [200.0, 80.0],
+        /// Length above which lines are divided for it, m.
+        uncut_m: f64 = 80.0,
         /// Iterations of a refinement after an insertion.
         iterations: usize = 8,
-        /// Relative gain of an insertion that justifies another.
-        min_gain: f64 = 0.01,
         /// Relative cost that pruning may add.
         pruning_cost: f64 = 2e-3,
         /// Iterations of a refinement after the final pruning.
@@ -424,12 +399,14 @@ pub struct SearchBudget {
     /// Largest number of iterations once some manoeuvre is clear, because the best one then lacks segment variables
     /// rather than iterations.
     pub iterations_once_clear: usize,
+    /// Iterations after which only the guesses of least merit continue.
+    pub race_from: usize,
+    /// Number of those that continue. The others do only where none of these becomes clear.
+    pub racers: usize,
     /// Largest number of manoeuvres that get segment insertions.
     pub leaders: usize,
     /// Relative cost difference from the best one up to which a manoeuvre gets them.
     pub leader_margin: f64,
-    /// True where the best of them may get a second insertion.
-    pub insert_twice: bool,
     /// True where a coarse grid is searched, too.
     pub searches_grid: bool,
     /// Where conflicts are resolved one after another: largest number of motions that have no way past their next
@@ -443,9 +420,10 @@ const ONE_TARGET: SearchBudget = SearchBudget {
     stages: [(2_000, 1.0); 3],
     max_iterations: 40,
     iterations_once_clear: 8,
-    leaders: 8,
+    race_from: 5,
+    racers: 4,
+    leaders: 3,
     leader_margin: 0.3,
-    insert_twice: true,
     searches_grid: false,
     dead_ends: 3,
     more_conflicts: 3,

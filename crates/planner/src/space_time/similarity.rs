@@ -9,7 +9,7 @@
 //! transformed back.
 
 use crate::clock::Clock;
-use crate::space_time::proxy::{Proxy, by_obstacle};
+use crate::space_time::proxy::{Proxy, by_obstacle, first_contact};
 use crate::{
     EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, PlannedManoeuvre, Problem,
     Tidiness, UnderWay,
@@ -136,8 +136,12 @@ impl Similarity {
         })
     }
 
-    /// Sign of the reflection: -1 where the first object off the line ahead is to port.
+    /// Sign of the reflection: -1 where the first object off the line ahead is to port. The target that is met on
+    /// schedule comes first, because one that is never near should not decide how it is passed.
     fn mirror_sign(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
+        let met = first_contact(proxies, &on_schedule(problem.desired)).map(|c| c.0);
+        let mut proxies: Vec<&Proxy> = proxies.iter().collect();
+        proxies.sort_by_key(|h| Some(h.obstacle) != met);
         let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
         let places = places.map(|(centre, _)| self.place(centre).y);
         let size = &problem.settings.size;
@@ -528,6 +532,16 @@ fn rounded(x: f64) -> f64 {
     } else {
         x
     }
+}
+
+/// The schedule, which turns on the spot.
+fn on_schedule(desired: &DesiredTrajectory) -> Vec<Segment> {
+    let legs = desired.legs().iter();
+    legs.map(|leg| {
+        let start = Pose::new(leg.start, heading_of(leg.direction));
+        Segment::straight(start, leg.start_time, leg.length / leg.speed, leg.speed)
+    })
+    .collect()
 }
 
 /// Radius of the disc around the section that first contains own ship on schedule, metres.

@@ -18,10 +18,6 @@ pub(crate) struct Conflict {
     pub through: f64,
     /// Offsets to starboard and to port that clear the set throughout, metres.
     pub offsets: [f64; 2],
-    /// Offset astern that clears the set throughout, metres, and the time at which it is needed.
-    pub astern: (f64, f64),
-    /// Offset ahead that clears the set throughout, metres, and the time at which it is needed.
-    pub ahead: (f64, f64),
 }
 
 impl Conflict {
@@ -32,23 +28,17 @@ impl Conflict {
 
     /// Ratio of the distance sailed inside to the smaller offset.
     pub(crate) fn slenderness(&self) -> f64 {
-        self.through / self.nearest_offset().max(1.0)
+        let [starboard, port] = self.offsets;
+        self.through / starboard.min(port).max(1.0)
     }
 
-    /// Smaller offset of the two sides, metres.
-    pub(crate) fn nearest_offset(&self) -> f64 {
-        self.offsets[0].min(self.offsets[1])
-    }
-
-    /// Conflict of an instant, without a width, and with these offsets astern and ahead.
-    pub(crate) fn at(time: f64, along: f64) -> Self {
+    /// Conflict of an instant, without a width.
+    pub(crate) fn at(time: f64) -> Self {
         Self {
             from: time,
             to: time,
             through: 0.0,
             offsets: [0.0; 2],
-            astern: (along, time),
-            ahead: (along, time),
         }
     }
 
@@ -60,7 +50,7 @@ impl Conflict {
             .filter_map(|h| nominal_motion.iter().find_map(|s| h.first_contact(s)))
             .min_by(f64::total_cmp)?;
         let end = nominal_motion.last()?.end_time();
-        let mut conflict = Self::at(from, 0.0);
+        let mut conflict = Self::at(from);
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
             let pose = pose_at(nominal_motion, time)?;
@@ -72,14 +62,6 @@ impl Conflict {
                 continue;
             };
             conflict.to = time;
-            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
-            if behind > conflict.astern.0 {
-                conflict.astern = (behind, time);
-            }
-            let before = proxy.exit_distance(pose.position, time, pose.ahead());
-            if before > conflict.ahead.0 {
-                conflict.ahead = (before, time);
-            }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
                 *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
@@ -121,7 +103,7 @@ mod tests {
             (&[0.0, 200.0, 300.0, 400.0], 3),
             (&[f64::NAN], 1),
         ] {
-            let conflicts: Vec<Conflict> = begin.iter().map(|t| Conflict::at(*t, 0.0)).collect();
+            let conflicts: Vec<Conflict> = begin.iter().map(|t| Conflict::at(*t)).collect();
             assert_eq!(far_apart(&conflicts, 120.0), expected, "{begin:?}");
         }
     }

@@ -29,14 +29,10 @@ struct Insertion {
     gain: f64,
 }
 
-/// Divides lines longer than `uncut` metres in two and inserts the most promising segment
-/// variables, with zero length. `None` when nothing is promising, or when it does not fit.
-pub(crate) fn with_insertions(
-    context: &Context,
-    guess: &InitialGuess,
-    uncut: f64,
-) -> Option<InitialGuess> {
-    let base = split(context, guess, uncut)?;
+/// Divides long lines in two and inserts the most promising segment variables, with zero length. `None` when
+/// nothing is promising, or when it does not fit.
+pub(crate) fn with_insertions(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
+    let base = split(context, guess)?;
     let found = insertions(context, &base)?;
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     for gap in 0..=base.structure.free() {
@@ -63,8 +59,9 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
 
 /// Removes empty segment variables and divides long lines, including the dependent line of a
 /// return.
-fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
-    let empty = context.problem.settings.insertion.empty_m;
+fn split(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
+    let settings = &context.problem.settings.insertion;
+    let (empty, uncut) = (settings.empty_m, settings.uncut_m);
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });

@@ -89,7 +89,6 @@ pub(crate) struct Refinement {
     price: f64,
     radius: f64,
     stalled: usize,
-    raised: usize,
     steps: usize,
     finished: bool,
 }
@@ -147,7 +146,6 @@ impl Refinement {
             price: penalty,
             radius: settings.first_radius_m,
             stalled: 0,
-            raised: 0,
             steps: 0,
             finished: false,
         };
@@ -293,14 +291,6 @@ impl Refinement {
         let settings = &context.problem.settings.refinement;
         self.steps += 1;
         let advanced = self.advance(context);
-        if !advanced && self.model.least_slack < 0.0 && self.raised < settings.max_raises {
-            // converged inside a set: raise the penalty
-            self.raised += 1;
-            self.penalty *= settings.penalty_factor;
-            self.radius = settings.first_radius_m;
-            self.stalled = 0;
-            return;
-        }
         if self.steps >= settings.max_steps || !advanced {
             self.finish(context);
         }

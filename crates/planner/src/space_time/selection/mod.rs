@@ -17,7 +17,7 @@ use crate::space_time::proxy::first_met;
 use crate::space_time::refinement::insertion::{pruned, with_insertions};
 use crate::space_time::refinement::{InitialGuess, Refinement};
 use crate::space_time::selection::coarse_search::CoarseSearch;
-use crate::space_time::selection::initial_guess::{EvasiveManoeuvre, ahead, from_graph, waiting};
+use crate::space_time::selection::initial_guess::{EvasiveManoeuvre, from_graph};
 use crate::space_time::selection::tidy::Prices;
 use crate::space_time::settings::SearchBudget;
 use searoom_geometry::frame::Side;
@@ -30,22 +30,18 @@ const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
     ..EvasiveManoeuvre::new(0.5, 0.3, 0.9)
 };
 
-/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
-/// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
-/// offsets.
-const COMPACT: [EvasiveManoeuvre; 4] = [
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin of attraction. Of
+/// seven that were tried these three cost as little as all (docs/reference/space-time-planner.md).
+const COMPACT: [EvasiveManoeuvre; 3] = [
     EvasiveManoeuvre::new(1.4, 0.6, 0.6),
     EvasiveManoeuvre::slow(1.0, 1.0, 0.9),
-    EvasiveManoeuvre::new(0.4, 1.4, 0.6),
     FASTER_FIRST,
 ];
 
 /// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
-const SLENDER: [EvasiveManoeuvre; 5] = [
-    EvasiveManoeuvre::new(0.2, 0.3, 0.6),
+const SLENDER: [EvasiveManoeuvre; 3] = [
     EvasiveManoeuvre::new(0.2, 1.0, 0.9),
     EvasiveManoeuvre::slow(0.7, 0.3, 0.6),
-    EvasiveManoeuvre::new(0.4, 0.3, 0.9),
     FASTER_FIRST,
 ];
 
@@ -128,20 +124,6 @@ impl<'a> Selection<'a> {
         let leg = problem.desired.legs().len() - 1;
         let settings = &problem.settings.guesses;
         for conflict in conflicts.iter().take(settings.max_conflicts) {
-            if conflict.astern.0 < settings.waiting_ratio * conflict.nearest_offset() {
-                for across in [false, true] {
-                    let both = Side::BOTH.into_iter();
-                    guesses.extend(
-                        both.filter_map(|side| {
-                            waiting(problem, route, side, across, conflict, leg)
-                        }),
-                    );
-                }
-            }
-            if conflict.ahead.0 < settings.pass_ahead_ratio * conflict.nearest_offset() {
-                let both = Side::BOTH.into_iter();
-                guesses.extend(both.filter_map(|side| ahead(problem, route, side, conflict, leg)));
-            }
             let slender = conflict.slenderness() > settings.slender_from;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
@@ -162,36 +144,11 @@ impl<'a> Selection<'a> {
             .take_while(|_| !clock.is_up())
             .filter_map(|s| Refinement::fitting(&coarse, s))
             .collect();
-        let SearchBudget {
-            max_iterations: steps,
-            iterations_once_clear: rounds,
-            ..
-        } = *self.search_budget;
-        let fine_from = problem.settings.refinement.fine_from;
-        let mut round = 0;
-        while round < steps {
-            let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
-            // only manoeuvres checked with fine chords count as clear
-            if decided || round > fine_from && running.iter().all(Refinement::is_finished) {
-                break;
-            }
-            // up to `rounds` no refinement depends on another
-            let next = rounds.max(round + 1).min(steps);
-            parallel::each(&mut running, |refinement| {
-                (round..next).for_each(|round| advance(refinement, &context, round, clock));
-            });
-            if clock.is_up() {
-                running.append(&mut self.along_grid);
-                self.collect(ranked(&running));
-                return true;
-            }
-            round = next;
+        if self.race(&mut running, clock) {
+            running.append(&mut self.along_grid);
+            self.collect(ranked(&running));
+            return true;
         }
-        parallel::each(&mut running, |refinement| {
-            if !refinement.is_finished() && !clock.is_up() {
-                refinement.finish(&context);
-            }
-        });
         running.append(&mut self.along_grid);
         let (grid, least) = (self.coarse_search.take(), self.least(&running));
         if let Some((motions, along)) = grid.map(|g| g.along_hybrid(least, clock)) {
@@ -218,6 +175,58 @@ impl<'a> Selection<'a> {
         clock.is_up()
     }
 
+    /// Refines the guesses until one is clear and has had its share of iterations. After a few iterations those
+    /// of least merit continue, and the others only where none of these becomes clear. True when the deadline
+    /// was reached.
+    fn race(&self, running: &mut Vec<Refinement>, clock: Clock) -> bool {
+        let (most, begun) = (self.search_budget.racers, self.search_budget.race_from);
+        let context = &self.context;
+        let mut beaten = Vec::new();
+        let mut round = 0;
+        if running.len() > most {
+            parallel::each(running, |refinement| {
+                (0..begun).for_each(|round| advance(refinement, context, round, clock));
+            });
+            running.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
+            beaten = running.split_off(most);
+            round = begun;
+        }
+        self.refine_all(running, round, clock);
+        if !clock.is_up() && !running.iter().any(is_clear) && !beaten.is_empty() {
+            self.refine_all(&mut beaten, round, clock);
+        }
+        running.append(&mut beaten);
+        clock.is_up()
+    }
+
+    /// Refines from a round on, until one is clear and has had its share of iterations, or none changes.
+    fn refine_all(&self, running: &mut [Refinement], mut round: usize, clock: Clock) {
+        let SearchBudget {
+            max_iterations: steps,
+            iterations_once_clear: rounds,
+            ..
+        } = *self.search_budget;
+        let fine_from = self.context.problem.settings.refinement.fine_from;
+        while round < steps && !clock.is_up() {
+            let decided = round >= rounds && running.iter().any(is_clear);
+            // only manoeuvres checked with fine chords count as clear
+            if decided || round > fine_from && running.iter().all(Refinement::is_finished) {
+                break;
+            }
+            // up to `rounds` no refinement depends on another
+            let next = rounds.max(round + 1).min(steps);
+            parallel::each(running, |refinement| {
+                (round..next).for_each(|round| advance(refinement, &self.context, round, clock));
+            });
+            round = next;
+        }
+        parallel::each(running, |refinement| {
+            if !refinement.is_finished() && !clock.is_up() {
+                refinement.finish(&self.context);
+            }
+        });
+    }
+
     /// Cost of the cheapest clear motion so far, m²; infinite without any.
     fn least(&self, running: &[Refinement]) -> f64 {
         let refined = best_of(running).map_or(f64::INFINITY, Refinement::best_cost);
@@ -228,62 +237,43 @@ impl<'a> Selection<'a> {
         best.unwrap_or(f64::INFINITY).min(refined)
     }
 
-    /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
-    /// them. In the end prunes short segments where that costs almost nothing.
+    /// Inserts segments into the best manoeuvres and refines them. In the end prunes short segments of the best
+    /// where that costs almost nothing.
     fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
+        let settings = &self.context.problem.settings.insertion;
         let SearchBudget {
             leaders: most,
             leader_margin: margin,
             ..
         } = *self.search_budget;
-        let settings = &self.context.problem.settings.insertion;
-        let leaders = leaders(running, most, margin);
-        let mut least = leaders.first()?.1;
-        let [first, then] = settings.uncut_m;
-        let mut best = None;
-        let mut gained = 0.0;
-        let mut leaders: Vec<_> = leaders.into_iter().map(|l| (l, None)).collect();
-        parallel::each(&mut leaders, |((guess, _), again)| {
-            *again = self.with_insertions(guess, first, clock);
+        let mut leaders: Vec<_> = leaders(running, most, margin)
+            .into_iter()
+            .map(|(guess, _)| (guess, None))
+            .collect();
+        parallel::each(&mut leaders, |(guess, inserted)| {
+            *inserted = self.with_insertions(guess, clock);
         });
-        for ((guess, rank), again) in leaders {
-            let after = again
-                .as_ref()
-                .map_or(f64::INFINITY, Refinement::rank)
-                .min(rank);
-            if best.is_none() || after < least {
-                gained = 1.0 - after / rank;
-                best = again.as_ref().and_then(Refinement::best).or(Some(guess));
-                least = after;
-            }
-            running.extend(again);
-        }
-        if self.search_budget.insert_twice && gained > settings.min_gain {
-            let guess = best.as_ref();
-            let again = guess.and_then(|guess| self.with_insertions(guess, then, clock));
-            best = again.as_ref().and_then(Refinement::best).or(best);
-            running.extend(again);
-        }
-        let least = best_of(running)?.rank();
-        let guess = best.and_then(|s| pruned(&self.context, &s));
-        let tidy = guess
-            .and_then(|s| refined(&self.context, s, settings.iterations_after_pruning, clock))?;
-        (tidy.rank() <= (1.0 + settings.pruning_cost) * least).then_some(tidy)
+        running.extend(leaders.into_iter().filter_map(|(_, inserted)| inserted));
+        let best = best_of(running)?;
+        let least = best.rank();
+        let guess = pruned(&self.context, &best.best()?)?;
+        let pruned = refined(
+            &self.context,
+            guess,
+            settings.iterations_after_pruning,
+            clock,
+        )?;
+        (pruned.rank() <= (1.0 + settings.pruning_cost) * least).then_some(pruned)
     }
 
     /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
     /// reached.
-    fn with_insertions(
-        &self,
-        guess: &InitialGuess,
-        uncut: f64,
-        clock: Clock,
-    ) -> Option<Refinement> {
+    fn with_insertions(&self, guess: &InitialGuess, clock: Clock) -> Option<Refinement> {
         if clock.is_up() {
             return None;
         }
         let most = self.context.problem.settings.insertion.iterations;
-        let guess = with_insertions(&self.context, guess, uncut)?;
+        let guess = with_insertions(&self.context, guess)?;
         refined(&self.context, guess, most, clock)
     }
 
@@ -378,6 +368,10 @@ fn refined(
     clock: Clock,
 ) -> Option<Refinement> {
     Some(Refinement::fitting(context, guess)?.run(context, most, clock))
+}
+
+fn is_clear(refinement: &Refinement) -> bool {
+    refinement.best_cost().is_finite()
 }
 
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
