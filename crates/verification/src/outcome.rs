@@ -2,7 +2,7 @@
 
 use super::claim::{Claim, ClaimedMotion};
 use super::mismatch;
-use searoom_document::{PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
+use searoom_document::{AmountUnit, PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
 use searoom_evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use searoom_geometry::tolerance;
 use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
@@ -30,6 +30,21 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
         found.push(mismatch("verdict", said, word));
     }
     found
+}
+
+/// Checks what the document says of its own verification against this one, where this one finds no
+/// violation; another document is rejected whatever it says. `verified` is false without a plan.
+pub(super) fn earlier(claim: &Claim, verified: bool) -> Vec<Violation> {
+    let file = claim.file;
+    let mut wrong = Vec::new();
+    if file.verified != verified {
+        wrong.push(mismatch("verified", file.verified, verified));
+    }
+    if let Some(first) = file.violations.first() {
+        let said = format!("{} of them, first '{}'", file.violations.len(), first.what);
+        wrong.push(mismatch("violations", said, "none"));
+    }
+    wrong
 }
 
 /// Outcomes of an answer with a plan or without, by whether it gives up nothing.
@@ -106,6 +121,12 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             );
             found.push(mismatch(&what, relaxation.kind, so));
         }
+        let unit = relaxation.kind.unit();
+        if relaxation.unit != Some(unit) {
+            let said = relaxation.unit.map_or("nothing", AmountUnit::word);
+            let so = format!("'{unit}' for '{}'", relaxation.kind);
+            found.push(mismatch(&format!("{what}, unit"), said, so));
+        }
         if relaxation.kind == RelaxationKind::Domain && relaxation.amount == 0.0 {
             found.push(mismatch(&what, "a domain reduced by 0", "nothing given up"));
         }
@@ -123,13 +144,16 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
 }
 
 /// Checks what the document says made its plan against its planner, its search, its statistics and
-/// its memory. An old document does not say it.
+/// its memory.
 pub(super) fn method(claim: &Claim) -> Vec<Violation> {
     let file = &claim.file;
-    let Some(method) = file.method else {
-        return Vec::new();
-    };
     let mut found = Vec::new();
+    let Some(method) = file.method else {
+        if claim.motion.is_some() {
+            found.push(mismatch("method", "nothing", "that of a plan"));
+        }
+        return found;
+    };
     let mut check = |is_so: bool, so: &str| {
         if !is_so {
             found.push(mismatch("method", method.word(), so));

@@ -27,6 +27,9 @@ const DISTANCE_M: f64 = 1e-3;
 /// Radians: a turn at once.
 const TURNED_RAD: f64 = 1e-6;
 
+/// Degrees: the largest angle of an estimate.
+const HALF_TURN_DEG: f64 = 180.0;
+
 /// Seconds: a later time of the same distance.
 const TIME_S: f64 = 1e-6;
 
@@ -150,6 +153,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
         violations.push(mismatch("sailed", "the whole duration", "another time"));
     }
     violations.extend(contradictions(document));
+    violations.extend(impossible_numbers(document));
     let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
@@ -300,7 +304,7 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         );
     }
     let mut last = 0.0;
-    for replan in &document.replans {
+    for (index, replan) in document.replans.iter().enumerate() {
         let due = last + settings.replan_s + settings.step_s;
         require(
             replan.t_s >= last && replan.t_s <= due.min(end) + TIME_S * (1.0 + end),
@@ -319,11 +323,18 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             "a plan with a verdict that does not fit what it gives up and whether it is safe",
             last,
         );
-        // a plan knows of the targets that own ship has seen
-        let known = || {
-            let targets = document.targets.iter();
-            targets.filter(|target| target.unknown_until_s <= last)
+        let reasons = match index {
+            0 => vec![ReplanDocument::START.to_owned()],
+            _ => reasons(document, last),
         };
+        let what = format!(
+            "replans[{index}].reason: found '{}'; allowed: {}",
+            replan.reason,
+            reasons.join(", ")
+        );
+        require(reasons.contains(&replan.reason), &what, last);
+        // a plan knows of the targets that own ship has seen
+        let known = || known(document, last);
         let planned = replan.estimates.iter().map(|e| e.target.as_str());
         let of_others = !planned.eq(known().map(|t| t.name.as_str())) && end > 0.0;
         require(!of_others, "a plan for other targets", last);
@@ -349,7 +360,7 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let is_complete = !document.replans.is_empty() && end <= due + TIME_S * (1.0 + end);
     require(is_complete, "plans are missing", end);
     let first = document.replans.first();
-    let from_start = first.is_some_and(|first| first.t_s == 0.0 && first.reason == "start");
+    let from_start = first.is_some_and(|first| first.t_s == 0.0);
     require(from_start, "the first plan is missing", 0.0);
     let without_plan = document.replans.iter().filter(|r| r.cost_m2.is_none());
     require(
@@ -386,6 +397,94 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         "another number of plans that are not safe",
         end,
     );
+    found
+}
+
+/// The targets that own ship has seen by a time, seconds.
+fn known(
+    document: &SimulationDocument,
+    time: f64,
+) -> impl Iterator<Item = &SimulatedTargetDocument> {
+    let targets = document.targets.iter();
+    targets.filter(move |target| target.unknown_until_s <= time)
+}
+
+/// Why a plan may be made at a time, seconds, after the first one.
+fn reasons(document: &SimulationDocument, time: f64) -> Vec<String> {
+    let mut reasons = vec![ReplanDocument::PERIOD.to_owned()];
+    if document.settings.replan_on_events {
+        let events = [ReplanDocument::ANOTHER_VELOCITY, ReplanDocument::ACQUIRED];
+        reasons.extend(known(document, time).flat_map(|target| {
+            let name = &target.name;
+            events.map(|event| format!("{event}: {name}"))
+        }));
+        reasons.push(Alarm::BeyondMargin.to_string());
+    }
+    reasons
+}
+
+/// Numbers that no simulation has, with what is allowed. Costs, distances, ages, sizes and
+/// deviations are never negative, and angles within half a turn.
+fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut within = |time: f64, place: String, numbers: &[(&str, Option<f64>, f64, f64)]| {
+        for (key, number, least, most) in numbers {
+            // negated on purpose: a NaN is in no range
+            if let Some(number) = number.filter(|number| !(*number >= *least && number <= most)) {
+                let allowed = match most.is_finite() {
+                    true => format!("from {least} to {most}"),
+                    false => "a number that is not negative".to_owned(),
+                };
+                let what = format!("{place}{key}: found {number}; allowed: {allowed}");
+                found.push(Violation::new(what, time));
+            }
+        }
+    };
+    let any = |key, number: f64| (key, Some(number), 0.0, f64::INFINITY);
+    let (settings, conduct) = (&document.settings, &document.conduct);
+    within(
+        0.0,
+        String::new(),
+        &[
+            any("to_go_m", document.to_go_m),
+            any("settings.current_std_mps", settings.current_std_mps),
+            any("settings.delay_s", settings.delay_s),
+            any("conduct.cost_m2", conduct.cost_m2),
+            any("conduct.largest_off_plan_m", conduct.largest_off_plan_m),
+        ],
+    );
+    for (index, replan) in document.replans.iter().enumerate() {
+        let place = format!("replans[{index}].");
+        let cost = ("cost_m2", replan.cost_m2, 0.0, f64::INFINITY);
+        within(
+            replan.t_s,
+            place.clone(),
+            &[any("off_plan_m", replan.off_plan_m), cost],
+        );
+        for (index, seen) in replan.estimates.iter().enumerate() {
+            let numbers = [
+                any("age_s", seen.age_s),
+                any("speed_mps", seen.speed_mps),
+                any("length_m", seen.length_m),
+                any("beam_m", seen.beam_m),
+                any("position_std_m", seen.position_std_m),
+                any("speed_spread_mps", seen.speed_spread_mps),
+                (
+                    "course_spread_deg",
+                    Some(seen.course_spread_deg),
+                    0.0,
+                    HALF_TURN_DEG,
+                ),
+                (
+                    "starboard_turn_deg",
+                    Some(seen.starboard_turn_deg),
+                    -HALF_TURN_DEG,
+                    HALF_TURN_DEG,
+                ),
+            ];
+            within(replan.t_s, format!("{place}estimates[{index}]."), &numbers);
+        }
+    }
     found
 }
 
