@@ -7,6 +7,7 @@
 mod geometry_fixtures;
 
 mod claim;
+mod comparison;
 mod coverage;
 mod document;
 mod figures;

@@ -1,35 +1,36 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
 use super::claim::{Claim, ClaimedMotion};
+use super::comparison::{Rounding, differences};
 use super::mismatch;
 use searoom_document::{AmountUnit, PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
 use searoom_evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use searoom_geometry::tolerance;
 use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
+use serde::Serialize;
+
+/// What a document says of its plan as a whole.
+#[derive(Serialize)]
+struct Verdict {
+    safe: Option<bool>,
+    verdict: String,
+}
 
 /// Checks the reported safety and verdict against the evaluation.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
-    let file = &claim.file;
-    let mut found = Vec::new();
-    let safe = evaluation.is_some_and(Evaluation::safe);
-    if file.safe != Some(safe) {
-        let said = file
-            .safe
-            .map_or("nothing".to_owned(), |said| said.to_string());
-        found.push(mismatch("safe", said, safe));
-    }
+    let file = claim.file;
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
     let word = outcome_word(file.outcome, evaluation.map(|e| e.safety), risk);
     let gives_up_rules = claim.gives_up(RelaxationKind::Compliance);
-    let word = without_rules(word, gives_up_rules);
-    if file.verdict != word {
-        let said = match file.verdict.as_str() {
-            "" => "nothing",
-            said => said,
-        };
-        found.push(mismatch("verdict", said, word));
-    }
-    found
+    let claimed = Verdict {
+        safe: file.safe,
+        verdict: file.verdict.clone(),
+    };
+    let proven = Verdict {
+        safe: Some(evaluation.is_some_and(Evaluation::safe)),
+        verdict: without_rules(word, gives_up_rules),
+    };
+    differences(&claimed, &proven, &Rounding::new())
 }
 
 /// Checks what the document says of its own verification against this one, where this one finds no
