@@ -214,8 +214,8 @@ impl Folder {
         let file = self.path.join(INDEX);
         let specification = read.map_err(|faults| InputError::faults(&file, faults))?;
         if specification.hash != self.index.hash {
-            let found = "a specification, or a scenario file, map or route that it names, that has \
-                         changed since the campaign began";
+            let found = "a specification, or its scenario files, maps or routes, that have changed \
+                         since the campaign began";
             let allowed = "those with which it began";
             return Err(CampaignError::refused(&file, found, allowed));
         }

@@ -327,12 +327,12 @@ fn a_changed_index_is_refused() {
             (
                 "hash",
                 "0123456789abcdef".into(),
-                "has changed since the campaign",
+                "that have changed since the campaign",
             ),
             (
                 "specification",
                 text.replace("seed = 5", "seed = 6").into(),
-                "has changed since the campaign",
+                "that have changed since the campaign",
             ),
             (
                 "name",
