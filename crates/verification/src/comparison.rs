@@ -81,7 +81,11 @@ fn text(value: &Value) -> String {
         Value::Null => "nothing".to_owned(),
         Value::String(text) if text.is_empty() => "nothing".to_owned(),
         Value::String(text) => text.clone(),
-        other => other.to_string(),
+        // without the `.0` of a whole number
+        other => match other.as_f64() {
+            Some(number) => number.to_string(),
+            None => other.to_string(),
+        },
     }
 }
 
@@ -118,8 +122,8 @@ mod tests {
                 json!({ "c": 1.5, "x": 1 }),
                 "a.x: the document says 1, it is nothing",
             ),
-            ("/b/0", json!(1.4), "b[0]: the document says 1.4, it is 1.0"),
-            ("/b/1", json!(2.6), "b[1]: the document says 2.6, it is 2.0"),
+            ("/b/0", json!(1.4), "b[0]: the document says 1.4, it is 1"),
+            ("/b/1", json!(2.6), "b[1]: the document says 2.6, it is 2"),
             (
                 "/b",
                 json!([1.0]),
