@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::part::{Header, Part, PartError};
 use super::row::Cell;
-use super::specification::{Specification, hex};
+use super::specification::{Specification, StratumClass, hex};
 use crate::input::{Fault, InputError, read_text};
 use crate::output::{WriteError, write_atomically};
 use crate::scenario::FILE_MEBIBYTES;
@@ -48,7 +48,7 @@ pub struct Index {
     /// Number of rows.
     pub rows: u64,
     /// Names and classes of the strata.
-    pub strata: Vec<(String, String)>,
+    pub strata: Vec<(String, StratumClass)>,
     /// Text of the specification.
     pub specification: String,
     /// Where the files that it names are, seen from this folder.
@@ -59,9 +59,31 @@ pub struct Index {
 }
 
 impl Index {
+    /// The index of a specification whose files are in `folder`, as seen from the campaign's.
+    fn of(specification: &Specification, folder: PathBuf) -> Self {
+        let strata = specification.strata.iter();
+        let mut index = Self {
+            format: INDEX_FORMAT.to_owned(),
+            name: specification.name.clone(),
+            hash: specification.hash.clone(),
+            rows: specification.rows,
+            strata: strata.map(|s| (s.name.clone(), s.class)).collect(),
+            specification: specification.text.clone(),
+            folder,
+            digest: None,
+        };
+        index.digest = Some(index.digest_of_content());
+        index
+    }
+
     /// Hash of what describes the campaign. Where its files are may change.
     fn digest_of_content(&self) -> String {
-        let content = (&self.name, &self.hash, self.rows, &self.strata);
+        // the words, because digests of folders that exist are of them
+        let strata = self.strata.iter();
+        let strata: Vec<(&str, &str)> = strata
+            .map(|(name, class)| (&**name, class.word()))
+            .collect();
+        let content = (&self.name, &self.hash, self.rows, strata);
         let mut hash = Sha256::new();
         hash.update(format!("{content:?}{}", self.specification));
         hex(hash)
@@ -96,22 +118,49 @@ impl Folder {
         if index.format != INDEX_FORMAT {
             return Err(wrong(format!("format {:?}", index.format)));
         }
-        let digest = index.digest_of_content();
-        if let Some(kept) = index.digest.as_ref().filter(|kept| **kept != digest) {
-            let found = format!(
-                "a specification, or its hash, that has changed since the campaign began: {}",
-                short(&digest)
-            );
-            let allowed = format!(
-                "the index of {}: put it back, or run the campaign in another folder",
-                short(kept)
-            );
-            return Err(CampaignError::refused(&file, found, &allowed));
-        }
-        Ok(Self {
+        let folder = Self {
             path: path.to_owned(),
             index,
-        })
+        };
+        let digest = folder.index.digest_of_content();
+        match &folder.index.digest {
+            Some(kept) if *kept == digest => Ok(folder),
+            Some(kept) => {
+                let found = format!(
+                    "a specification, or its hash, that has changed since the campaign began: {}",
+                    short(&digest)
+                );
+                let allowed = format!(
+                    "the index of {}: put it back, or run the campaign in another folder",
+                    short(kept)
+                );
+                Err(CampaignError::refused(&file, found, &allowed))
+            }
+            None => folder.refuse_unless_of_its_specification().map(|()| folder),
+        }
+    }
+
+    /// Compares an index without a digest with the specification that it holds. An error if they
+    /// differ, or if the files that the specification names cannot be read.
+    fn refuse_unless_of_its_specification(&self) -> Result<(), CampaignError> {
+        let specification = self.specification()?;
+        let index = Index::of(&specification, self.index.folder.clone());
+        let differs = [
+            ("name", index.name != self.index.name),
+            ("rows", index.rows != self.index.rows),
+            ("strata", index.strata != self.index.strata),
+        ];
+        let Some((key, _)) = differs.into_iter().find(|(_, differs)| *differs) else {
+            return Ok(());
+        };
+        let found = format!("no digest, and `{key}` that is not that of its `specification`");
+        let allowed = "the index that `campaign run` wrote: put it back, or run the campaign in \
+                       another folder";
+        Err(CampaignError::refused(
+            &self.path.join(INDEX),
+            found,
+            allowed,
+        ))
     }
 
     /// Makes the folder, or opens it if it is of the same specification, which is in `file`.
@@ -134,20 +183,8 @@ impl Folder {
         let beside = crate::output::folder_of(file);
         let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let (from, to) = (absolute(path), absolute(&beside));
-        let strata = specification.strata.iter();
-        let mut index = Index {
-            format: INDEX_FORMAT.to_owned(),
-            name: specification.name.clone(),
-            hash: specification.hash.clone(),
-            rows: specification.rows,
-            strata: strata
-                .map(|s| (s.name.clone(), s.class.to_owned()))
-                .collect(),
-            specification: specification.text.clone(),
-            folder: pathdiff::diff_paths(&to, &from).unwrap_or(to),
-            digest: None,
-        };
-        index.digest = Some(index.digest_of_content());
+        let folder = pathdiff::diff_paths(&to, &from).unwrap_or(to);
+        let index = Index::of(specification, folder);
         let text = crate::document::json(&index).unwrap_or_default();
         write_atomically(&path.join(INDEX), text.as_bytes())?;
         Ok(Self {
@@ -177,12 +214,10 @@ impl Folder {
         let file = self.path.join(INDEX);
         let specification = read.map_err(|faults| InputError::faults(&file, faults))?;
         if specification.hash != self.index.hash {
-            let found = "scenario files, maps or routes that have changed since the campaign";
-            return Err(CampaignError::refused(
-                &file,
-                found,
-                "those of the specification",
-            ));
+            let found = "a specification, or its scenario files, maps or routes, that have changed \
+                         since the campaign began";
+            let allowed = "those with which it began";
+            return Err(CampaignError::refused(&file, found, allowed));
         }
         Ok(specification)
     }

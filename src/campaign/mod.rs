@@ -19,6 +19,6 @@ pub use part::{Header, Part, PartError, differing, untimed};
 pub use rare::rare_contacts;
 pub use row::{COLUMNS, Cell, Column, Row, TIMED};
 pub use run::{Done, Progress, Shard, run};
-pub use specification::{RowScenario, Specification, Stratum};
+pub use specification::{RowScenario, Specification, Stratum, StratumClass};
 pub use splitting::Effort;
 pub use summary::{distributions, merge, summarise};

@@ -60,7 +60,7 @@ pub const TIMED: usize = 4;
 pub const COLUMNS: [Column; 58] = [
     Column::count("row", |s| Some(s.row as usize)),
     Column::word("stratum", |s| Some(s.stratum.name.clone())),
-    Column::word("class", |s| Some(s.stratum.class.to_owned())),
+    Column::word("class", |s| Some(s.stratum.class.to_string())),
     Column::word("outcome", |s| Some(s.outcome().to_owned())),
     Column::count("seed", |s| Some(s.scenario()?.simulation.seed as usize)),
     Column::count("redrawn", |s| Some(s.drawn?.redrawn)),

@@ -58,13 +58,43 @@ pub struct Specification {
     pub text: String,
 }
 
+searoom_geometry::words! {
+    /// What the rows of a stratum have in common: own ship's role, or a scenario file.
+    pub enum StratumClass {
+        /// Nearly reciprocal courses.
+        HeadOn => "head-on",
+        /// The target crosses from starboard.
+        GiveWay => "give-way",
+        /// The target crosses from port.
+        StandOn => "stand-on",
+        /// Own ship comes up from astern.
+        Overtaking => "overtaking",
+        /// The target comes up from astern.
+        Overtaken => "overtaken",
+        /// The scenario of a file.
+        Scenario => "scenario",
+    }
+}
+
+impl From<EncounterKind> for StratumClass {
+    fn from(kind: EncounterKind) -> Self {
+        match kind {
+            EncounterKind::HeadOn => Self::HeadOn,
+            EncounterKind::GiveWay => Self::GiveWay,
+            EncounterKind::StandOn => Self::StandOn,
+            EncounterKind::Overtaking => Self::Overtaking,
+            EncounterKind::Overtaken => Self::Overtaken,
+        }
+    }
+}
+
 /// A part of the rows that are drawn alike.
 #[derive(Debug, Clone)]
 pub struct Stratum {
     /// Its name.
     pub name: String,
-    /// Word of the class, or "scenario".
-    pub class: &'static str,
+    /// Own ship's role, or that it is of a scenario file.
+    pub class: StratumClass,
     /// Rows of each cycle.
     share: u64,
     /// The scenario that its rows have in common.
@@ -256,7 +286,7 @@ pub(super) fn hex(hash: Sha256) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-type Read = (&'static str, Scenario, Option<Drawn>);
+type Read = (StratumClass, Scenario, Option<Drawn>);
 
 fn scenario_stratum(field: &Field, folder: &Path, hash: &mut Sha256) -> Option<Read> {
     let file = field.file_in(folder)?;
@@ -270,7 +300,7 @@ fn scenario_stratum(field: &Field, folder: &Path, hash: &mut Sha256) -> Option<R
     // what it reads from other files: its map and its route
     let land = scenario.land.as_ref().map(|land| land.map.polygons());
     hash_part(hash, format!("{:?}{land:?}", scenario.desired).as_bytes());
-    Some(("scenario", scenario, None))
+    Some((StratumClass::Scenario, scenario, None))
 }
 
 fn class_stratum(
@@ -328,7 +358,7 @@ fn class_stratum(
         },
         ..base?.clone()
     };
-    kind.map(|kind| (kind.name(), scenario, Some(drawn)))
+    kind.map(|kind| (kind.into(), scenario, Some(drawn)))
 }
 
 /// A number, or a table of two between which it is uniform.

@@ -9,6 +9,7 @@ use super::folder::{CampaignError, Folder, Found, missing};
 use super::part::{Header, Part, join};
 use super::row::{Cell, FAULT, column};
 use super::run::word;
+use super::specification::StratumClass;
 use crate::document::{
     CAMPAIGN_FORMAT, CampaignDocument, CampaignTimingDocument, GroupDocument, GroupTimingDocument,
     QuantilesDocument, ShareDocument, WorstRowDocument,
@@ -180,7 +181,7 @@ impl Tally {
         self.clearances.extend(&other.clearances);
     }
 
-    fn document(mut self, name: &str, class: Option<&str>) -> GroupDocument {
+    fn document(mut self, name: &str, class: Option<StratumClass>) -> GroupDocument {
         let shares = self.events.map(|count| ShareDocument {
             count,
             exact: clopper_pearson(count, self.rows, CONFIDENCE),
@@ -211,7 +212,7 @@ impl Tally {
         };
         GroupDocument {
             name: name.to_owned(),
-            class: class.map(str::to_owned),
+            class: class.map(|class| class.to_string()),
             rows: self.rows,
             faults: self.faults,
             contact,
@@ -268,7 +269,7 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
         worst.sort_by(|a, b| (a.clearance_m.total_cmp(&b.clearance_m)).then(a.row.cmp(&b.row)));
         worst.truncate(WORST);
     })?;
-    let group = |is_one: &dyn Fn(usize) -> bool, name: &str, class: Option<&str>| {
+    let group = |is_one: &dyn Fn(usize) -> bool, name: &str, class: Option<StratumClass>| {
         let mut sum = Tally::default();
         let own = tallies
             .iter()
@@ -277,10 +278,10 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
         own.for_each(|(_, tally)| sum.join(tally));
         sum.document(name, class)
     };
-    let mut classes: Vec<&str> = Vec::new();
+    let mut classes: Vec<StratumClass> = Vec::new();
     for (_, class) in &index.strata {
-        if !classes.contains(&class.as_str()) {
-            classes.push(class);
+        if !classes.contains(class) {
+            classes.push(*class);
         }
     }
     let all = group(&|_| true, "all", None);
@@ -292,11 +293,11 @@ pub fn summarise(folder: &Folder, other_builds: bool) -> Result<CampaignDocument
         rows: index.rows,
         rows_there: all.rows + all.faults,
         confidence: CONFIDENCE,
-        classes: (classes.iter())
-            .map(|class| group(&|at| index.strata[at].1 == *class, class, Some(class)))
+        classes: (classes.into_iter())
+            .map(|class| group(&|at| index.strata[at].1 == class, class.word(), Some(class)))
             .collect(),
         strata: (index.strata.iter().enumerate())
-            .map(|(own, (name, class))| group(&|at| at == own, name, Some(class)))
+            .map(|(own, (name, class))| group(&|at| at == own, name, Some(*class)))
             .collect(),
         all,
         worst,
@@ -318,7 +319,7 @@ pub fn distributions(
     let mut values = vec![vec![Vec::new(); strata.len()]; of.len()];
     sound(folder, other_builds, |part| {
         for row in &part.rows {
-            let is_own = |(name, _): &(String, String)| row[column("stratum")] == word(name);
+            let is_own = |(name, _): &(String, StratumClass)| row[column("stratum")] == word(name);
             let Some(own) = strata.iter().position(is_own) else {
                 continue;
             };

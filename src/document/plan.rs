@@ -10,11 +10,11 @@ use control::control;
 use path_time::path_time_document;
 
 use searoom_document::{
-    AmountUnit, CostDocument, DistantRow, EscapeDocument, EscapePolicy, ImprovementDocument,
-    MissionDocument, NodeDocument, ObstacleDocument, OutOfReachDocument, OwnShipDocument,
-    PLAN_FORMAT, PlanDocument, PositionDocument, RelaxationDocument, RelaxationKind,
-    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TargetDocument,
-    TimingDocument, TrajectoryDocument, finite, vertices,
+    CostDocument, DistantRow, EscapeDocument, EscapePolicy, ImprovementDocument, MissionDocument,
+    NodeDocument, ObstacleDocument, OutOfReachDocument, OwnShipDocument, PLAN_FORMAT, PlanDocument,
+    PositionDocument, RelaxationDocument, RelaxationKind, SampleDocument, SearchStatsDocument,
+    SegmentDocument, StartDocument, TargetDocument, TimingDocument, TrajectoryDocument, finite,
+    vertices,
 };
 
 use super::encounter::encounters;
@@ -152,27 +152,21 @@ pub(crate) fn timing(run: &Run) -> TimingDocument {
 
 pub(crate) fn relaxation(relaxation: &Relaxation) -> RelaxationDocument {
     use RelaxationKind as Kind;
-    let (kind, target, amount, unit, until_s) = match relaxation {
-        Relaxation::Domain { target, amount } => {
-            (Kind::Domain, target, *amount, AmountUnit::Metres, None)
-        }
+    let (kind, target, amount, until_s) = match relaxation {
+        Relaxation::Domain { target, amount } => (Kind::Domain, target, *amount, None),
         Relaxation::Risk {
             target,
             amount,
             until,
-        } => (Kind::Risk, target, *amount, AmountUnit::One, *until),
-        Relaxation::Arrival { target, amount } => {
-            (Kind::Arrival, target, *amount, AmountUnit::Metres, None)
-        }
-        Relaxation::Compliance { target, .. } => {
-            (Kind::Compliance, target, 1.0, AmountUnit::One, None)
-        }
+        } => (Kind::Risk, target, *amount, *until),
+        Relaxation::Arrival { target, amount } => (Kind::Arrival, target, *amount, None),
+        Relaxation::Compliance { target, .. } => (Kind::Compliance, target, 1.0, None),
     };
     RelaxationDocument {
         kind,
         target: target.clone(),
         amount,
-        unit: Some(unit),
+        unit: Some(kind.unit()),
         until_s,
     }
 }

@@ -332,7 +332,7 @@ pub(super) fn replans_grid(replans: &[ReplanDocument]) -> Grid {
             continue;
         }
         let mut remarks = Vec::new();
-        if !["start", "period"].contains(&replan.reason.as_str()) {
+        if ![ReplanDocument::START, ReplanDocument::PERIOD].contains(&replan.reason.as_str()) {
             remarks.push(format!("asked for by an event: {}", replan.reason));
         }
         if !replan.followed {

@@ -311,11 +311,53 @@ fn a_changed_index_is_refused() {
             );
         }
     }
-    // a folder of an earlier version says nothing of its index
+    // a folder of an earlier version has no digest: the specification in it is compared
     let mut old = index;
-    old.as_object_mut().expect("an object").remove("digest");
+    let keys = old.as_object_mut().expect("an object");
+    keys.remove("digest");
     fs::write(&file, old.to_string()).expect("written");
     run(&format!("campaign summarise {folder}/out")).success();
+    let mut strata = old["strata"].clone();
+    strata[0][1] = "overtaken".into();
+    for digest in [None, Some(serde_json::Value::Null)] {
+        if let Some(digest) = digest {
+            old["digest"] = digest;
+        }
+        for (key, value, said) in [
+            (
+                "hash",
+                "0123456789abcdef".into(),
+                "that have changed since the campaign",
+            ),
+            (
+                "specification",
+                text.replace("seed = 5", "seed = 6").into(),
+                "that have changed since the campaign",
+            ),
+            (
+                "name",
+                "other".into(),
+                "no digest, and `name` | put it back",
+            ),
+            ("rows", 41.into(), "no digest, and `rows` | put it back"),
+            (
+                "strata",
+                strata.clone(),
+                "no digest, and `strata` | put it back",
+            ),
+        ] {
+            let mut changed = old.clone();
+            changed[key] = value;
+            fs::write(&file, changed.to_string()).expect("written");
+            let refused = run(&format!("campaign summarise {folder}/out")).code(2);
+            says(&stderr(&refused), said);
+        }
+    }
+    old["strata"][0][1] = "sideways".into();
+    fs::write(&file, old.to_string()).expect("written");
+    let refused = run(&format!("campaign summarise {folder}/out")).code(2);
+    let said = "found 'sideways'; allowed: head-on, give-way, stand-on | overtaken, scenario";
+    says(&stderr(&refused), said);
 }
 
 #[test]

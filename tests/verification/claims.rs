@@ -5,7 +5,7 @@ use searoom::verification::verify;
 use serde_json::{Value, json};
 
 use crate::alter::{alter, assert_rejected, assert_word, give_up, list, rows};
-use crate::documents::{document, fault, give_way_at_risk, inside, is_caught, scenario};
+use crate::documents::{checked, document, fault, give_way_at_risk, inside, is_caught, scenario};
 
 /// Alterations that increase the danger.
 const SETTING: &str = r#"
@@ -193,6 +193,22 @@ by nothing known | /method = "magic" |
 by the rules without a search | /search_stats/expanded = null | method
 by rules that are not asked | /compliance = "shape" | method
 without a plan | /trajectory = null | method
+nothing of it | /method = null | method: the document says nothing, it is that of a plan
+no such key | /method remove | method: the document says nothing, it is that of a plan
+"#;
+
+/// Another result of the verification that the document reports of itself, and other kinds of sets.
+const ITS_OWN: &str = r#"
+not verified | /verified = false | verified: the document says false, it is true
+with violations | /violations = [{"what": "a lie", "t_s": 1}] | violations: the document says 1 of them, first 'a lie', it is none
+an ellipsoid of polygons | /targets/0/representation = "ellipsoid" | found polygons; allowed with representation 'ellipsoid': ellipses
+"#;
+
+/// Other units of the risk that is taken.
+const UNITS: &str = r#"
+risk in metres | /relaxations/0/unit = "m" | unit: the document says m, it is '1' for 'risk'
+nothing of the unit | /relaxations/0/unit remove | unit: the document says nothing, it is '1' for 'risk'
+null | /relaxations/0/unit = null | unit: the document says nothing, it is '1' for 'risk'
 "#;
 
 /// Checks that the words of a document agree with its content, and that figures independent of the
@@ -227,9 +243,22 @@ fn every_claim_of_a_document_is_held() {
         assert_word(&document, word, word);
     }
     assert_rejected(&clear, METHODS);
-    let mut old = clear.clone();
-    alter(&mut old, "/method remove");
-    assert!(!is_caught(&old));
+    assert_rejected(&clear, ITS_OWN);
+    assert_rejected(&relaxed, UNITS);
+    let mut without_a_plan = clear.clone();
+    alter(
+        &mut without_a_plan,
+        r#"/trajectory = null; /cost = null; /method = null; /search_stats/expanded = null;
+           /outcome = "infeasible"; /verdict = "infeasible"; /safe = false"#,
+    );
+    assert_word(
+        &without_a_plan,
+        "no plan",
+        "verified: the document says true, it is false",
+    );
+    alter(&mut without_a_plan, "/verified = false");
+    let found = checked(&without_a_plan);
+    assert!(found.violations.is_empty() && !found.verified());
     let mut late = clear;
     for outcome in ["solved", "deadline"] {
         alter(

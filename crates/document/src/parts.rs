@@ -91,13 +91,23 @@ searoom_geometry::words! {
     }
 }
 
+impl RelaxationKind {
+    /// Unit of the amount that is given up.
+    pub fn unit(self) -> AmountUnit {
+        match self {
+            Self::Domain | Self::Arrival => AmountUnit::Metres,
+            Self::Compliance | Self::Risk => AmountUnit::One,
+        }
+    }
+}
+
 /// Relaxation of one constraint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RelaxationDocument {
     pub kind: RelaxationKind,
     pub target: String,
     pub amount: f64,
-    /// Absent in an old document.
+    /// That of its kind. `None` in a document that does not say so, which `verify` rejects.
     #[serde(default)]
     pub unit: Option<AmountUnit>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

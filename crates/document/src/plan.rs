@@ -11,7 +11,7 @@ use path_time::PathTimeDocument;
 use phases::PhaseDocument;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::encounter::EncounterDocument;
 use super::memory::{MemoryDocument, PlannedManoeuvreDocument};
@@ -24,7 +24,8 @@ use super::parts::{
 use super::targets::TargetDocument;
 use departure::Departure;
 use searoom_evaluation::PlanOutcome;
-use searoom_model::{Compliance, ObjectiveKind, SearchKind};
+use searoom_geometry::words;
+use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
 
 /// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -35,13 +36,15 @@ pub const PLAN_MEBIBYTES: u64 = 64;
 /// Self-contained plan: everything needed to verify it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanDocument {
+    #[serde(deserialize_with = "format_name")]
     pub format: String,
     pub scenario: String,
     /// Not an enum: a user of the library may plan with a planner of another name, which `verify`
     /// rejects.
+    #[serde(deserialize_with = "planner_name")]
     pub planner: String,
     pub search: SearchKind,
-    /// Method that made the plan; null without one, absent in an old document.
+    /// Method that made the plan; null without a plan, and only then.
     #[serde(default)]
     pub method: Option<PlanMethod>,
     pub compliance: Compliance,
@@ -107,6 +110,16 @@ pub struct PlanDocument {
     pub path_time: Option<PathTimeDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
+}
+
+/// Reads the name of a format. The error for what is no text has that of a plan document.
+fn format_name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    words::read_text(from, &[(PLAN_FORMAT, ())])
+}
+
+/// Reads the name of a planner. The error for what is no text lists those of this project.
+fn planner_name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    words::read_text(from, PlannerKind::WORDS)
 }
 
 impl PlanDocument {

@@ -16,7 +16,7 @@ use searoom_geometry::ConvexPolygon;
 use searoom_geometry::frame::{Pose, Vector, clockwise_deg, radians_from_deg};
 use searoom_model::trajectory::GroundSegment;
 use searoom_model::vessel::Hull;
-use searoom_model::{BehaviourKind, SensorType};
+use searoom_model::{BehaviourKind, SailedVessel, SensorType};
 
 /// Format name of the simulation document.
 pub const SIMULATION_FORMAT: &str = "searoom-simulation/1";
@@ -123,6 +123,16 @@ impl GroundSegmentDocument {
     }
 }
 
+impl ReplanDocument {
+    /// Reasons that no target is named in.
+    pub const START: &str = "start";
+    pub const PERIOD: &str = "period";
+
+    /// Events of a target, whose name follows after a colon.
+    pub const ANOTHER_VELOCITY: &str = "another velocity";
+    pub const ACQUIRED: &str = "acquired";
+}
+
 impl SimulatedTargetDocument {
     /// The target at a time in seconds; `None` without a track. O(log states).
     pub fn at(&self, time: f64) -> Option<SteadyShip> {
@@ -184,8 +194,7 @@ pub struct SimulationSettingsDocument {
     pub measured_delay: bool,
     pub duration_s: f64,
     pub seed: u64,
-    /// Not an enum: a kinematic model or one of a ship under forces.
-    pub vessel: String,
+    pub vessel: SailedVessel,
     pub current_mps: [f64; 2],
     pub current_std_mps: f64,
     pub current_known: bool,

@@ -109,19 +109,81 @@ pub use schemars;
 #[cfg(feature = "serde")]
 pub use serde;
 
-/// Reads a word.
+/// Reads a word. The error names what was found and the words allowed, whatever was found.
 #[cfg(feature = "serde")]
 pub fn read<'de, T: Copy, D: serde::Deserializer<'de>>(
     from: D,
     words: &[(&str, T)],
 ) -> Result<T, D::Error> {
-    let found: String = serde::Deserialize::deserialize(from)?;
+    let allowed = listed(words);
+    let found = from.deserialize_any(Text { allowed: &allowed })?;
     let known = words.iter().find(|(word, _)| *word == found);
-    known.map(|(_, value)| *value).ok_or_else(|| {
-        let allowed: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        let allowed = allowed.join(", ");
-        serde::de::Error::custom(format_args!("found '{found}'; allowed: {allowed}"))
-    })
+    known
+        .map(|(_, value)| *value)
+        .ok_or_else(|| refused(format_args!("'{found}'"), &allowed))
+}
+
+/// Reads the text of a place that usually holds one of these words. Another word is taken; the
+/// error for what is no text names the words allowed.
+#[cfg(feature = "serde")]
+pub fn read_text<'de, T, D: serde::Deserializer<'de>>(
+    from: D,
+    words: &[(&str, T)],
+) -> Result<String, D::Error> {
+    let allowed = listed(words);
+    from.deserialize_any(Text { allowed: &allowed })
+}
+
+/// The words, with commas between them.
+#[cfg(feature = "serde")]
+fn listed<T>(words: &[(&str, T)]) -> String {
+    let words: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+    words.join(", ")
+}
+
+#[cfg(feature = "serde")]
+fn refused<E: serde::de::Error>(found: impl std::fmt::Display, allowed: &str) -> E {
+    E::custom(format_args!("found {found}; allowed: {allowed}"))
+}
+
+/// Reads a text. Numbers, truth values and null are named with the words allowed.
+#[cfg(feature = "serde")]
+struct Text<'a> {
+    /// The words allowed, with commas between them.
+    allowed: &'a str,
+}
+
+#[cfg(feature = "serde")]
+impl serde::de::Visitor<'_> for Text<'_> {
+    type Value = String;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "one of {}", self.allowed)
+    }
+
+    fn visit_str<E: serde::de::Error>(self, found: &str) -> Result<String, E> {
+        Ok(found.to_owned())
+    }
+
+    fn visit_unit<E: serde::de::Error>(self) -> Result<String, E> {
+        Err(refused("null", self.allowed))
+    }
+
+    fn visit_bool<E: serde::de::Error>(self, found: bool) -> Result<String, E> {
+        Err(refused(found, self.allowed))
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, found: i64) -> Result<String, E> {
+        Err(refused(found, self.allowed))
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, found: u64) -> Result<String, E> {
+        Err(refused(found, self.allowed))
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, found: f64) -> Result<String, E> {
+        Err(refused(found, self.allowed))
+    }
 }
 
 /// Schema of one of these words, each with what it means.

@@ -21,4 +21,4 @@ pub mod vessel;
 
 pub use method::PlanMethod;
 pub use request::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
-pub use simulated::{BehaviourKind, SensorType};
+pub use simulated::{BehaviourKind, SailedVessel, SensorType};

@@ -1,5 +1,7 @@
 //! Words of a simulation: how targets move, and how own ship sees them.
 
+use crate::vessel::VesselKind;
+
 searoom_geometry::words! {
     /// Kind of a target's true motion.
     pub enum BehaviourKind {
@@ -17,6 +19,28 @@ searoom_geometry::words! {
         GivesWay => "gives-way",
         /// Plans as own ship does.
         Mutual => "mutual",
+    }
+}
+
+searoom_geometry::words! {
+    /// Own ship's true motion.
+    pub enum SailedVessel {
+        /// Lines and arcs, speed changes at once.
+        Kinematic => "kinematic",
+        /// Turn rate and speed approach the ordered ones exponentially.
+        FirstOrder => "first-order",
+        /// Nomoto's first-order model, with limits of the rudder.
+        Nomoto => "nomoto",
+        /// CyberShip II under forces.
+        CyberShip2 => "cybership2",
+    }
+}
+
+impl From<VesselKind> for SailedVessel {
+    fn from(forced: VesselKind) -> Self {
+        match forced {
+            VesselKind::CyberShip2 => Self::CyberShip2,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::plane::Plane;
 use searoom_geometry::frame::{Vector, heading_from_course_deg, radians_from_deg};
 use searoom_input::{Field, Range, Table, every};
 use searoom_model::vessel::Hull;
-use searoom_model::{BehaviourKind, SensorType};
+use searoom_model::{BehaviourKind, SailedVessel, SensorType};
 
 /// How a scenario is sailed. Times in seconds, lengths in metres, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -252,12 +252,12 @@ impl Behaviour {
 }
 
 impl VesselModel {
-    /// Its word in files.
-    pub fn word(&self) -> &'static str {
+    /// Its kind, which has a word in files.
+    pub fn kind(&self) -> SailedVessel {
         match self {
-            Self::Kinematic => "kinematic",
-            Self::FirstOrder { .. } => "first-order",
-            Self::Nomoto { .. } => "nomoto",
+            Self::Kinematic => SailedVessel::Kinematic,
+            Self::FirstOrder { .. } => SailedVessel::FirstOrder,
+            Self::Nomoto { .. } => SailedVessel::Nomoto,
         }
     }
 }
@@ -348,12 +348,14 @@ pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> Sim
 fn vessel(field: &Field) -> Option<VesselModel> {
     type Read = fn(&mut Table) -> VesselModel;
     const KINDS: [(&str, Read); 3] = [
-        ("kinematic", |_| VesselModel::Kinematic),
-        ("first-order", |table| VesselModel::FirstOrder {
-            course_time: table.number_or("course_time_s", TIME_CONSTANT, 3.0),
-            speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0),
+        (SailedVessel::Kinematic.word(), |_| VesselModel::Kinematic),
+        (SailedVessel::FirstOrder.word(), |table| {
+            VesselModel::FirstOrder {
+                course_time: table.number_or("course_time_s", TIME_CONSTANT, 3.0),
+                speed_time: table.number_or("speed_time_s", TIME_CONSTANT, 5.0),
+            }
         }),
-        ("nomoto", |table| VesselModel::Nomoto {
+        (SailedVessel::Nomoto.word(), |table| VesselModel::Nomoto {
             gain: table.number_or("gain", NOMOTO, 1.0),
             time: table.number_or("time", NOMOTO, 1.0),
             rudder: radians_from_deg(table.number_or("rudder_deg", RUDDER_DEG, 35.0)),

@@ -23,7 +23,8 @@ use searoom_evaluation::{SpaceTimeSet, TurnedHull, Violation, shape_rounding};
 use searoom_geometry::frame::{Vector, direction, to_port};
 use searoom_geometry::tolerance;
 use searoom_geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use searoom_model::target::{Motion, Target, TimedVelocitySet};
+use searoom_model::PlannerKind;
+use searoom_model::target::{Motion, Representation, Target, TimedVelocitySet};
 
 /// Parts of the known set that a set may fail to contain.
 const HULL: &str = "the hull, the margin and the uncertainty";
@@ -65,11 +66,39 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             note(format!("target '{name}': not exactly one set"), 0.0);
             continue;
         };
+        if let Some(what) = of_another_kind(claim, target, set) {
+            note(format!("set of '{name}': {what}"), 0.0);
+        }
         for (what, time) in lacks(claim, target, set) {
             note(format!("set of '{name}': {what}"), time);
         }
     }
     found
+}
+
+/// Why a set is not of the kind that the target's representation asks for, if it is not.
+///
+/// The sets of a motion under forces are ellipses, and so are those of explicit ellipses. Polygons
+/// of velocities one after another have no ellipsoid.
+fn of_another_kind(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Option<String> {
+    let is_changing = match &target.motion {
+        Motion::Ship(ship) => ship.turn_rate > 0.0 || !ship.route.is_empty(),
+        Motion::Sets(sets) => sets.velocities.len() > 1,
+    };
+    let explicit = target.sets();
+    let is_ellipse = claim.planner == PlannerKind::OptimalControl
+        || explicit.is_some_and(|sets| sets.initial.as_ellipse().is_some())
+        || target.representation == Representation::Ellipsoid && !is_changing;
+    let word = |is_ellipse: bool| if is_ellipse { "ellipses" } else { "polygons" };
+    let found = set.sets.initial.as_ellipse().is_some();
+    (found != is_ellipse).then(|| {
+        format!(
+            "found {}; allowed with representation '{}': {}",
+            word(found),
+            target.representation,
+            word(is_ellipse)
+        )
+    })
 }
 
 /// Describes each part of a target's known set that the set does not contain, with the first time.

@@ -1,8 +1,10 @@
 //! Checks the figures of a document against its motion.
 
 use super::claim::{Claim, ClaimedMotion};
+use super::comparison::{Rounding, differences};
 use super::mismatch;
-use searoom_document::{PhaseDocument, PlanDocument, RelaxationKind};
+use super::risk::greatest_risk;
+use searoom_document::{CostDocument, MissionDocument, PhaseDocument, RelaxationKind, finite};
 use searoom_evaluation::{
     Evaluation, MovingSlabs, SpaceTimeSet, Steering, Violation, WAYPOINT_ACCURACY_M, stage_costs,
 };
@@ -12,99 +14,163 @@ use searoom_geometry::tolerance;
 use searoom_model::ObjectiveKind;
 use searoom_model::target::{Motion, Target};
 use searoom_model::trajectory::{ForceNode, Segment};
+use serde::Serialize;
 
-/// Checks the phases. A document of an earlier program has none.
-fn phases(file: &PlanDocument) -> Option<Violation> {
-    let (said, so) = (&file.phases, file.phases_of_motion());
-    let is_same = |(a, b): (&PhaseDocument, &PhaseDocument)| {
-        a.phase == b.phase && near(a.from_s, b.from_s) && near(a.until_s, b.until_s)
-    };
-    let are_same = said.len() == so.len() && said.iter().zip(&so).all(is_same);
-    let words = |phases: &[PhaseDocument]| {
-        let words = phases
-            .iter()
-            .map(|p| format!("{} to {} s", p.phase.word(), p.until_s));
-        words.collect::<Vec<_>>().join(", ")
-    };
-    let is_wrong = !said.is_empty() && !are_same;
-    is_wrong.then(|| mismatch("phases", words(said), words(&so)))
+/// The figures of a document that its motion determines.
+#[derive(Serialize)]
+struct Figures {
+    mission: MissionDocument,
+    cost: CostDocument,
+    phases: Vec<PhaseDocument>,
+    encounters: Vec<ClosestApproach>,
+}
+
+/// Least distance of an encounter.
+#[derive(Serialize)]
+struct ClosestApproach {
+    target: String,
+    dcpa_m: Option<f64>,
 }
 
 /// Checks the costs, the phases, the figures of the mission and the closest approaches.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
-    let mut found = Vec::new();
-    let file = &claim.file;
-    let mut same_to = |what: &str, said: Option<f64>, so: f64, rounding: f64| {
-        let so = so.is_finite().then_some(so);
-        let agree = match (said, so) {
-            (Some(said), Some(so)) => near_to(said, so, rounding),
-            (said, so) => said.is_none() && so.is_none(),
-        };
-        if !agree {
-            found.push(mismatch(what, words(said), words(so)));
-        }
-    };
-    let mut same = |what: &str, said: Option<f64>, so: f64| same_to(what, said, so, 0.0);
-    let (mission, desired) = (&file.mission, &claim.desired);
-    let [time, length] = [mission.duration_s, mission.length_m].map(Some);
-    same("mission.duration_s", time, desired.duration());
-    same("mission.length_m", length, desired.length());
+    let file = claim.file;
     let Some(cost) = &file.cost else {
-        found.push(mismatch("cost", "nothing", "that of a motion"));
-        return found;
+        return vec![mismatch("cost", "nothing", "that of a motion")];
     };
-    let end = evaluation.duration + claim.arrival_hold();
-    let targets = claim.targets.iter();
-    let rounding = targets
-        .map(|target| shape_rounding(target, end))
-        .fold(0.0, f64::max);
-    let forces = file.optimal_control.is_some();
-    let (error, until) = (cost.space_time_error_m2, cost.space_time_error_until_s);
-    let so = evaluation.space_time_error;
-    same("cost.space_time_error_m2", Some(error), so);
-    let by_length = cost.space_time_error_arc_length_m2;
-    let so = evaluation.arc_length_error;
-    same("cost.space_time_error_arc_length_m2", by_length, so);
-    let so = evaluation.counted.until;
-    same("cost.space_time_error_until_s", Some(until), so);
-    let so = evaluation.duration;
-    same("cost.duration_s", Some(cost.duration_s), so);
-    same("cost.length_m", Some(cost.length_m), evaluation.length);
-    same("cost.delay_s", cost.delay_s, evaluation.delay);
-    let minimised = match file.objective {
-        _ if forces => driven(claim, cost.objective),
+    let claimed = Figures {
+        mission: file.mission.clone(),
+        cost: cost.clone(),
+        phases: file.phases.clone(),
+        encounters: (file.encounters.iter())
+            .map(|encounter| ClosestApproach {
+                target: encounter.target.clone(),
+                dcpa_m: encounter.dcpa_m,
+            })
+            .collect(),
+    };
+    let proven = Figures {
+        mission: MissionDocument {
+            duration_s: claim.desired.duration(),
+            length_m: claim.desired.length(),
+            ..file.mission.clone()
+        },
+        cost: cost_of(claim, cost, evaluation),
+        // a document of an earlier program has none
+        phases: match file.phases.is_empty() {
+            true => Vec::new(),
+            false => file.phases_of_motion(),
+        },
+        encounters: (claim.targets.iter().zip(&evaluation.passages))
+            .map(|(target, passage)| ClosestApproach {
+                target: target.name.clone(),
+                dcpa_m: Some(passage.dcpa),
+            })
+            .collect(),
+    };
+    let mut found = not_finite(&proven);
+    found.extend(differences(
+        &claimed,
+        &proven,
+        &rounding(claim, cost, evaluation),
+    ));
+    found.extend(nearest_land(claim, cost, evaluation.min_land_distance));
+    found.extend(way_left(claim, evaluation));
+    found.extend(met_at_rest(claim));
+    found
+}
+
+/// The costs of a motion.
+fn cost_of(claim: &Claim, said: &CostDocument, evaluation: &Evaluation) -> CostDocument {
+    let forces = claim.file.optimal_control.is_some();
+    let minimised = match claim.file.objective {
+        _ if forces => driven(claim, said.objective),
         ObjectiveKind::SpaceTimeError => Some(evaluation.space_time_error),
         ObjectiveKind::Time => Some(evaluation.duration),
         ObjectiveKind::Length => Some(evaluation.length),
-        _ => None,
+        // that of `length-risk` is taken as given, and other planners have no others
+        ObjectiveKind::LengthRisk | ObjectiveKind::StageCost => None,
     };
-    if let Some(so) = minimised {
-        same("cost.objective", Some(cost.objective), so);
+    CostDocument {
+        objective: minimised.unwrap_or(said.objective),
+        space_time_error_m2: evaluation.space_time_error,
+        space_time_error_until_s: evaluation.counted.until,
+        space_time_error_arc_length_m2: finite(evaluation.arc_length_error),
+        arrived: !forces && !claim.gives_up_arrival(),
+        duration_s: evaluation.duration,
+        length_m: evaluation.length,
+        delay_s: finite(evaluation.delay),
+        waypoint_distances_m: evaluation.waypoint_distances.clone(),
+        max_risk: greatest_risk(claim),
+        min_clearance_m: finite(evaluation.min_clearance),
+        hold_clearance_m: finite(evaluation.hold_clearance),
+        // it says what `hold_clearance_m` covers
+        arrival_hold_s: said.arrival_hold_s,
+        // bounds instead of a value, see `nearest_land`
+        min_land_distance_m: said.min_land_distance_m,
     }
-    let (said, so) = (&cost.waypoint_distances_m, &evaluation.waypoint_distances);
-    let counts = [said, so].map(|distances| distances.len() as f64);
-    let what = "cost.waypoint_distances_m, length";
-    same(what, Some(counts[0]), counts[1]);
-    for (k, (said, so)) in said.iter().zip(so).enumerate() {
-        let what = format!("cost.waypoint_distances_m[{k}]");
-        // no distance is negative
-        let accuracy = if *said < 0.0 {
-            0.0
-        } else {
-            WAYPOINT_ACCURACY_M
-        };
-        same_to(&what, Some(*said), *so, accuracy);
-    }
-    let (said, so) = (cost.min_clearance_m, evaluation.min_clearance);
-    same_to("cost.min_clearance_m", said, so, rounding);
-    let (said, so) = (cost.hold_clearance_m, evaluation.hold_clearance);
-    same_to("cost.hold_clearance_m", said, so, rounding);
-    let arrives = !forces && !claim.gives_up_arrival();
-    if cost.arrived != arrives {
-        found.push(mismatch("cost.arrived", cost.arrived, arrives));
-    }
-    // The document holds only the land within reach; the nearest land of the map may be beyond.
-    let land = evaluation.min_land_distance;
+}
+
+/// Additional rounding of distances: from explicit sets that of their shape, from waypoints that of
+/// the search for the least distance.
+fn rounding(claim: &Claim, said: &CostDocument, evaluation: &Evaluation) -> Rounding {
+    let end = evaluation.duration + claim.arrival_hold();
+    let targets = claim.targets.iter();
+    let largest = targets.map(|target| shape_rounding(target, end));
+    let largest = largest.fold(0.0, f64::max);
+    let clearances = ["min_clearance_m", "hold_clearance_m"];
+    let clearances = clearances.map(|key| (format!("cost.{key}"), largest));
+    let passages = claim.targets.iter().zip(&evaluation.passages).enumerate();
+    let passages = passages.map(|(index, (target, passage))| {
+        let place = format!("encounters[{index}].dcpa_m");
+        (place, shape_rounding(target, passage.tcpa))
+    });
+    // no distance is negative
+    let distances = said.waypoint_distances_m.iter().enumerate();
+    let distances = distances.filter(|(_, distance)| **distance >= 0.0);
+    let distances = distances.map(|(index, _)| {
+        let place = format!("cost.waypoint_distances_m[{index}]");
+        (place, WAYPOINT_ACCURACY_M)
+    });
+    clearances
+        .into_iter()
+        .chain(passages)
+        .chain(distances)
+        .collect()
+}
+
+/// Figures that every motion has and that are no finite numbers here. A document cannot hold them,
+/// so the comparison would take them for nothing.
+fn not_finite(proven: &Figures) -> Vec<Violation> {
+    let cost = &proven.cost;
+    let figures = [
+        ("mission.duration_s", proven.mission.duration_s),
+        ("mission.length_m", proven.mission.length_m),
+        ("cost.objective", cost.objective),
+        ("cost.space_time_error_m2", cost.space_time_error_m2),
+        (
+            "cost.space_time_error_until_s",
+            cost.space_time_error_until_s,
+        ),
+        ("cost.duration_s", cost.duration_s),
+        ("cost.length_m", cost.length_m),
+        ("cost.max_risk", cost.max_risk),
+    ];
+    let distances = cost.waypoint_distances_m.iter();
+    let distances = distances.map(|distance| ("cost.waypoint_distances_m", *distance));
+    let approaches = proven.encounters.iter();
+    let approaches = approaches.map(|e| ("encounters, dcpa_m", e.dcpa_m.unwrap_or(f64::NAN)));
+    let all = figures.into_iter().chain(distances).chain(approaches);
+    let wrong = all.filter(|(_, figure)| !figure.is_finite());
+    wrong
+        .map(|(place, figure)| mismatch(place, "a number", figure))
+        .collect()
+}
+
+/// Checks the distance from the nearest land. The document holds only the land within reach; the
+/// nearest land of the map may be beyond.
+fn nearest_land(claim: &Claim, cost: &CostDocument, land: f64) -> Vec<Violation> {
+    let mut found = Vec::new();
     let what = "cost.min_land_distance_m";
     match cost.min_land_distance_m {
         None if land.is_finite() => found.push(mismatch(what, "nothing", land)),
@@ -121,37 +187,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
             }
         }
     }
-    found.extend(phases(file));
-    found.extend(way_left(claim, evaluation));
-    found.extend(closest_approaches(claim, evaluation));
-    found.extend(met_at_rest(claim));
     found
-}
-
-/// Checks that there is an encounter for each target, and its least distance.
-fn closest_approaches(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
-    let encounters = &claim.file.encounters;
-    let said: Vec<&str> = encounters.iter().map(|e| e.target.as_str()).collect();
-    let names: Vec<&str> = claim.targets.iter().map(|t| t.name.as_str()).collect();
-    if said != names {
-        let [said, names] = [said, names].map(|names| format!("'{}'", names.join(", ")));
-        return vec![mismatch("encounters", said, names)];
-    }
-    let all = encounters.iter().zip(&claim.targets);
-    let wrong = all
-        .zip(&evaluation.passages)
-        .filter(|((said, target), passage)| {
-            let rounding = shape_rounding(target, passage.tcpa);
-            !said
-                .dcpa_m
-                .is_some_and(|dcpa| near_to(dcpa, passage.dcpa, rounding))
-        });
-    wrong
-        .map(|((said, target), passage)| {
-            let what = format!("encounter with '{}', dcpa_m", target.name);
-            mismatch(&what, words(said.dcpa_m), passage.dcpa)
-        })
-        .collect()
 }
 
 /// Checks that a ship that is said to meet own ship at rest touches it then. A document of an earlier
@@ -312,8 +348,4 @@ pub(super) fn near(said: f64, so: f64) -> bool {
 /// Returns true for figures that are [`near`] up to an additional rounding.
 pub(super) fn near_to(said: f64, so: f64, rounding: f64) -> bool {
     (said - so).abs() <= tolerance::FIGURE * so.abs().max(1.0) + rounding
-}
-
-fn words(value: Option<f64>) -> String {
-    value.map_or_else(|| "nothing".to_owned(), |v| format!("{v}"))
 }

@@ -1,35 +1,51 @@
 //! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
 use super::claim::{Claim, ClaimedMotion};
+use super::comparison::{Rounding, differences};
 use super::mismatch;
-use searoom_document::{PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
+use searoom_document::{AmountUnit, PlanMethod, PlanOutcome, RelaxationDocument, RelaxationKind};
 use searoom_evaluation::{Evaluation, Violation, outcome_word, without_rules};
 use searoom_geometry::tolerance;
 use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
+use serde::Serialize;
+
+/// What a document says of its plan as a whole.
+#[derive(Serialize)]
+struct Verdict {
+    safe: Option<bool>,
+    verdict: String,
+}
 
 /// Checks the reported safety and verdict against the evaluation.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
-    let file = &claim.file;
-    let mut found = Vec::new();
-    let safe = evaluation.is_some_and(Evaluation::safe);
-    if file.safe != Some(safe) {
-        let said = file
-            .safe
-            .map_or("nothing".to_owned(), |said| said.to_string());
-        found.push(mismatch("safe", said, safe));
-    }
+    let file = claim.file;
     let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
     let word = outcome_word(file.outcome, evaluation.map(|e| e.safety), risk);
     let gives_up_rules = claim.gives_up(RelaxationKind::Compliance);
-    let word = without_rules(word, gives_up_rules);
-    if file.verdict != word {
-        let said = match file.verdict.as_str() {
-            "" => "nothing",
-            said => said,
-        };
-        found.push(mismatch("verdict", said, word));
+    let claimed = Verdict {
+        safe: file.safe,
+        verdict: file.verdict.clone(),
+    };
+    let proven = Verdict {
+        safe: Some(evaluation.is_some_and(Evaluation::safe)),
+        verdict: without_rules(word, gives_up_rules),
+    };
+    differences(&claimed, &proven, &Rounding::new())
+}
+
+/// Checks what the document says of its own verification against this one, where this one finds no
+/// violation; another document is rejected whatever it says. `verified` is false without a plan.
+pub(super) fn earlier(claim: &Claim, verified: bool) -> Vec<Violation> {
+    let file = claim.file;
+    let mut wrong = Vec::new();
+    if file.verified != verified {
+        wrong.push(mismatch("verified", file.verified, verified));
     }
-    found
+    if let Some(first) = file.violations.first() {
+        let said = format!("{} of them, first '{}'", file.violations.len(), first.what);
+        wrong.push(mismatch("violations", said, "none"));
+    }
+    wrong
 }
 
 /// Outcomes of an answer with a plan or without, by whether it gives up nothing.
@@ -106,6 +122,12 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             );
             found.push(mismatch(&what, relaxation.kind, so));
         }
+        let unit = relaxation.kind.unit();
+        if relaxation.unit != Some(unit) {
+            let said = relaxation.unit.map_or("nothing", AmountUnit::word);
+            let so = format!("'{unit}' for '{}'", relaxation.kind);
+            found.push(mismatch(&format!("{what}, unit"), said, so));
+        }
         if relaxation.kind == RelaxationKind::Domain && relaxation.amount == 0.0 {
             found.push(mismatch(&what, "a domain reduced by 0", "nothing given up"));
         }
@@ -123,13 +145,16 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
 }
 
 /// Checks what the document says made its plan against its planner, its search, its statistics and
-/// its memory. An old document does not say it.
+/// its memory.
 pub(super) fn method(claim: &Claim) -> Vec<Violation> {
     let file = &claim.file;
-    let Some(method) = file.method else {
-        return Vec::new();
-    };
     let mut found = Vec::new();
+    let Some(method) = file.method else {
+        if claim.motion.is_some() {
+            found.push(mismatch("method", "nothing", "that of a plan"));
+        }
+        return found;
+    };
     let mut check = |is_so: bool, so: &str| {
         if !is_so {
             found.push(mismatch("method", method.word(), so));

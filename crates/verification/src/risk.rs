@@ -21,19 +21,20 @@ use searoom_model::trajectory::Segment;
 /// Kind of the relaxation where risk is taken.
 const KIND: RelaxationKind = RelaxationKind::Risk;
 
-/// Checks the risk and its time for each target, the largest risk, and the reported relaxations.
+/// Reported risk of an encounter; NaN without one.
+fn said(encounter: &EncounterDocument) -> f64 {
+    encounter.max_risk.unwrap_or(f64::NAN)
+}
+
+/// Largest risk of the encounters, which [`check`] proves; 0 without any.
+pub(super) fn greatest_risk(claim: &Claim) -> f64 {
+    largest(claim.file.encounters.iter().map(said)).max(0.0)
+}
+
+/// Checks the risk and its time for each target, and the reported relaxations.
 pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
     let mut found = Vec::new();
-    let encounters = &claim.file.encounters;
-    let said = |encounter: &EncounterDocument| encounter.max_risk.unwrap_or(f64::NAN);
-    let most = largest(encounters.iter().map(said)).max(0.0);
-    if let Some(cost) = &claim.file.cost
-        && !near(cost.max_risk, most)
-    {
-        let so = format!("{most}, the largest of the encounters");
-        found.push(mismatch("cost.max_risk", cost.max_risk, so));
-    }
-    for encounter in encounters {
+    for encounter in &claim.file.encounters {
         found.extend(bounds(claim, encounter, said(encounter)));
         found.extend(relaxation(claim, encounter, said(encounter)));
         found.extend(instant(encounter, said(encounter)));

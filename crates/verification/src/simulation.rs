@@ -1,15 +1,16 @@
 //! Checks a simulation document alone: contacts and least distances from the motions in it.
 
-use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
 
 use super::claim::{ClaimError, fault};
+use super::comparison::{Rounding, differences};
 use super::mismatch;
 use super::outcome::outcomes;
 use searoom_document::{
     Alarm, GroundSegmentDocument, RelaxationKind, ReplanDocument, SIMULATION_FORMAT,
-    SailedLandDocument, SimulatedTargetDocument, SimulationDocument, SimulationsDocument,
-    StateDocument, VerifiedOutcome,
+    SailedDocument, SailedLandDocument, SimulatedTargetDocument, SimulationDocument,
+    SimulationsDocument, StateDocument, VerifiedOutcome,
 };
 use searoom_evaluation::{
     Body, MovingSlabs, Safety, Violation, least_land_distance, outcome_word, said_risk,
@@ -26,6 +27,9 @@ const DISTANCE_M: f64 = 1e-3;
 
 /// Radians: a turn at once.
 const TURNED_RAD: f64 = 1e-6;
+
+/// Degrees: the largest angle of an estimate.
+const HALF_TURN_DEG: f64 = 180.0;
 
 /// Seconds: a later time of the same distance.
 const TIME_S: f64 = 1e-6;
@@ -150,6 +154,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
         violations.push(mismatch("sailed", "the whole duration", "another time"));
     }
     violations.extend(contradictions(document));
+    violations.extend(impossible_numbers(document));
     let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
     for target in &document.targets {
@@ -228,15 +233,20 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
         }
         contact |= land.grounded || grounded;
     }
-    if contact != document.contact {
-        violations.push(mismatch("contact", document.contact, contact));
-    }
     let is_safe = |replan: &ReplanDocument| replan.safe && replan.followed;
     let within = document.conduct.within_tracking_margin;
     let safe = !contact && within && document.replans.iter().all(is_safe);
-    if safe != document.safe {
-        violations.push(mismatch("safe", document.safe, safe));
-    }
+    let claimed = Results {
+        safe: document.safe,
+        contact: document.contact,
+        conduct: document.conduct.clone(),
+    };
+    let proven = Results {
+        safe,
+        contact,
+        conduct: conduct_of(document),
+    };
+    violations.extend(differences(&claimed, &proven, &Rounding::new()));
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
     SimulationVerification {
         scenario: document.scenario.clone(),
@@ -300,7 +310,7 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         );
     }
     let mut last = 0.0;
-    for replan in &document.replans {
+    for (index, replan) in document.replans.iter().enumerate() {
         let due = last + settings.replan_s + settings.step_s;
         require(
             replan.t_s >= last && replan.t_s <= due.min(end) + TIME_S * (1.0 + end),
@@ -319,11 +329,18 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             "a plan with a verdict that does not fit what it gives up and whether it is safe",
             last,
         );
-        // a plan knows of the targets that own ship has seen
-        let known = || {
-            let targets = document.targets.iter();
-            targets.filter(|target| target.unknown_until_s <= last)
+        let reasons = match index {
+            0 => vec![ReplanDocument::START.to_owned()],
+            _ => reasons(document, last),
         };
+        let what = format!(
+            "replans[{index}].reason: found '{}'; allowed: {}",
+            replan.reason,
+            reasons.join(", ")
+        );
+        require(reasons.contains(&replan.reason), &what, last);
+        // a plan knows of the targets that own ship has seen
+        let known = || known(document, last);
         let planned = replan.estimates.iter().map(|e| e.target.as_str());
         let of_others = !planned.eq(known().map(|t| t.name.as_str())) && end > 0.0;
         require(!of_others, "a plan for other targets", last);
@@ -349,21 +366,8 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
     let is_complete = !document.replans.is_empty() && end <= due + TIME_S * (1.0 + end);
     require(is_complete, "plans are missing", end);
     let first = document.replans.first();
-    let from_start = first.is_some_and(|first| first.t_s == 0.0 && first.reason == "start");
+    let from_start = first.is_some_and(|first| first.t_s == 0.0);
     require(from_start, "the first plan is missing", 0.0);
-    let without_plan = document.replans.iter().filter(|r| r.cost_m2.is_none());
-    require(
-        without_plan.count() == document.conduct.without_plan,
-        "another number of cycles without a plan",
-        end,
-    );
-    let mut alarms = document.alarms.iter();
-    require(
-        alarms.any(|alarm| alarm.alarm == Alarm::BeyondMargin)
-            != document.conduct.within_tracking_margin,
-        "own ship beyond its tracking margin without an alarm, or an alarm without that",
-        end,
-    );
     let moves_ahead =
         |target: &SimulatedTargetDocument| target.track.iter().all(|s| s.speed_mps >= 0.0);
     require(
@@ -376,16 +380,117 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
         "it lasts longer than its duration",
         end,
     );
-    let unsafe_plans = document
-        .replans
-        .iter()
-        .filter(|r| r.cost_m2.is_some() && !r.safe)
-        .count();
-    require(
-        unsafe_plans == document.conduct.unsafe_plans,
-        "another number of plans that are not safe",
-        end,
+    found
+}
+
+/// Results that follow from the motions, the plans and the alarms of a document.
+#[derive(Serialize)]
+struct Results {
+    safe: bool,
+    contact: bool,
+    conduct: SailedDocument,
+}
+
+/// The conduct, with what follows from the plans and the alarms. The rest is taken as given.
+fn conduct_of(document: &SimulationDocument) -> SailedDocument {
+    let plans = |is_one: fn(&ReplanDocument) -> bool| {
+        let replans = document.replans.iter();
+        replans.filter(|replan| is_one(replan)).count()
+    };
+    let mut alarms = document.alarms.iter();
+    SailedDocument {
+        without_plan: plans(|replan| replan.cost_m2.is_none()),
+        unsafe_plans: plans(|replan| replan.cost_m2.is_some() && !replan.safe),
+        within_tracking_margin: !alarms.any(|alarm| alarm.alarm == Alarm::BeyondMargin),
+        ..document.conduct.clone()
+    }
+}
+
+/// The targets that own ship has seen by a time, seconds.
+fn known(
+    document: &SimulationDocument,
+    time: f64,
+) -> impl Iterator<Item = &SimulatedTargetDocument> {
+    let targets = document.targets.iter();
+    targets.filter(move |target| target.unknown_until_s <= time)
+}
+
+/// Why a plan may be made at a time, seconds, after the first one.
+fn reasons(document: &SimulationDocument, time: f64) -> Vec<String> {
+    let mut reasons = vec![ReplanDocument::PERIOD.to_owned()];
+    if document.settings.replan_on_events {
+        let events = [ReplanDocument::ANOTHER_VELOCITY, ReplanDocument::ACQUIRED];
+        reasons.extend(known(document, time).flat_map(|target| {
+            let name = &target.name;
+            events.map(|event| format!("{event}: {name}"))
+        }));
+        reasons.push(Alarm::BeyondMargin.to_string());
+    }
+    reasons
+}
+
+/// Numbers that no simulation has, with what is allowed. Costs, distances, ages, sizes and
+/// deviations are never negative, and angles within half a turn.
+fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut within = |time: f64, place: String, numbers: &[(&str, Option<f64>, f64, f64)]| {
+        for (key, number, least, most) in numbers {
+            // negated on purpose: a NaN is in no range
+            if let Some(number) = number.filter(|number| !(*number >= *least && number <= most)) {
+                let allowed = match most.is_finite() {
+                    true => format!("from {least} to {most}"),
+                    false => "a number that is not negative".to_owned(),
+                };
+                let what = format!("{place}{key}: found {number}; allowed: {allowed}");
+                found.push(Violation::new(what, time));
+            }
+        }
+    };
+    let any = |key, number: f64| (key, Some(number), 0.0, f64::INFINITY);
+    let (settings, conduct) = (&document.settings, &document.conduct);
+    within(
+        0.0,
+        String::new(),
+        &[
+            any("to_go_m", document.to_go_m),
+            any("settings.current_std_mps", settings.current_std_mps),
+            any("settings.delay_s", settings.delay_s),
+            any("conduct.cost_m2", conduct.cost_m2),
+            any("conduct.largest_off_plan_m", conduct.largest_off_plan_m),
+        ],
     );
+    for (index, replan) in document.replans.iter().enumerate() {
+        let place = format!("replans[{index}].");
+        let cost = ("cost_m2", replan.cost_m2, 0.0, f64::INFINITY);
+        within(
+            replan.t_s,
+            place.clone(),
+            &[any("off_plan_m", replan.off_plan_m), cost],
+        );
+        for (index, seen) in replan.estimates.iter().enumerate() {
+            let numbers = [
+                any("age_s", seen.age_s),
+                any("speed_mps", seen.speed_mps),
+                any("length_m", seen.length_m),
+                any("beam_m", seen.beam_m),
+                any("position_std_m", seen.position_std_m),
+                any("speed_spread_mps", seen.speed_spread_mps),
+                (
+                    "course_spread_deg",
+                    Some(seen.course_spread_deg),
+                    0.0,
+                    HALF_TURN_DEG,
+                ),
+                (
+                    "starboard_turn_deg",
+                    Some(seen.starboard_turn_deg),
+                    -HALF_TURN_DEG,
+                    HALF_TURN_DEG,
+                ),
+            ];
+            within(replan.t_s, format!("{place}estimates[{index}]."), &numbers);
+        }
+    }
     found
 }
 

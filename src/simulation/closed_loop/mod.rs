@@ -179,7 +179,7 @@ impl Simulation {
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let mut simulation = Self::begun(scenario, measured_delay)?;
         simulation.observe();
-        let none = simulation.cycle(0.0, "start".to_owned());
+        let none = simulation.cycle(0.0, ReplanDocument::START.to_owned());
         if let Some(why @ NoPlan::HorizonTooShort { horizon, .. }) = none {
             let allowed = format!("a longer one: {why}");
             return Err(vec![Fault::new("horizon_s", rounded(horizon), &allowed)]);
@@ -420,7 +420,7 @@ impl Simulation {
         self.observe();
         self.activate();
         let is_due = self.time >= self.next_cycle - INSTANT;
-        let period = is_due.then(|| "period".to_owned());
+        let period = is_due.then(|| ReplanDocument::PERIOD.to_owned());
         if let Some(reason) = period.or_else(|| self.event()) {
             let (delay, replan) = (self.settings().delay, self.settings().replan);
             self.next_cycle = self.time + replan;
@@ -451,9 +451,12 @@ impl Simulation {
         let margin = self.scenario.own_ship.tracking_margin;
         // a ship without a margin would leave it in every step
         let is_off = margin > 0.0 && self.off_plan() > margin;
-        first(|target| target.track.has_left(), "another velocity")
-            .or_else(|| first(|target| target.is_acquired, "acquired"))
-            .or_else(|| is_off.then(|| Alarm::BeyondMargin.to_string()))
+        first(
+            |target| target.track.has_left(),
+            ReplanDocument::ANOTHER_VELOCITY,
+        )
+        .or_else(|| first(|target| target.is_acquired, ReplanDocument::ACQUIRED))
+        .or_else(|| is_off.then(|| Alarm::BeyondMargin.to_string()))
     }
 
     fn observe(&mut self) {

@@ -164,10 +164,9 @@ impl Simulation {
             duration_s: self.duration,
             seed: settings.seed,
             vessel: match super::is_under_forces(&self.scenario) {
-                true => self.scenario.settings.optimal_control.vessel.word(),
-                false => settings.vessel.unwrap_or(VesselModel::Kinematic).word(),
-            }
-            .to_owned(),
+                true => self.scenario.settings.optimal_control.vessel.into(),
+                false => settings.vessel.unwrap_or(VesselModel::Kinematic).kind(),
+            },
             current_mps: [settings.current.mean.x, settings.current.mean.y],
             current_std_mps: settings.current.std,
             current_known: settings.current.known,

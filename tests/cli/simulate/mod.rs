@@ -268,6 +268,17 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let again = replans.iter().find(|r| r["reason"] == "acquired: target");
     let time = again.expect("an event")["t_s"].as_f64().expect("a time");
     assert!((60.0..63.0).contains(&time), "{time}");
+    let name = folder.write("sailed.json", found.to_string());
+    searoom(&["verify", &name]).success();
+    let other = found
+        .to_string()
+        .replace("acquired: target", "acquired: nobody");
+    let name = folder.write("sailed.json", other);
+    let shown = stdout(&searoom(&["verify", &name]).code(1));
+    says(
+        &shown,
+        "found 'acquired: nobody'; allowed: period, another velocity: target, acquired: target",
+    );
 }
 
 /// Text, document and check agree on a target that is seen late; a plan knows of it and says so.

@@ -207,6 +207,21 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             ("/targets/0/beam_m", 0.0.into()),
             ("/targets/0/least_clearance_t_s", (-1e9).into()),
             ("/conduct/unsafe_plans", 2.into()),
+            ("/conduct/cost_m2", (-1.0).into()),
+            ("/to_go_m", (-1.0).into()),
+            ("/replans/0/reason", "period".into()),
+            ("/replans/1/reason", "start".into()),
+            ("/replans/1/reason", "why not".into()),
+            ("/replans/1/reason", "acquired: target".into()),
+            ("/replans/1/off_plan_m", (-1.0).into()),
+            ("/replans/1/estimates/0/age_s", (-1.0).into()),
+            ("/replans/1/estimates/0/speed_mps", (-1.0).into()),
+            ("/replans/1/estimates/0/length_m", (-1.0).into()),
+            ("/replans/1/estimates/0/beam_m", (-1.0).into()),
+            ("/replans/1/estimates/0/position_std_m", (-1.0).into()),
+            ("/replans/1/estimates/0/speed_spread_mps", (-1.0).into()),
+            ("/replans/1/estimates/0/course_spread_deg", (-1.0).into()),
+            ("/replans/1/estimates/0/starboard_turn_deg", (-181.0).into()),
         ] {
             let altered = check(&|document| {
                 *document.pointer_mut(pointer).expect(pointer) = serde_json::Value::clone(&value);
@@ -214,6 +229,15 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
             let shown = stdout(&altered.code(1));
             assert!(shown.contains("REJECTED"), "{pointer}: {shown}");
         }
+        let shown = stdout(&check(&|document| {
+            document["replans"][1]["reason"] = "acquired: nobody".into();
+            document["replans"][1]["estimates"][0]["age_s"] = (-2.0).into();
+        }));
+        says(
+            &shown,
+            "replans[1].reason: found 'acquired: nobody'; allowed: period | \
+             replans[1].estimates[0].age_s: found -2; allowed: a number that is not negative",
+        );
         check(&|document| document["sailed"][1]["crab_angle_deg"] = 3.3.into()).code(1);
         check(&|document| document["sailed"] = 3.into()).code(2);
         for (pointer, value, said) in [
@@ -226,6 +250,16 @@ fn a_simulation_verifies_and_one_with_an_altered_verdict_or_motion_does_not() {
                 "/settings/sensor",
                 "eyes".into(),
                 "settings.sensor: found 'eyes'; allowed: exact, ais",
+            ),
+            (
+                "/settings/vessel",
+                "boat".into(),
+                "settings.vessel: found 'boat'; allowed: kinematic, first-order, nomoto",
+            ),
+            (
+                "/settings/vessel",
+                serde_json::Value::Null,
+                "settings.vessel: found null; allowed: kinematic, first-order, nomoto",
             ),
             (
                 "/targets/0/behaviour",

@@ -1,14 +1,17 @@
 //! Record of the optimal-control solution.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use searoom_geometry::frame::{Side, radians_from_deg};
+use searoom_geometry::words;
+use searoom_model::vessel::VesselKind;
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlDocument {
     /// Not an enum: files may name one ship model by several words.
+    #[serde(deserialize_with = "vessel_name")]
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
@@ -22,6 +25,11 @@ pub struct ControlDocument {
     pub enclosed_targets: Vec<String>,
     pub starts: Vec<StartAttemptDocument>,
     pub homotopy_classes: Vec<HomotopyClassDocument>,
+}
+
+/// Reads the name of a ship model. The error for what is no text lists those of this project.
+fn vessel_name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    words::read_text(from, &VesselKind::WORDS)
 }
 
 /// Force limits, symmetric about zero.
