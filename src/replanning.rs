@@ -1,5 +1,5 @@
 //! Replanning: what a plan leaves to the next one. Own ship's motion so far, the targets' tracks and
-//! sets, roles, and the plan that own ship follows. Nothing here knows a document.
+//! sets, roles, and the plan that own ship follows.
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
 use crate::colregs::{Risk, Situation, SteadyShip, TargetMemory, Thresholds};
@@ -34,11 +34,11 @@ const MOST_VERTICES: usize = 40;
 /// Seconds of motion that are kept before the first role: two samples, which begin a role.
 const BEFORE_S: f64 = 2.0;
 
-/// The plan that own ship follows, and what was known when it was made: all that the next plan goes on
-/// from.
+/// The plan that own ship follows, and what was known when it was made: all that the next plan
+/// continues from.
 ///
-/// A run makes one ([`Self::of`]), and so does a plan document that was read from a file, with
-/// `PreviousPlan::try_from`. Courses of a document are degrees, so the two agree to rounding.
+/// [`Self::of`] makes one from a run, and `PreviousPlan::try_from` from a plan document that was read
+/// from a file. A document has its courses in degrees, so the two differ by rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreviousPlan {
     /// Title of the scenario.
