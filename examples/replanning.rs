@@ -1,14 +1,13 @@
 //! A scenario built in code, and a planner that is called every 20 s: each plan goes on from the
-//! last one, and the target is measured anew.
+//! last one, and the target is measured anew. No document is made or read.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example replanning
 //! ```
 
-use searoom::document::PlanDocument;
 use searoom::frame::{Pose, Vector, heading_from_course_deg};
 use searoom::pipeline;
-use searoom::replanning::remember;
+use searoom::replanning::{PreviousPlan, remember};
 use searoom::scenario::Scenario;
 use searoom::target::{Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
@@ -38,19 +37,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     for cycle in 1..=8 {
         let run = pipeline::run(scenario.clone());
-        let document = PlanDocument::of(&run);
-        let Some(plan) = run.planned.outcome.plan() else {
-            println!("{:3} s  no plan: {}", scenario.time, document.verdict);
+        let (Some(plan), Some(evaluation)) = (run.planned.outcome.plan(), &run.evaluation) else {
+            println!("{:3} s  no plan: {}", scenario.time, run.word());
             break;
         };
         println!(
             "{:3} s  {}, arrives at {:.0} s, least clearance {:.0} m",
             scenario.time,
-            document.verdict,
+            run.word(),
             scenario.time + plan.trajectory.end_time(),
-            run.evaluation
-                .as_ref()
-                .map_or(f64::NAN, |e| e.min_clearance),
+            evaluation.min_clearance,
         );
         // own ship sails its plan; the roles, the manoeuvre and the sets go on from it
         let now = f64::from(cycle) * PERIOD_S;
@@ -58,7 +54,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         scenario.own_ship.pose = plan.trajectory.pose_at(PERIOD_S);
         scenario.desired = mission.remaining(now);
         scenario.targets = vec![measured(now)];
-        remember(&document, &mut scenario)?;
+        if let Some(previous) = PreviousPlan::of(&run) {
+            remember(&previous, &mut scenario)?;
+        }
     }
     Ok(())
 }

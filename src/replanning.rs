@@ -3,8 +3,8 @@
 
 use crate::colregs::compliance::{ComplianceReport, OwnSamples, roles};
 use crate::colregs::{Risk, Situation, SteadyShip, TargetMemory, Thresholds};
-use crate::document::{MemoryDocument, PlanDocument, SegmentDocument, planned_manoeuvre};
 use crate::frame::{Pose, deg_from_radians, radians_from_deg, wrap};
+use crate::pipeline::Run;
 use crate::planner::{Escape, PlannedManoeuvre, UnderWay};
 use crate::scenario::{Fault, Memory, Scenario};
 use crate::target::{Motion, ShipTrack, Uncertainty};
@@ -34,6 +34,80 @@ const MOST_VERTICES: usize = 40;
 /// Seconds of motion that are kept before the first role: two samples, which begin a role.
 const BEFORE_S: f64 = 2.0;
 
+/// The plan that own ship follows, and what was known when it was made: all that the next plan
+/// continues from.
+///
+/// [`Self::of`] makes one from a run, and `PreviousPlan::try_from` from a plan document that was read
+/// from a file. A document has its courses in degrees, so the two differ by rounding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PreviousPlan {
+    /// Title of the scenario.
+    pub(crate) scenario: String,
+    /// The present then, on the clock of the scenario, seconds. All other times count from it.
+    pub(crate) time: f64,
+    pub(crate) horizon: f64,
+    /// Own ship's motion before the plan, in order of time; its times are negative.
+    pub(crate) sailed: Vec<Segment>,
+    /// The valid lines and arcs of the plan, at least one.
+    pub(crate) segments: Vec<Segment>,
+    pub(crate) manoeuvres: Vec<PlannedManoeuvre>,
+    pub(crate) escape: Option<Escape>,
+    pub(crate) targets: Vec<PreviousTarget>,
+}
+
+/// A target as a plan assumed it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PreviousTarget {
+    pub name: String,
+    /// `None` for explicit sets.
+    pub ship: Option<ShipTrack>,
+    /// Memory from before the plan.
+    pub memory: TargetMemory,
+}
+
+impl PreviousPlan {
+    /// The plan of a run; `None` without one, and for a plan under forces, which is remembered as a
+    /// [`WarmStart`](crate::planner::WarmStart).
+    pub fn of(run: &Run) -> Option<Self> {
+        let (scenario, plan) = (&run.scenario, run.planned.outcome.plan()?);
+        let segments = plan.trajectory.segments();
+        let targets = scenario.targets.iter().enumerate();
+        (!segments.is_empty()).then(|| Self {
+            scenario: scenario.title.clone(),
+            time: scenario.time,
+            horizon: scenario.horizon,
+            sailed: scenario.memory.sailed.clone(),
+            segments: segments.to_vec(),
+            manoeuvres: run.planned.manoeuvres.clone(),
+            escape: run.planned.escape,
+            targets: targets
+                .map(|(index, target)| PreviousTarget {
+                    name: target.name.clone(),
+                    ship: target.ship().cloned(),
+                    memory: scenario.memory.target(index).cloned().unwrap_or_default(),
+                })
+                .collect(),
+        })
+    }
+
+    fn target(&self, name: &str) -> Option<&PreviousTarget> {
+        self.targets.iter().find(|target| target.name == name)
+    }
+
+    /// A tracked target, as it was then.
+    fn ship(&self, name: &str) -> Option<&ShipTrack> {
+        self.target(name)?.ship.as_ref()
+    }
+
+    /// The manoeuvres that own ship has not finished `elapsed` seconds later.
+    fn manoeuvres(&self, elapsed: f64) -> Vec<PlannedManoeuvre> {
+        (self.manoeuvres.iter())
+            .map(|m| m.after(elapsed))
+            .filter(|m| m.joins > 0.0)
+            .collect()
+    }
+}
+
 /// Adds to a scenario what a plan of an earlier time leaves to it.
 ///
 /// Roles last until the target is past and clear; a role that has begun since is found on the
@@ -41,10 +115,12 @@ const BEFORE_S: f64 = 2.0;
 /// of the present where that is a risk, but an overtaking ship stays one (Rule 13(d)). A target
 /// that does not turn keeps to the places and velocities of both plans; one that has left them is
 /// named, and its set begins anew. Own ship within its tracking margin of the plan is put on it:
-/// the next plan goes on from there. The fault says why the plan is not one that own ship follows.
+/// the next plan goes on from there.
+///
+/// The fault says why the plan is not one that own ship follows; the scenario is then as it was.
 /// O(seconds sailed × targets).
-pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), Fault> {
-    let elapsed = scenario.time - previous.time_s;
+pub fn remember(previous: &PreviousPlan, scenario: &mut Scenario) -> Result<(), Fault> {
+    let elapsed = scenario.time - previous.time;
     let plan = remaining_plan(previous, scenario, elapsed)?;
     let own = &mut scenario.own_ship;
     let off = (plan.now.position - own.pose.position).norm();
@@ -55,14 +131,14 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         own.pose = plan.now;
     }
     // own ship has altered for a ship: that is a risk until own ship is on its route again
-    let has_altered = manoeuvres(previous, elapsed).iter().any(has_begun);
+    let has_altered = previous.manoeuvres(elapsed).iter().any(has_begun);
     for target in &mut scenario.targets {
         if let (Motion::Ship(ship), true) = (&mut target.motion, has_altered) {
-            let then = ship_then(previous, &target.name);
+            let then = previous.ship(&target.name);
             ship.risk_distance = then.map_or(0.0, |then| then.risk_distance);
         }
     }
-    let mut memory = memory_after(previous, scenario, plan)?;
+    let mut memory = memory_after(previous, scenario, plan.remainder);
     if scenario.stay.is_some() {
         // a stay is planned anew, because more is known of who comes
         let to_stay = before_stay(&scenario.desired, &memory.remainder).len();
@@ -72,7 +148,7 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
         memory.off_plan = off;
     }
     for target in &mut scenario.targets {
-        let then = ship_then(previous, &target.name);
+        let then = previous.ship(&target.name);
         if let (Motion::Ship(ship), Some(then)) = (&mut target.motion, then)
             && then.turn_rate == 0.0
             && ship.turn_rate == 0.0
@@ -88,7 +164,7 @@ pub fn remember(previous: &PlanDocument, scenario: &mut Scenario) -> Result<(), 
 }
 
 /// Restricts a ship to the places and the velocities that the previous plan assumed.
-fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
+fn keep_sets(ship: &mut ShipTrack, then: &ShipTrack, elapsed: f64) {
     let velocities = then.outer_velocity_set();
     let moved = then.outer_positions();
     let moved = moved.minkowski_sum(&velocities.scaled(elapsed));
@@ -111,7 +187,7 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
             true => velocities,
             false => ShipTrack {
                 kept_velocities: None,
-                ..then
+                ..then.clone()
             }
             .outer_velocity_set(),
         });
@@ -120,16 +196,14 @@ fn keep_sets(ship: &mut ShipTrack, then: ShipTrack, elapsed: f64) {
 
 /// Remainder of the previous plan at the scenario's time.
 struct RemainingPlan {
-    /// The whole plan. Its times count from the previous plan.
-    planned: Vec<Segment>,
-    /// The remainder. Its times count from the scenario.
+    /// Its times count from the scenario.
     remainder: Vec<Segment>,
     /// Where it has own ship.
     now: Pose,
 }
 
 fn remaining_plan(
-    previous: &PlanDocument,
+    previous: &PreviousPlan,
     scenario: &Scenario,
     elapsed: f64,
 ) -> Result<RemainingPlan, Fault> {
@@ -138,37 +212,26 @@ fn remaining_plan(
         let allowed = format_args!("a plan of \"{}\"", scenario.title);
         return Err(Fault::new("scenario", found, allowed));
     }
-    let documents = previous
-        .trajectory
-        .as_ref()
-        .and_then(|t| t.segments.as_ref());
-    let planned: Vec<Segment> = (documents.into_iter().flatten())
-        .map(SegmentDocument::segment)
-        .collect();
-    let (Some(last), true) = (planned.last(), planned.iter().all(Segment::is_valid)) else {
-        return Err(Fault::new(
-            "trajectory.segments",
-            "nothing",
-            "lines and arcs: a plan of the space-time or path-time planner",
-        ));
-    };
-    if !(elapsed >= 0.0 && elapsed <= last.end_time()) {
-        let until = rounded(previous.time_s + last.end_time());
+    let last = previous.segments.last();
+    let end = last.map_or(0.0, Segment::end_time);
+    if !(elapsed >= 0.0 && elapsed <= end) {
+        let until = rounded(previous.time + end);
         return Err(Fault::new(
             "time_s",
-            format_args!("a plan from {} s to {until} s", previous.time_s),
+            format_args!("a plan from {} s to {until} s", previous.time),
             format_args!(
                 "a plan that covers {} s, the scenario's time",
                 scenario.time
             ),
         ));
     }
-    let remainder: Vec<Segment> = (planned.iter())
+    let remainder: Vec<Segment> = (previous.segments.iter())
         .filter(|s| s.end_time() > elapsed)
         .map(|s| shifted(s.between(elapsed, s.end_time()), elapsed))
         .collect();
     let own = &scenario.own_ship;
-    let now = remainder.first().map_or(last.end(), |s| s.start);
+    let now = remainder.first().map(|s| s.start);
+    let now = now.or(last.map(Segment::end)).unwrap_or(own.pose);
     let metres = (now.position - own.pose.position).norm();
     let degrees = deg_from_radians(wrap(now.heading - own.pose.heading).abs());
     let most = OFF_PLAN_LENGTHS * own.hull.length;
@@ -181,11 +244,7 @@ fn remaining_plan(
             format_args!("at most {most} m, own length, and {OFF_PLAN_DEG} degrees"),
         ));
     }
-    Ok(RemainingPlan {
-        planned,
-        remainder,
-        now,
-    })
+    Ok(RemainingPlan { remainder, now })
 }
 
 /// A segment with times that count from `elapsed` seconds later.
@@ -196,44 +255,12 @@ fn shifted(s: Segment, elapsed: f64) -> Segment {
     }
 }
 
-/// True where all that is remembered lies before the plan, in order of time.
-fn is_past(memory: &MemoryDocument) -> bool {
-    let sailed: Vec<Segment> = memory.sailed.iter().map(SegmentDocument::segment).collect();
-    let times = sailed.iter().flat_map(|s| [s.start_time, s.end_time()]);
-    let in_order = |times: &[f64]| {
-        let before = |time: &f64| *time <= tolerance::TIME_S && time.is_finite();
-        let order = times.windows(2).all(|t| t[0] <= t[1] + tolerance::TIME_S);
-        order && times.iter().all(before)
-    };
-    let targets = memory.targets.iter().all(|target| {
-        let track: Vec<f64> = target.track.iter().map(|state| state.at.t_s).collect();
-        let role = target.role.as_ref();
-        let role =
-            role.is_none_or(|role| role.risk(0.0).is_some() && in_order(&[role.own_ship.at.t_s]));
-        in_order(&track) && role
-    });
-    targets && sailed.iter().all(Segment::is_valid) && in_order(&times.collect::<Vec<_>>())
-}
-
-fn memory_after(
-    previous: &PlanDocument,
-    scenario: &Scenario,
-    plan: RemainingPlan,
-) -> Result<Memory, Fault> {
-    let (elapsed, own) = (scenario.time - previous.time_s, &scenario.own_ship);
-    let RemainingPlan {
-        planned, remainder, ..
-    } = plan;
-    if !previous.memory.iter().all(is_past) {
-        return Err(Fault::new(
-            "memory",
-            "a motion, a track or a role that is not before the plan",
-            "times that increase up to 0, and a known role",
-        ));
-    }
-    let before = previous.memory.iter().flat_map(|memory| &memory.sailed);
-    let mut sailed: Vec<Segment> = before.map(|s| shifted(s.segment(), elapsed)).collect();
-    for s in planned.iter().filter(|s| s.start_time < elapsed) {
+fn memory_after(previous: &PreviousPlan, scenario: &Scenario, remainder: Vec<Segment>) -> Memory {
+    let (elapsed, own) = (scenario.time - previous.time, &scenario.own_ship);
+    let before = previous.sailed.iter();
+    let mut sailed: Vec<Segment> = before.map(|s| shifted(*s, elapsed)).collect();
+    let begun = previous.segments.iter();
+    for s in begun.filter(|s| s.start_time < elapsed) {
         let s = shifted(s.between(s.start_time, elapsed), elapsed);
         match sailed.last_mut().filter(|last| last.is_continued_by(&s)) {
             Some(last) => last.duration += s.duration,
@@ -241,7 +268,7 @@ fn memory_after(
         }
     }
     let now = SteadyShip::new(own.pose, remainder.first().map_or(own.speed, |s| s.speed));
-    let manoeuvres = manoeuvres(previous, elapsed);
+    let manoeuvres = previous.manoeuvres(elapsed);
     let is_off_route = manoeuvres.iter().any(has_begun);
     let samples = OwnSamples::of_past(&sailed, now, own);
     let (mut outside_velocities, mut outside_places) = (Vec::new(), Vec::new());
@@ -275,7 +302,7 @@ fn memory_after(
     let missing = (previous.targets.iter().map(|then| then.name.clone()))
         .filter(|name| scenario.targets.iter().all(|target| target.name != *name));
     let under_way = (manoeuvres.iter().find(|m| has_begun(m))).zip(remainder.first());
-    Ok(Memory {
+    Memory {
         warm_start: None,
         under_way: under_way.map(|(manoeuvre, steered)| UnderWay {
             begins: manoeuvre.begins,
@@ -285,12 +312,11 @@ fn memory_after(
             speed: nearest_speed(own, steered.speed),
             is_returning: manoeuvre.returns <= 0.0,
         }),
-        escape: (previous.escape.as_ref())
-            .filter(|escape| escape.held_until_s > elapsed)
+        escape: (previous.escape)
+            .filter(|escape| escape.held_until > elapsed)
             .map(|escape| Escape {
-                held_until: escape.held_until_s - elapsed,
-                turn: -radians_from_deg(escape.turn_deg),
-                speed: escape.speed_mps,
+                held_until: escape.held_until - elapsed,
+                ..escape
             }),
         outside_velocities,
         outside_places,
@@ -300,16 +326,7 @@ fn memory_after(
         off_plan: 0.0,
         manoeuvres,
         targets,
-    })
-}
-
-/// The manoeuvres of the previous plan that own ship has not finished.
-fn manoeuvres(previous: &PlanDocument, elapsed: f64) -> Vec<PlannedManoeuvre> {
-    let manoeuvres = previous.manoeuvres.iter();
-    manoeuvres
-        .map(|m| planned_manoeuvre(m).after(elapsed))
-        .filter(|m| m.joins > 0.0)
-        .collect()
+    }
 }
 
 fn has_begun(manoeuvre: &PlannedManoeuvre) -> bool {
@@ -339,9 +356,9 @@ enum Assumed {
 }
 
 /// Where a target is; `None` for one that the previous plan does not have.
-fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) -> Option<Assumed> {
-    let then = ship_then(previous, name)?;
-    let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon_s);
+fn assumed(previous: &PreviousPlan, name: &str, ship: &ShipTrack, elapsed: f64) -> Option<Assumed> {
+    let then = previous.ship(name)?;
+    let velocities = then.outer_velocity_sets(then.turn_rate, previous.horizon);
     let places = then.outer_positions().translated(then.pose.position);
     let set = Uncertainty::new(places, velocities);
     let mut sets = set.velocities.iter();
@@ -369,26 +386,23 @@ fn assumed(previous: &PlanDocument, name: &str, ship: &ShipTrack, elapsed: f64) 
     })
 }
 
-/// A target of the previous plan, then.
-fn ship_then(previous: &PlanDocument, name: &str) -> Option<ShipTrack> {
-    let mut targets = previous.targets.iter();
-    let then = targets.find(|target| target.name == name)?;
-    then.ship.as_ref()?.track().ok()
-}
-
-/// Memory of a target in the previous plan.
-fn target_memory(previous: &PlanDocument, name: &str, elapsed: f64) -> TargetMemory {
-    let mut before = previous.memory.iter().flat_map(|memory| &memory.targets);
-    let before = before.find(|target| target.name == name);
-    let mut memory = TargetMemory::default();
-    if let Some(before) = before {
-        memory.role = before.role.as_ref().and_then(|known| known.risk(elapsed));
-        memory.passed = before.passed;
-        memory.track = (before.track.iter())
-            .map(|state| state.steady(elapsed))
-            .collect();
-    }
-    if let Some(ship) = ship_then(previous, name).map(|ship| SteadyShip::on_track(&ship, 0.0)) {
+/// Memory of a target at the scenario's time, with its state in the previous plan.
+fn target_memory(previous: &PreviousPlan, name: &str, elapsed: f64) -> TargetMemory {
+    let Some(before) = previous.target(name) else {
+        return TargetMemory::default();
+    };
+    let role = before.memory.role;
+    let track = before.memory.track.iter();
+    let mut memory = TargetMemory {
+        role: role.map(|risk| Risk {
+            time: risk.time - elapsed,
+            ..risk
+        }),
+        passed: before.memory.passed,
+        track: track.map(|(time, ship)| (time - elapsed, *ship)).collect(),
+    };
+    if let Some(ship) = before.ship.as_ref() {
+        let ship = SteadyShip::on_track(ship, 0.0);
         // a target that keeps course and speed is where it was thought to be
         let thought = memory.at(-elapsed).filter(|_| elapsed > 0.0);
         let is_there = thought.is_some_and(|thought| {

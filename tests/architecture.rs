@@ -19,9 +19,9 @@ pipeline: parallel frame tolerance numerics geometry trajectory vessel target co
 simulation: frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document replanning text
 campaign: frame geometry tolerance colregs target vessel input output parallel pipeline scenario simulation document text trajectory
 study: parallel document frame text tolerance trajectory vessel target colregs obstacle planner evaluation scenario pipeline
-document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline text
+document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline replanning text
 publication: document evaluation pipeline verification
-replanning: document frame tolerance trajectory vessel target colregs planner scenario text
+replanning: frame tolerance trajectory vessel target colregs planner scenario pipeline text
 report: labels frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
 recording: labels frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text
 ";

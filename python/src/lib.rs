@@ -12,7 +12,7 @@ use searoom::document::{AssessedSets, ScenarioComparisonDocument, VerifiedPlanDo
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
-use searoom::replanning::remember;
+use searoom::replanning::{PreviousPlan, remember};
 use searoom::study::assess::{OwnSituation, Query, SpaceTimePoint};
 use searoom::study::compare::{Entry, candidates, methods, without_repeats};
 use searoom::verification::{is_simulation, verified_plan, verify, verify_simulations};
@@ -48,7 +48,9 @@ fn py_plan(py: Python, scenario: &Scenario, previous: Option<AnyDocument>) -> Py
                 read.map_err(|error| document.error(error))?
             }
         };
-        let kept = detached(py, || remember(&before, &mut asked))?;
+        let kept = detached(py, || {
+            PreviousPlan::try_from(&before).and_then(|before| remember(&before, &mut asked))
+        })?;
         kept.map_err(|fault| DocumentError::new_err(fault.to_string()))?;
     }
     Plan::new(py, scenario, asked)

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use searoom::document::{PLAN_MEBIBYTES, PlanDocument, SuiteOutcome};
 use searoom::pipeline::{self, Run};
-use searoom::replanning::remember;
+use searoom::replanning::{PreviousPlan, remember};
 use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
 use searoom::verification::verified_plan;
@@ -99,7 +99,8 @@ impl Previous {
 
     /// Adds what the plan leaves to a scenario; a note where it does not fit and is ignored.
     fn remember(&self, scenario: &mut Scenario) -> Result<Option<String>, Fault> {
-        match remember(&self.plan, scenario) {
+        let previous = PreviousPlan::try_from(&self.plan);
+        match previous.and_then(|previous| remember(&previous, scenario)) {
             Ok(()) => Ok(None),
             Err(fault) if self.ignore => {
                 let name = self.file.display();

@@ -140,10 +140,11 @@ fn sail(
     let settings = &mut scenario.simulation;
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.duration = args.duration_s.or(settings.duration);
-    let mut simulation = Simulation::new(scenario.clone(), args.measured_delay).map_err(refused)?;
-    if args.plans.is_some() || args.written.rrd.is_some() {
-        simulation.keep_plans();
-    }
+    let begin = match args.plans.is_some() || args.written.rrd.is_some() {
+        true => Simulation::keeping_plans,
+        false => Simulation::new,
+    };
+    let mut simulation = begin(scenario.clone(), args.measured_delay).map_err(refused)?;
     while !simulation.finished() {
         simulation.step();
         if interrupted.load(Ordering::Relaxed) {

@@ -18,7 +18,6 @@ pub(crate) use lines::escape_words;
 pub(crate) use lines::{
     TIME_LINE, headline, in_brackets, met, passing, plan_lines, verdict_line, verdict_parts,
 };
-pub(crate) use memory::planned_manoeuvre;
 pub use plan::legs::planned_legs;
 pub(crate) use plan::legs::{CLOSEST, longest};
 pub(crate) use plan::path_time::paths;

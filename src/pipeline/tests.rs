@@ -497,8 +497,8 @@ fn out_of_time_own_ship_keeps_a_plan_that_is_clear_of_the_hard_sets() {
     if let Motion::Ship(ship) = &mut scenario.targets[0].motion {
         ship.pose = ship.pose_at(elapsed);
     }
-    let document = crate::document::PlanDocument::of(&before);
-    crate::replanning::remember(&document, &mut scenario).expect("own ship is on its plan");
+    let previous = crate::replanning::PreviousPlan::of(&before).expect("a plan");
+    crate::replanning::remember(&previous, &mut scenario).expect("own ship is on its plan");
     scenario.deadline = 0.0;
     let after = run(scenario);
     assert!(matches!(after.planned.outcome, Outcome::Deadline(Some(_))));

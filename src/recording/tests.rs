@@ -719,8 +719,8 @@ vessel = { kind = "nomoto" }
 "#;
 
 fn sailed(scenario: &Scenario) -> Simulation {
-    let mut simulation = Simulation::new(scenario.clone(), false).expect("a closed loop");
-    simulation.keep_plans();
+    let simulation = Simulation::keeping_plans(scenario.clone(), false);
+    let mut simulation = simulation.expect("a closed loop");
     while !simulation.finished() {
         simulation.step();
     }

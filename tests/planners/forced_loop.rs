@@ -12,8 +12,8 @@ use crate::campaigns::documents::scenario;
 const SCENES: [&str; 2] = ["forces/give-way.toml", "paper/figure_9.toml"];
 
 fn sailed(scenario: Scenario) -> (SimulationDocument, Vec<PlanDocument>) {
-    let mut simulation = Simulation::new(scenario, false).expect("a scenario for the loop");
-    simulation.keep_plans();
+    let simulation = Simulation::keeping_plans(scenario, false);
+    let mut simulation = simulation.expect("a scenario for the loop");
     while !simulation.finished() {
         simulation.step();
     }

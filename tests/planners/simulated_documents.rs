@@ -127,8 +127,8 @@ fn rejected(seed: u64) -> (usize, Vec<String>) {
         0 => forced(seed),
         _ => Scenario::parse(&mission(seed)).expect("a scenario"),
     };
-    let mut simulation = Simulation::new(scene, false).expect("a scenario for the loop");
-    simulation.keep_plans();
+    let simulation = Simulation::keeping_plans(scene, false);
+    let mut simulation = simulation.expect("a scenario for the loop");
     while !simulation.finished() {
         simulation.step();
     }

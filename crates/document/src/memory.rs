@@ -49,15 +49,15 @@ pub struct KnownRoleDocument {
 }
 
 impl KnownRoleDocument {
-    /// The role, with times that count from `elapsed` seconds later; `None` without a rule.
-    pub fn risk(&self, elapsed: f64) -> Option<Risk> {
+    /// The role; `None` without a rule.
+    pub fn risk(&self) -> Option<Risk> {
         self.role.rule()?;
-        let (time, own) = self.own_ship.steady(elapsed);
+        let (time, own) = self.own_ship.steady();
         Some(Risk {
             role: self.role,
             time,
             own,
-            target: self.target.steady(elapsed).1,
+            target: self.target.steady().1,
         })
     }
 }
@@ -89,9 +89,9 @@ impl StateDocument {
         }
     }
 
-    /// The state, at a time that counts from `elapsed` seconds later.
-    pub fn steady(&self, elapsed: f64) -> (f64, SteadyShip) {
+    /// The time, seconds, and the ship.
+    pub fn steady(&self) -> (f64, SteadyShip) {
         let ship = SteadyShip::new(self.at.pose(), self.speed_mps);
-        (self.at.t_s - elapsed, ship)
+        (self.at.t_s, ship)
     }
 }

@@ -137,7 +137,7 @@ impl SimulatedTargetDocument {
     /// The target at a time in seconds; `None` without a track. O(log states).
     pub fn at(&self, time: f64) -> Option<SteadyShip> {
         let begun = self.track.partition_point(|state| state.at.t_s <= time);
-        let (from, mut ship) = self.track.get(begun.saturating_sub(1))?.steady(0.0);
+        let (from, mut ship) = self.track.get(begun.saturating_sub(1))?.steady();
         ship.pose.position += ship.velocity() * (time - from);
         Some(ship)
     }

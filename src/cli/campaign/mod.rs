@@ -271,14 +271,14 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let stop = catch_interrupt(output);
     let drawn = specification.scenario(row);
     let drawn = drawn.with_context(|| format!("row {row}: no draw is of its class"))?;
-    let simulation = Simulation::new(drawn.scenario.clone(), false);
-    let mut simulation = simulation.map_err(|faults| {
+    let begin = match args.rrd.is_some() {
+        true => Simulation::keeping_plans,
+        false => Simulation::new,
+    };
+    let mut simulation = begin(drawn.scenario.clone(), false).map_err(|faults| {
         let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
         anyhow!("row {row}: {}", faults.join("; "))
     })?;
-    if args.rrd.is_some() {
-        simulation.keep_plans();
-    }
     while !simulation.finished() {
         simulation.step();
         if stop.load(Ordering::Relaxed) {

@@ -37,8 +37,8 @@ pub struct Simulated<'a> {
 /// use searoom::simulation::Simulation;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// let mut simulation = Simulation::new(scenario.clone(), false).expect("a closed loop");
-/// simulation.keep_plans();
+/// let simulation = Simulation::keeping_plans(scenario.clone(), false);
+/// let mut simulation = simulation.expect("a closed loop");
 /// for _ in 0..100 {
 ///     simulation.step();
 /// }

@@ -63,7 +63,7 @@ impl Simulation {
             self.active = Active {
                 start: self.time,
                 trajectory,
-                document: None,
+                previous: None,
                 left_out: f64::INFINITY,
                 assumed: Vec::new(),
             };

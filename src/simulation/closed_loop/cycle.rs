@@ -41,9 +41,13 @@ const NEAREST_TIME: f64 = 0.01;
 
 pub(super) struct Cycle {
     pub run: Run,
-    /// That of the plan, if there is one.
+    /// That of the plan, if there is one: the independent check reads it.
     pub document: Option<PlanDocument>,
     pub replan: ReplanDocument,
+    /// m²; `None` without a plan.
+    pub cost: Option<f64>,
+    /// True for a plan that took longer than its delay: own ship keeps the plan before.
+    pub is_late: bool,
     /// Metres of the mission after the end of the plan, which may be before the intermediate end.
     pub left_out: f64,
 }
@@ -104,7 +108,7 @@ impl Simulation {
             scenario.own_ship.speed = own.velocity.norm();
             let plan = plan.after(start - self.active.start);
             scenario.memory.warm_start = Some(WarmStart { state, plan });
-        } else if let Some(previous) = &self.active.document {
+        } else if let Some(previous) = &self.active.previous {
             // the last plan is own ship's, so only a ship far off it is refused
             if remember(previous, &mut scenario).is_err() {
                 let reason = format!("{} m", tenths(off_plan_m));
@@ -127,23 +131,28 @@ impl Simulation {
             }
         }
         let (run, left_out_m) = self.run(&scenario);
-        let late = self.measured_delay && start > 0.0 && run.plan_time.as_secs_f64() > delay;
         let plan = run.planned.outcome.plan();
-        let document = plan.map(|_| PlanDocument::of(&run));
+        let took = run.plan_time.as_secs_f64();
+        let is_late = plan.is_some() && self.measured_delay && start > 0.0 && took > delay;
+        let cost = plan.and_then(|plan| {
+            // the stage cost of forces has another unit
+            let evaluation = run.evaluation.as_ref().filter(|_| forced.is_some());
+            finite(evaluation.map_or(plan.cost, |e| e.space_time_error))
+        });
+        let mut document = plan.map(|_| PlanDocument::of(&run));
+        if let Some(document) = &mut document {
+            document.mission.left_out_m = left_out_m;
+        }
         let replan = ReplanDocument {
             t_s: self.time,
             start_t_s: start,
             reason,
             verdict: (document.as_ref()).map_or_else(|| run.word(), |plan| plan.verdict.clone()),
             safe: document.as_ref().is_some_and(PlanDocument::is_safe),
-            followed: plan.is_some() && !late,
+            followed: plan.is_some() && !is_late,
             keeps_plan: run.planned.is_remainder(),
             left_out_m,
-            cost_m2: plan.and_then(|plan| {
-                // the stage cost of forces has another unit
-                let evaluation = run.evaluation.as_ref().filter(|_| forced.is_some());
-                finite(evaluation.map_or(plan.cost, |e| e.space_time_error))
-            }),
+            cost_m2: cost,
             relaxations: run.relaxations.iter().map(|r| relaxation(r).kind).collect(),
             turn_deg: (run.planned.manoeuvres.first()).map(|m| clockwise_deg(m.turn)),
             off_plan_m,
@@ -156,6 +165,8 @@ impl Simulation {
             run,
             document,
             replan,
+            cost,
+            is_late,
             left_out: left_out_m + to_go,
         }
     }

@@ -27,12 +27,13 @@ use sensor::TargetSensor;
 use tracker::Track;
 
 use crate::colregs::SteadyShip;
-use crate::document::{Alarm, AlarmDocument, PlanDocument, ReplanDocument, SailedDocument};
+use crate::document::{Alarm, AlarmDocument, PlanDocument, ReplanDocument};
 use crate::frame::{Pose, Vector, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::LandObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Minimises, NoPlan, Outcome, Plan};
+use crate::replanning::PreviousPlan;
 use crate::scenario::{
     Behaviour, Fault, NotReported, Scenario, Sensor, SensorKind, SimulationSettings, VesselModel,
 };
@@ -106,15 +107,33 @@ pub struct Simulation {
     is_overpowered: bool,
     /// Why the clock cut a plan, until it is reported.
     out_of_time: Option<String>,
+    conduct: Conduct,
+    /// The documents so far, which the loop writes and never reads.
     replans: Vec<ReplanDocument>,
     alarms: Vec<AlarmDocument>,
     plan_seconds: Vec<f64>,
-    /// Counts of the cycles so far; the rest is found at the end.
-    conduct: SailedDocument,
-    keep_plans: bool,
-    plans: Vec<PlanDocument>,
+    /// Those of the plans that were followed; `None` where they are not kept.
+    plans: Option<Vec<PlanDocument>>,
     /// All land of the map, where commands are tested against it.
     around_land: OnceLock<LandObstacle>,
+}
+
+/// Own ship's conduct so far.
+#[derive(Debug, Clone, Default)]
+struct Conduct {
+    /// m²; `None` where the first plan ends before the last waypoint.
+    first_plan_cost: Option<f64>,
+    /// Plans that begin another manoeuvre before the one under way is finished.
+    replaced_manoeuvres: usize,
+    /// Those of them that turn to the other side.
+    side_switches: usize,
+    /// Plans at whose time the remainder of the last plan entered a hard set.
+    lost_remainders: usize,
+    without_plan: usize,
+    unsafe_plans: usize,
+    late_plans: usize,
+    /// Metres, and when, seconds.
+    largest_off_plan: (f64, f64),
 }
 
 /// One target: its true motion, its reports and its track.
@@ -146,8 +165,9 @@ struct Simulated {
 struct Active {
     start: f64,
     trajectory: Trajectory,
-    /// `None` where own ship holds course and speed without a plan.
-    document: Option<PlanDocument>,
+    /// What the next plan goes on from; `None` where own ship holds course and speed without a plan,
+    /// and under forces.
+    previous: Option<PreviousPlan>,
     /// Metres of the mission after the end of the plan; infinite without a plan.
     left_out: f64,
     /// The targets that the plan assumes at its start, in the scenario's order; `None` for explicit
@@ -162,12 +182,8 @@ impl Active {
 
     /// True for a plan that ends before the last waypoint, and before the horizon.
     fn ends_short(&self) -> bool {
-        self.document.as_ref().is_some_and(|plan| {
-            let arrives =
-                self.left_out == 0.0 && plan.cost.as_ref().is_some_and(|cost| cost.arrived);
-            let ends = self.trajectory.end_time() < plan.horizon_s - INSTANT;
-            plan.optimal_control.is_none() && !arrives && ends
-        })
+        let ends = |plan: &PreviousPlan| self.trajectory.end_time() < plan.horizon - INSTANT;
+        self.left_out > 0.0 && self.previous.as_ref().is_some_and(ends)
     }
 }
 
@@ -177,17 +193,25 @@ impl Simulation {
     ///
     /// The error holds every reason why the loop cannot sail the scenario.
     pub fn new(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
+        Self::begun(scenario, measured_delay)?.with_first_plan()
+    }
+
+    /// [`Self::new`], and keeps the document of every plan that is followed, for [`Self::plans`].
+    pub fn keeping_plans(scenario: Scenario, measured_delay: bool) -> Result<Self, Vec<Fault>> {
         let mut simulation = Self::begun(scenario, measured_delay)?;
-        simulation.observe();
-        let none = simulation.cycle(0.0, ReplanDocument::START.to_owned());
+        simulation.plans = Some(Vec::new());
+        simulation.with_first_plan()
+    }
+
+    fn with_first_plan(mut self) -> Result<Self, Vec<Fault>> {
+        self.observe();
+        let none = self.cycle(0.0, ReplanDocument::START.to_owned());
         if let Some(why @ NoPlan::HorizonTooShort { horizon, .. }) = none {
             let allowed = format!("a longer one: {why}");
             return Err(vec![Fault::new("horizon_s", rounded(horizon), &allowed)]);
         }
-        simulation.activate();
-        let is_whole = simulation.active.left_out == 0.0;
-        simulation.conduct.first_plan_cost_m2 = simulation.replans[0].cost_m2.filter(|_| is_whole);
-        Ok(simulation)
+        self.activate();
+        Ok(self)
     }
 
     /// Before the first plan: own ship holds course and speed.
@@ -258,7 +282,7 @@ impl Simulation {
             active: Active {
                 start: 0.0,
                 trajectory: own.held(&scenario, duration),
-                document: None,
+                previous: None,
                 left_out: f64::INFINITY,
                 assumed: Vec::new(),
             },
@@ -273,12 +297,11 @@ impl Simulation {
             is_beyond: false,
             is_overpowered: false,
             out_of_time: None,
+            conduct: Conduct::default(),
             replans: Vec::new(),
             alarms: Vec::new(),
             plan_seconds: Vec::new(),
-            conduct: SailedDocument::default(),
-            keep_plans: false,
-            plans: Vec::new(),
+            plans: None,
             around_land: OnceLock::new(),
             scenario,
         })
@@ -295,15 +318,9 @@ impl Simulation {
             && !is_under_forces(scenario)
     }
 
-    /// Keeps the document of every plan from now on; the first plan is the one that is followed.
-    pub fn keep_plans(&mut self) {
-        self.keep_plans = true;
-        self.plans.extend(self.active.document.clone());
-    }
-
-    /// The documents of the plans since [`Self::keep_plans`].
+    /// The documents of the plans that were followed; empty without [`Self::keeping_plans`].
     pub fn plans(&self) -> &[PlanDocument] {
-        &self.plans
+        self.plans.as_deref().unwrap_or_default()
     }
 
     fn settings(&self) -> &SimulationSettings {
@@ -487,8 +504,13 @@ impl Simulation {
             run,
             document,
             replan,
+            cost,
+            is_late,
             left_out,
         } = self.plan(delay, reason);
+        if self.plan_seconds.is_empty() {
+            self.conduct.first_plan_cost = cost.filter(|_| left_out == 0.0);
+        }
         self.plan_seconds.push(run.plan_time.as_secs_f64());
         if let Some(begun) = run.scenario.memory.under_way.filter(|m| !m.is_returning) {
             let next = run.planned.manoeuvres.first();
@@ -501,27 +523,29 @@ impl Simulation {
         self.conduct.lost_remainders += usize::from(cycle::remainder_is_lost(&run));
         for target in &mut self.targets {
             target.is_acquired = false;
-            let is_outside = |names: &[String]| names.contains(&target.name);
-            let left = is_outside(&replan.outside_velocities) || is_outside(&replan.outside_places);
+            let left = run.scenario.memory.is_outside(&target.name);
             target.outside_sets += usize::from(left);
         }
-        for name in &replan.outside_velocities {
+        for name in &run.scenario.memory.outside_velocities {
             self.alarm(Alarm::AnotherVelocity, Some(name), None);
         }
-        for name in &replan.outside_places {
+        for name in &run.scenario.memory.outside_places {
             self.alarm(Alarm::AnotherPlace, Some(name), None);
         }
-        self.conduct.without_plan += usize::from(replan.cost_m2.is_none());
-        self.conduct.unsafe_plans += usize::from(replan.cost_m2.is_some() && !replan.safe);
+        let plan = run.planned.outcome.plan();
+        let is_safe = document.as_ref().is_some_and(PlanDocument::is_safe);
+        self.conduct.without_plan += usize::from(plan.is_none());
+        self.conduct.unsafe_plans += usize::from(plan.is_some() && !is_safe);
+        self.conduct.late_plans += usize::from(is_late);
         let reason = run.reason();
         if matches!(run.planned.outcome, Outcome::Deadline(_)) {
             self.out_of_time.clone_from(&reason);
         }
-        if replan.cost_m2.is_none() {
+        if plan.is_none() {
             self.alarm(Alarm::NoPlan, None, reason);
-        } else if !replan.followed {
+        } else if is_late {
             self.alarm(Alarm::PlanTooLate, None, None);
-        } else if !replan.safe {
+        } else if !is_safe {
             let why = reason.map_or(String::new(), |reason| format!(", {reason}"));
             let why = format!("{}{why}", replan.verdict);
             // the one whose set is entered at the greatest risk
@@ -534,16 +558,14 @@ impl Simulation {
                 });
             self.alarm(Alarm::UnsafePlan, entered, Some(why));
         }
-        let plan = run.planned.outcome.plan();
-        let plan = plan.filter(|_| replan.followed);
+        let plan = plan.filter(|_| !is_late);
         let is_stop = |plan: &Plan| !plan.arrives() && plan.trajectory.end_time() <= INSTANT;
         self.stop_time = f64::INFINITY;
         if plan.is_some_and(is_stop) {
             self.stop_time = self.time + delay;
-        } else if let (Some(plan), Some(mut document)) = (plan, document) {
-            document.mission.left_out_m = replan.left_out_m;
-            if self.keep_plans {
-                self.plans.push(document.clone());
+        } else if let Some(plan) = plan {
+            if let (Some(plans), Some(document)) = (&mut self.plans, document) {
+                plans.push(document);
             }
             let assumed = |name: &str| {
                 let target = run.scenario.targets.iter().find(|t| t.name == name);
@@ -552,7 +574,7 @@ impl Simulation {
             self.pending = Some(Active {
                 start: self.time + delay,
                 trajectory: plan.trajectory.clone(),
-                document: Some(document),
+                previous: PreviousPlan::of(&run),
                 left_out,
                 assumed: self.targets.iter().map(|t| assumed(&t.name)).collect(),
             });
@@ -639,9 +661,8 @@ impl Simulation {
             self.alarm(Alarm::BeyondMargin, None, Some(reason));
         }
         self.is_beyond = is_beyond;
-        if off > self.conduct.largest_off_plan_m {
-            self.conduct.largest_off_plan_m = off;
-            self.conduct.largest_off_plan_t_s = self.time;
+        if off > self.conduct.largest_off_plan.0 {
+            self.conduct.largest_off_plan = (off, self.time);
         }
     }
 

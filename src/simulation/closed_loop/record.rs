@@ -50,17 +50,15 @@ impl Simulation {
         let land = self.sailed_land();
         let grounded = land.as_ref().is_some_and(|land| land.grounded);
         let contact = grounded || self.targets.iter().any(|t| t.clearance.is_contact());
-        let late = self.replans.iter().any(|r| !r.followed);
-        let within_tracking_margin = self.conduct.largest_off_plan_m <= self.tracking_margin();
+        let conduct = &self.conduct;
+        let (largest_off_plan_m, largest_off_plan_t_s) = conduct.largest_off_plan;
+        let within_tracking_margin = largest_off_plan_m <= self.tracking_margin();
+        let all_followed = conduct.without_plan + conduct.late_plans == 0;
         let (desired, weight) = (&self.scenario.desired, self.scenario.time_weight);
         let to_go = (self.own().pose.position - desired.end()).norm();
         let ended = self.time >= self.active.end() - super::INSTANT;
-        let cost = self.active.document.as_ref();
-        let cost = cost.and_then(|plan| plan.cost.as_ref());
-        let mut arrived = ended
-            && cost.is_some_and(|cost| cost.arrived)
-            && self.active.left_out == 0.0
-            && self.off_plan() <= self.tracking_margin();
+        let mut arrived =
+            ended && self.active.left_out == 0.0 && self.off_plan() <= self.tracking_margin();
         // a ship that is still under way does not wait where the simulation ends
         let before_stay = match self.scenario.stay {
             Some(_) => before_stay(desired, &track),
@@ -83,7 +81,7 @@ impl Simulation {
             build: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.title.clone(),
             settings: self.settings_document(),
-            safe: !contact && self.conduct.unsafe_plans == 0 && !late && within_tracking_margin,
+            safe: !contact && conduct.unsafe_plans == 0 && all_followed && within_tracking_margin,
             contact,
             arrived,
             interrupted: !self.finished(),
@@ -107,7 +105,14 @@ impl Simulation {
                     self.scenario.planner.facts().follows_paths,
                 ),
                 within_tracking_margin,
-                ..self.conduct.clone()
+                first_plan_cost_m2: conduct.first_plan_cost,
+                replaced_manoeuvres: conduct.replaced_manoeuvres,
+                side_switches: conduct.side_switches,
+                lost_remainders: conduct.lost_remainders,
+                without_plan: conduct.without_plan,
+                unsafe_plans: conduct.unsafe_plans,
+                largest_off_plan_m,
+                largest_off_plan_t_s,
             },
             alarms: self.alarms.clone(),
             replans: self.replans.clone(),

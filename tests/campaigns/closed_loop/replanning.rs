@@ -6,13 +6,12 @@ use searoom::colregs::{
     SteadyShip, Thresholds,
     compliance::{ComplianceReport, EncounterSamples},
 };
-use searoom::document::PlanDocument;
 use searoom::frame::{Vector, direction};
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::PlannedManoeuvre;
 use searoom::planner::cost::whole_space_time_error;
-use searoom::replanning::remember;
+use searoom::replanning::{PreviousPlan, remember};
 use searoom::scenario::{Memory, Scenario};
 use searoom::target::{Motion, ShipTrack};
 use searoom::tolerance::{SIGMAS, TOUCH_M};
@@ -143,7 +142,7 @@ fn later(
         }
     }
     if how.memory {
-        remember(&PlanDocument::of(run), &mut scenario).expect("it fits");
+        remember(&PreviousPlan::of(run)?, &mut scenario).expect("it fits");
     }
     Some(scenario)
 }

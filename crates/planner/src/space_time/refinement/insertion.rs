@@ -32,7 +32,7 @@ struct Insertion {
 /// Divides long lines in two and inserts the most promising segment variables, with zero length. `None` when
 /// nothing is promising, or when it does not fit.
 pub(crate) fn with_insertions(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
-    let base = split(context, guess)?;
+    let base = split(context, guess, context.problem.settings.insertion.uncut_m)?;
     let found = insertions(context, &base)?;
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     for gap in 0..=base.structure.free() {
@@ -57,11 +57,10 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
     is_shorter.then(|| InitialGuess::new(&kept, guess.structure.ending))
 }
 
-/// Removes empty segment variables and divides long lines, including the dependent line of a
+/// Removes empty segment variables and divides lines longer than `uncut` metres, including the dependent line of a
 /// return.
-fn split(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
-    let settings = &context.problem.settings.insertion;
-    let (empty, uncut) = (settings.empty_m, settings.uncut_m);
+fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+    let empty = context.problem.settings.insertion.empty_m;
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });

@@ -269,8 +269,6 @@ pub(crate) mod tests {
             to: 180.0,
             through: 200.0,
             offsets: [80.0, 90.0],
-            astern: (90.0, 160.0),
-            ahead: (90.0, 160.0),
         };
         for (side, goal) in [
             (Side::Starboard, false),
