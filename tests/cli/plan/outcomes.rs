@@ -156,11 +156,11 @@ fn each_command_says_of_what_its_time_of_a_collision_is() {
 fn a_distance_to_a_set_is_no_distance_of_hulls() {
     run("plan scenarios/paper/figure_1.toml")
         .success()
-        .stdout(contains("closest: 0.0017 m to its set at "))
+        .stdout(contains("closest: 0.0016 m to its set at "))
         .stdout(contains(
             "on the desired trajectory 17.5 m deep in its set at 50 s",
         ))
-        .stdout(contains("0.0017 m to the hard sets; after arrival"));
+        .stdout(contains("0.0016 m to the hard sets; after arrival"));
 }
 
 #[test]
