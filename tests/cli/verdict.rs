@@ -156,7 +156,7 @@ fn a_risk_that_is_taken_is_told_with_its_figure() {
 #[test]
 fn skipped_waypoints_are_told() {
     let folder = Folder::new();
-    let skips = "waypoint 2 by 187 m";
+    let skips = "waypoint 2 by 175 m";
     run("plan tests/faults/near-round-trip.toml").stdout(contains(format!("skips        {skips}")));
     let plan = run("plan tests/faults/near-round-trip.toml --json");
     let file = folder.write("plan.json", stdout(&plan));

@@ -35,7 +35,11 @@ pub fn segments(document: &mut Value) -> &mut Vec<Value> {
 }
 
 pub fn give_up(document: &mut Value, kind: &str, target: &str, amount: f64) {
-    let given_up = json!({ "kind": kind, "target": target, "amount": amount });
+    let unit = match kind {
+        "domain" | "arrival" => "m",
+        _ => "1",
+    };
+    let given_up = json!({ "kind": kind, "target": target, "amount": amount, "unit": unit });
     list(document, "/relaxations").push(given_up);
 }
 

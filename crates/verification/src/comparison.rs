@@ -69,7 +69,10 @@ fn is_same(place: &str, claimed: &Value, verified: &Value, rounding: &Rounding) 
         (Some(claimed), Some(verified)) if !are_counts => near_to(
             claimed,
             verified,
-            rounding.get(place).copied().unwrap_or(0.0),
+            // one that is not finite would allow any number
+            (rounding.get(place).copied())
+                .filter(|rounding| rounding.is_finite())
+                .unwrap_or(0.0),
         ),
         _ => claimed == verified,
     }

@@ -53,7 +53,12 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         mission: MissionDocument {
             duration_s: claim.desired.duration(),
             length_m: claim.desired.length(),
-            ..file.mission.clone()
+            // the desired trajectory and the rest of the claim were made from these
+            waypoints: file.mission.waypoints.clone(),
+            leg_speeds_mps: file.mission.leg_speeds_mps.clone(),
+            left_out_m: file.mission.left_out_m,
+            stay_until_s: file.mission.stay_until_s,
+            alternatives: file.mission.alternatives.clone(),
         },
         cost: cost_of(claim, cost, evaluation),
         // a document of an earlier program has none
@@ -69,6 +74,10 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
             .collect(),
     };
     let mut found = not_finite(&proven);
+    let (targets, passages) = (claim.targets.len(), evaluation.passages.len());
+    if targets != passages {
+        found.push(mismatch("closest approaches", passages, targets));
+    }
     found.extend(differences(
         &claimed,
         &proven,

@@ -28,7 +28,9 @@ fn said(encounter: &EncounterDocument) -> f64 {
 
 /// Largest risk of the encounters, which [`check`] proves; 0 without any.
 pub(super) fn greatest_risk(claim: &Claim) -> f64 {
-    largest(claim.file.encounters.iter().map(said)).max(0.0)
+    let risks = claim.file.encounters.iter().map(said);
+    // `f64::max` would make nothing of a NaN
+    largest(std::iter::once(0.0).chain(risks))
 }
 
 /// Checks the risk and its time for each target, and the reported relaxations.

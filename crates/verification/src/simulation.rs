@@ -234,7 +234,8 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
         contact |= land.grounded || grounded;
     }
     let is_safe = |replan: &ReplanDocument| replan.safe && replan.followed;
-    let within = document.conduct.within_tracking_margin;
+    let conduct = conduct_of(document);
+    let within = conduct.within_tracking_margin && document.conduct.within_tracking_margin;
     let safe = !contact && within && document.replans.iter().all(is_safe);
     let claimed = Results {
         safe: document.safe,
@@ -244,7 +245,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
     let proven = Results {
         safe,
         contact,
-        conduct: conduct_of(document),
+        conduct,
     };
     violations.extend(differences(&claimed, &proven, &Rounding::new()));
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -398,11 +399,23 @@ fn conduct_of(document: &SimulationDocument) -> SailedDocument {
         replans.filter(|replan| is_one(replan)).count()
     };
     let mut alarms = document.alarms.iter();
+    let said = &document.conduct;
+    // every field is named, so that a new one is not compared with itself unseen
     SailedDocument {
         without_plan: plans(|replan| replan.cost_m2.is_none()),
         unsafe_plans: plans(|replan| replan.cost_m2.is_some() && !replan.safe),
         within_tracking_margin: !alarms.any(|alarm| alarm.alarm == Alarm::BeyondMargin),
-        ..document.conduct.clone()
+        cost_m2: said.cost_m2,
+        first_plan_cost_m2: said.first_plan_cost_m2,
+        breaks: said.breaks.clone(),
+        turns: said.turns,
+        speed_changes: said.speed_changes,
+        manoeuvres: said.manoeuvres.clone(),
+        replaced_manoeuvres: said.replaced_manoeuvres,
+        side_switches: said.side_switches,
+        lost_remainders: said.lost_remainders,
+        largest_off_plan_m: said.largest_off_plan_m,
+        largest_off_plan_t_s: said.largest_off_plan_t_s,
     }
 }
 

@@ -67,8 +67,7 @@ pub(crate) fn beyond_land(
 }
 
 /// Conflicts of the nominal motion with land, sampled every [`STEP_S`] from the first contact on,
-/// each with the offsets that clear the land. Land does not move, so there is no waiting and no
-/// passing ahead.
+/// each with the offsets that clear the land.
 pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
     let Some(first) = first_contact(land_obstacle, nominal_motion) else {

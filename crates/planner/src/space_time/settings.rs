@@ -215,6 +215,10 @@ settings! {
         /// Its part that grows with the cost of the initial guess, 1/m. Later the penalty is at least the sum of
         /// the multipliers.
         penalty_per_cost: f64 = 0.01,
+        /// Factor of the penalty for a refinement that has converged inside a set.
+        penalty_factor: f64 = 6.0,
+        /// Largest number of such increases.
+        max_raises: usize = 3,
         /// Factor of a step that does not fit or gain.
         backtrack: f64 = 0.4,
         /// Largest number of them. Then the programme is solved again in a smaller trust region.
@@ -248,8 +252,8 @@ settings! {
         max_insertions: usize = 8,
         /// Least predicted gain of the insertions, as a fraction of the cost.
         min_predicted_gain: f64 = 1e-3,
-        /// Length above which lines are divided for it, m.
-        uncut_m: f64 = 80.0,
+        /// Length above which lines are divided before the insertion, m.
+        uncut_m: f64 = 200.0,
         /// Iterations of a refinement after an insertion.
         iterations: usize = 8,
         /// Relative cost that pruning may add.
@@ -399,7 +403,7 @@ pub struct SearchBudget {
     /// Largest number of iterations once some manoeuvre is clear, because the best one then lacks segment variables
     /// rather than iterations.
     pub iterations_once_clear: usize,
-    /// Iterations after which only the guesses of least merit continue.
+    /// Iterations after which only the guesses with the lowest cost plus penalty continue.
     pub race_from: usize,
     /// Number of those that continue. The others do only where none of these becomes clear.
     pub racers: usize,

@@ -66,6 +66,9 @@ const ON_PATH_M: f64 = 1e-7;
 /// Metres at the normalised size. Points this close to own ship's line ahead are on neither side.
 const AHEAD_M: f64 = 1e-3;
 
+/// Seconds. Contacts this close to one another differ by rounding.
+const SIMULTANEOUS_S: f64 = 1e-6;
+
 /// Samples of the desired trajectory.
 const SAMPLES: usize = 64;
 
@@ -136,25 +139,27 @@ impl Similarity {
         })
     }
 
-    /// Sign of the reflection: -1 where the first object off the line ahead is to port. The target that is met on
-    /// schedule comes first, because one that is never near should not decide how it is passed.
+    /// Sign of the reflection: -1 where the first object off the line ahead is to port. These are the place and
+    /// the drift of the target that is met on schedule, then the bends of the route, then the other targets,
+    /// because one that is never near should not decide how another is passed.
     fn mirror_sign(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
-        let met = first_contact(proxies, &on_schedule(problem.desired)).map(|c| c.0);
-        let mut proxies: Vec<&Proxy> = proxies.iter().collect();
-        proxies.sort_by_key(|h| Some(h.obstacle) != met);
-        let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
-        let places = places.map(|(centre, _)| self.place(centre).y);
+        let met = met_on_schedule(problem.desired, proxies);
+        let (met, others): (Vec<&Proxy>, Vec<&Proxy>) =
+            proxies.iter().partition(|h| Some(h.obstacle) == met);
         let size = &problem.settings.size;
-        let ways = proxies
-            .iter()
-            .map(|h| self.velocity(h.drift()).y * size.turn_m / size.speed_mps);
-        let bends = problem
-            .desired
-            .waypoints()
-            .into_iter()
-            .map(|w| self.place(w).y);
-        let aside = places.chain(ways).chain(bends).find(|y| y.abs() > AHEAD_M);
-        aside.map_or(1.0, |y| -y.signum())
+        let aside = |proxies: Vec<&Proxy>| {
+            let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
+            let places = places.map(|(centre, _)| self.place(centre).y);
+            let drifts = proxies.iter().map(|h| self.velocity(h.drift()).y);
+            let drifts = drifts.map(|drift| drift * size.turn_m / size.speed_mps);
+            places.chain(drifts).find(|y| y.abs() > AHEAD_M)
+        };
+        let bend = || {
+            let bends = problem.desired.waypoints().into_iter();
+            bends.map(|w| self.place(w).y).find(|y| y.abs() > AHEAD_M)
+        };
+        let first = aside(met).or_else(bend).or_else(|| aside(others));
+        first.map_or(1.0, |y| -y.signum())
     }
 
     fn speed(&self) -> f64 {
@@ -534,14 +539,21 @@ fn rounded(x: f64) -> f64 {
     }
 }
 
-/// The schedule, which turns on the spot.
-fn on_schedule(desired: &DesiredTrajectory) -> Vec<Segment> {
+/// The obstacle that own ship meets first on schedule; of several at about the same time the first in the file.
+fn met_on_schedule(desired: &DesiredTrajectory, proxies: &[Proxy]) -> Option<usize> {
     let legs = desired.legs().iter();
-    legs.map(|leg| {
-        let start = Pose::new(leg.start, heading_of(leg.direction));
-        Segment::straight(start, leg.start_time, leg.length / leg.speed, leg.speed)
-    })
-    .collect()
+    let schedule: Vec<Segment> = legs
+        .map(|leg| {
+            let start = Pose::new(leg.start, heading_of(leg.direction));
+            Segment::straight(start, leg.start_time, leg.length / leg.speed, leg.speed)
+        })
+        .collect();
+    let contacts: Vec<(usize, f64)> = by_obstacle(proxies)
+        .filter_map(|of_one| first_contact(of_one, &schedule))
+        .collect();
+    let least = contacts.iter().map(|c| c.1).fold(f64::INFINITY, f64::min);
+    let first = contacts.iter().find(|c| c.1 <= least + SIMULTANEOUS_S);
+    first.map(|c| c.0)
 }
 
 /// Radius of the disc around the section that first contains own ship on schedule, metres.

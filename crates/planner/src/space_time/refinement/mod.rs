@@ -89,6 +89,7 @@ pub(crate) struct Refinement {
     price: f64,
     radius: f64,
     stalled: usize,
+    raised: usize,
     steps: usize,
     finished: bool,
 }
@@ -146,6 +147,7 @@ impl Refinement {
             price: penalty,
             radius: settings.first_radius_m,
             stalled: 0,
+            raised: 0,
             steps: 0,
             finished: false,
         };
@@ -182,6 +184,16 @@ impl Refinement {
     /// Cost of the current manoeuvre with its penalty, m².
     pub(crate) fn merit(&self) -> f64 {
         self.model.cost + self.penalty * self.model.violation
+    }
+
+    /// [`Self::merit`] with the handicap, by which refinements under way are compared; a NaN is the worst.
+    pub(crate) fn standing(&self) -> f64 {
+        let standing = self.handicap * self.merit();
+        if standing.is_nan() {
+            f64::INFINITY
+        } else {
+            standing
+        }
     }
 
     /// Cost used for ranking among clear manoeuvres, m².
@@ -291,6 +303,14 @@ impl Refinement {
         let settings = &context.problem.settings.refinement;
         self.steps += 1;
         let advanced = self.advance(context);
+        if !advanced && self.model.least_slack < 0.0 && self.raised < settings.max_raises {
+            // converged inside a set: raise the penalty
+            self.raised += 1;
+            self.penalty *= settings.penalty_factor;
+            self.radius = settings.first_radius_m;
+            self.stalled = 0;
+            return;
+        }
         if self.steps >= settings.max_steps || !advanced {
             self.finish(context);
         }

@@ -30,8 +30,7 @@ const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
     ..EvasiveManoeuvre::new(0.5, 0.3, 0.9)
 };
 
-/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin of attraction. Of
-/// seven that were tried these three cost as little as all (docs/reference/space-time-planner.md).
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin of attraction.
 const COMPACT: [EvasiveManoeuvre; 3] = [
     EvasiveManoeuvre::new(1.4, 0.6, 0.6),
     EvasiveManoeuvre::slow(1.0, 1.0, 0.9),
@@ -39,9 +38,11 @@ const COMPACT: [EvasiveManoeuvre; 3] = [
 ];
 
 /// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
-const SLENDER: [EvasiveManoeuvre; 3] = [
+const SLENDER: [EvasiveManoeuvre; 5] = [
+    EvasiveManoeuvre::new(0.2, 0.3, 0.6),
     EvasiveManoeuvre::new(0.2, 1.0, 0.9),
     EvasiveManoeuvre::slow(0.7, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.4, 0.3, 0.9),
     FASTER_FIRST,
 ];
 
@@ -176,27 +177,33 @@ impl<'a> Selection<'a> {
     }
 
     /// Refines the guesses until one is clear and has had its share of iterations. After a few iterations those
-    /// of least merit continue, and the others only where none of these becomes clear. True when the deadline
-    /// was reached.
+    /// with the lowest merit function, cost plus penalty, continue; the others do only where none of these
+    /// becomes clear. True when the deadline was reached.
     fn race(&self, running: &mut Vec<Refinement>, clock: Clock) -> bool {
         let (most, begun) = (self.search_budget.racers, self.search_budget.race_from);
         let context = &self.context;
-        let mut beaten = Vec::new();
+        let mut eliminated = Vec::new();
         let mut round = 0;
         if running.len() > most {
             parallel::each(running, |refinement| {
                 (0..begun).for_each(|round| advance(refinement, context, round, clock));
             });
-            running.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
-            beaten = running.split_off(most);
+            running.sort_by(|a, b| a.standing().total_cmp(&b.standing()));
+            eliminated = running.split_off(most);
             round = begun;
         }
         self.refine_all(running, round, clock);
-        if !clock.is_up() && !running.iter().any(is_clear) && !beaten.is_empty() {
-            self.refine_all(&mut beaten, round, clock);
+        if !clock.is_up() && !eliminated.is_empty() && !self.has_clear(running) {
+            self.refine_all(&mut eliminated, round, clock);
         }
-        running.append(&mut beaten);
+        running.append(&mut eliminated);
         clock.is_up()
+    }
+
+    /// True where the motion of a refinement is clear by the exact test.
+    fn has_clear(&self, running: &[Refinement]) -> bool {
+        let motions = ranked(running).map_while(|r| r.best_motion(&self.context));
+        motions.into_iter().any(|motion| self.is_clear(&motion))
     }
 
     /// Refines from a round on, until one is clear and has had its share of iterations, or none changes.
@@ -208,7 +215,7 @@ impl<'a> Selection<'a> {
         } = *self.search_budget;
         let fine_from = self.context.problem.settings.refinement.fine_from;
         while round < steps && !clock.is_up() {
-            let decided = round >= rounds && running.iter().any(is_clear);
+            let decided = round >= rounds && running.iter().any(|r| r.best_cost().is_finite());
             // only manoeuvres checked with fine chords count as clear
             if decided || round > fine_from && running.iter().all(Refinement::is_finished) {
                 break;
@@ -368,10 +375,6 @@ fn refined(
     clock: Clock,
 ) -> Option<Refinement> {
     Some(Refinement::fitting(context, guess)?.run(context, most, clock))
-}
-
-fn is_clear(refinement: &Refinement) -> bool {
-    refinement.best_cost().is_finite()
 }
 
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
