@@ -25,6 +25,9 @@ use searoom_model::vessel::Hull;
 /// Metres: a gap, or another least distance.
 const DISTANCE_M: f64 = 1e-3;
 
+/// Rounding of a cost, m².
+const COST_ROUNDING_M2: f64 = 1e-6;
+
 /// Radians: a turn at once.
 const TURNED_RAD: f64 = 1e-6;
 
@@ -460,6 +463,8 @@ fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
         }
     };
     let any = |key, number: f64| (key, Some(number), 0.0, f64::INFINITY);
+    // an integral of squares that is zero may have a sign by rounding
+    let cost = |key, number: Option<f64>| (key, number, -COST_ROUNDING_M2, f64::INFINITY);
     let (settings, conduct) = (&document.settings, &document.conduct);
     within(
         0.0,
@@ -468,18 +473,18 @@ fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
             any("to_go_m", document.to_go_m),
             any("settings.current_std_mps", settings.current_std_mps),
             any("settings.delay_s", settings.delay_s),
-            any("conduct.cost_m2", conduct.cost_m2),
+            cost("conduct.cost_m2", Some(conduct.cost_m2)),
+            cost("conduct.first_plan_cost_m2", conduct.first_plan_cost_m2),
             any("conduct.largest_off_plan_m", conduct.largest_off_plan_m),
         ],
     );
     for (index, replan) in document.replans.iter().enumerate() {
         let place = format!("replans[{index}].");
-        let cost = ("cost_m2", replan.cost_m2, 0.0, f64::INFINITY);
-        within(
-            replan.t_s,
-            place.clone(),
-            &[any("off_plan_m", replan.off_plan_m), cost],
-        );
+        let numbers = [
+            any("off_plan_m", replan.off_plan_m),
+            cost("cost_m2", replan.cost_m2),
+        ];
+        within(replan.t_s, place.clone(), &numbers);
         for (index, seen) in replan.estimates.iter().enumerate() {
             let numbers = [
                 any("age_s", seen.age_s),
