@@ -109,7 +109,7 @@ pub use schemars;
 #[cfg(feature = "serde")]
 pub use serde;
 
-/// Reads a word. The error names what was found and the words allowed, whatever was found.
+/// Reads a word. The error for another word, null, a number or a truth value names it and the words allowed.
 #[cfg(feature = "serde")]
 pub fn read<'de, T: Copy, D: serde::Deserializer<'de>>(
     from: D,
@@ -123,8 +123,8 @@ pub fn read<'de, T: Copy, D: serde::Deserializer<'de>>(
         .ok_or_else(|| refused(format_args!("'{found}'"), &allowed))
 }
 
-/// Reads the text of a place that usually holds one of these words. Another word is taken; the
-/// error for what is no text names the words allowed.
+/// Reads the text of a place that usually holds one of these words. Another word is accepted; the
+/// error for null, a number or a truth value names the words allowed.
 #[cfg(feature = "serde")]
 pub fn read_text<'de, T, D: serde::Deserializer<'de>>(
     from: D,

@@ -158,6 +158,12 @@ mod tests {
             found(json!({ "a": far }), json!({ "a": far + 1.0 })),
             [""; 0]
         );
+        // a rounding without an end would allow any number
+        let [claimed, verified] = [json!({ "a": 5.5 }), json!({ "a": 1.5 })];
+        for endless in [f64::INFINITY, f64::NAN] {
+            let rounding = Rounding::from([("a".to_owned(), endless)]);
+            assert_eq!(differences(&claimed, &verified, &rounding).len(), 1);
+        }
         let counts = [json!({ "a": 1_000_000_000 }), json!({ "a": 1_000_000_001 })];
         let [claimed, verified] = counts;
         assert_eq!(found(claimed, verified).len(), 1);

@@ -9,7 +9,7 @@ use searoom_geometry::tolerance;
 use searoom_model::{Compliance, ObjectiveKind, PlannerKind, SearchKind};
 use serde::Serialize;
 
-/// What a document says of its plan as a whole.
+/// The statements of a document on its plan as a whole.
 #[derive(Serialize)]
 struct Verdict {
     safe: Option<bool>,

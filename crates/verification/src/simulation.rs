@@ -445,8 +445,8 @@ fn reasons(document: &SimulationDocument, time: f64) -> Vec<String> {
     reasons
 }
 
-/// Numbers that no simulation has, with what is allowed. Costs, distances, ages, sizes and
-/// deviations are never negative, and angles within half a turn.
+/// Numbers outside their range: costs, distances, ages, sizes and deviations below zero, and angles beyond half
+/// a turn.
 fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut within = |time: f64, place: String, numbers: &[(&str, Option<f64>, f64, f64)]| {
@@ -462,7 +462,7 @@ fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
             }
         }
     };
-    let any = |key, number: f64| (key, Some(number), 0.0, f64::INFINITY);
+    let not_negative = |key, number: f64| (key, Some(number), 0.0, f64::INFINITY);
     // an integral of squares that is zero may have a sign by rounding
     let cost = |key, number: Option<f64>| (key, number, -COST_ROUNDING_M2, f64::INFINITY);
     let (settings, conduct) = (&document.settings, &document.conduct);
@@ -470,29 +470,29 @@ fn impossible_numbers(document: &SimulationDocument) -> Vec<Violation> {
         0.0,
         String::new(),
         &[
-            any("to_go_m", document.to_go_m),
-            any("settings.current_std_mps", settings.current_std_mps),
-            any("settings.delay_s", settings.delay_s),
+            not_negative("to_go_m", document.to_go_m),
+            not_negative("settings.current_std_mps", settings.current_std_mps),
+            not_negative("settings.delay_s", settings.delay_s),
             cost("conduct.cost_m2", Some(conduct.cost_m2)),
             cost("conduct.first_plan_cost_m2", conduct.first_plan_cost_m2),
-            any("conduct.largest_off_plan_m", conduct.largest_off_plan_m),
+            not_negative("conduct.largest_off_plan_m", conduct.largest_off_plan_m),
         ],
     );
     for (index, replan) in document.replans.iter().enumerate() {
         let place = format!("replans[{index}].");
         let numbers = [
-            any("off_plan_m", replan.off_plan_m),
+            not_negative("off_plan_m", replan.off_plan_m),
             cost("cost_m2", replan.cost_m2),
         ];
         within(replan.t_s, place.clone(), &numbers);
         for (index, seen) in replan.estimates.iter().enumerate() {
             let numbers = [
-                any("age_s", seen.age_s),
-                any("speed_mps", seen.speed_mps),
-                any("length_m", seen.length_m),
-                any("beam_m", seen.beam_m),
-                any("position_std_m", seen.position_std_m),
-                any("speed_spread_mps", seen.speed_spread_mps),
+                not_negative("age_s", seen.age_s),
+                not_negative("speed_mps", seen.speed_mps),
+                not_negative("length_m", seen.length_m),
+                not_negative("beam_m", seen.beam_m),
+                not_negative("position_std_m", seen.position_std_m),
+                not_negative("speed_spread_mps", seen.speed_spread_mps),
                 (
                     "course_spread_deg",
                     Some(seen.course_spread_deg),

@@ -40,6 +40,24 @@ fn what_the_closed_loop_says_of_its_plans_verifies() {
     }
 }
 
+/// An alarm says that own ship left its tracking margin, so that the claim that it did not makes nothing safe.
+#[test]
+fn an_alarm_outweighs_what_the_conduct_claims() {
+    let folder = Folder::new();
+    let mut sailed = json(&format!("simulate {HEAD_ON_FILE} --json"));
+    assert_eq!(sailed["safe"], true);
+    let alarm = serde_json::json!({ "t_s": 40.0, "alarm": "beyond the tracking margin" });
+    sailed["alarms"].as_array_mut().expect("a list").push(alarm);
+    let file = folder.write("sailed.json", sailed.to_string());
+    let said = stdout(&searoom(&["verify", &file]).code(1));
+    for what in [
+        "conduct.within_tracking_margin: the document says true, it is false",
+        "safe: the document says true, it is false",
+    ] {
+        assert!(said.contains(what), "{said}");
+    }
+}
+
 /// Own ship jumps to and fro by 0.9 mm at each of 20 joints; and a joint beside a segment of no time.
 #[test]
 fn small_gaps_of_a_simulation_count_together() {

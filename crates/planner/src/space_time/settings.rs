@@ -118,7 +118,7 @@ settings! {
         /// Largest number of vertices of an initial set whose moving vertices are nodes. Larger sets are
         /// simplified first.
         initial_vertices: usize = 24,
-        /// The same of a velocity set.
+        /// Largest number of vertices of a velocity set whose moving vertices are nodes.
         velocity_vertices: usize = 12,
         /// Obstacles farther than this from the nominal motion get no nodes, m.
         relevant_m: f64 = 120.0,
@@ -174,7 +174,7 @@ settings! {
         iterations: usize = 24,
         /// Corners nearer to the simplified path than this are left out of a path of the grid, in cells.
         grid_tolerance: f64 = 1.0,
-        /// The same of a path of the hybrid A*.
+        /// Corners nearer to the simplified path than this are left out of a path of the hybrid A*, in cells.
         hybrid_tolerance: f64 = 0.6,
         /// Factor of the tolerance while too many corners remain.
         coarser: f64 = 1.3,
@@ -324,7 +324,7 @@ settings! {
         departures_apart_s: f64 = 8.0,
         /// Time within which the first alteration follows a risk that begins late, s.
         react_s: f64 = 20.0,
-        /// The same of a ship that overtakes, s: once it has turned, the closest approach comes early.
+        /// Time within which a ship that overtakes alters, s: once it has turned, the closest approach comes early.
         overtaking_react_s: f64 = 10.0,
         /// Times for which a parallel course stays clear after the targets are passed, s: more is wider, with more
         /// room to return.
@@ -359,7 +359,7 @@ settings! {
         /// so this is ten times the deviation; beyond it no one would sail the plan, such as one manoeuvre around
         /// ships that are met an hour apart.
         most_cost_ratio: f64 = 100.0,
-        /// The same ratio for a plan that still breaks some rules, though fewer than the cheapest, because one rule
+        /// Highest such ratio for a plan that still breaks some rules, though fewer than the cheapest, because one rule
         /// fewer of many hardly makes a better plan.
         most_unlawful_cost_ratio: f64 = 1.5,
         /// Most expanded groups of targets: so many for each target, and as many again.
