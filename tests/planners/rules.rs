@@ -1,6 +1,7 @@
 //! Tests of plans by the rules, on scenes that are easily planned against them.
 
 use searoom::colregs::Role;
+use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
 use searoom::planner::{PlanMethod, SearchKind};
 use searoom::scenario::Scenario;
@@ -92,6 +93,23 @@ fn a_way_back_may_lead_to_the_last_waypoint() {
         let delay = plan.trajectory.end_time() - run.scenario.desired.duration();
         assert!(delay < most, "{delay}");
     }
+}
+
+/// The route ends before own ship could overtake and return: it follows the target, and arrives as soon as the last
+/// waypoint is free. Before, it passed at half the domain, and came back over twice the distance: 228,610 m².
+#[test]
+fn a_ship_that_would_overtake_beside_the_last_waypoint_follows() {
+    let run = run(include_str!("../faults/goal-at-meeting-overtaking.toml"));
+    let plan = run.planned.outcome.plan().expect("a plan");
+    assert_eq!(plan.method, PlanMethod::Rules);
+    assert!(run.relaxations.is_empty() && run.evaluation.as_ref().is_some_and(|e| e.verified()));
+    for report in run.judged_compliance().iter().flatten() {
+        assert_eq!(report.broken().count(), 0, "{report:?}");
+    }
+    let end = run.scenario.desired.end();
+    let is_free = |time| run.obstacles().all(|o| !o.contains(end, time));
+    let arrives = plan.trajectory.end_time();
+    assert!(is_free(arrives) && !is_free(arrives - 2.0), "{arrives}");
 }
 
 /// A bend that breaks no rule is taken in place of a manoeuvre that costs 250 times as much.

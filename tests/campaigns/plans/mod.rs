@@ -8,4 +8,5 @@ pub mod invariance;
 pub mod mutations;
 pub mod relations;
 pub mod several;
+pub mod short_missions;
 pub mod tidiness;

@@ -38,7 +38,7 @@ pub struct Relation {
 }
 
 /// All relations.
-pub const RELATIONS: [Relation; 6] = [
+pub const RELATIONS: [Relation; 7] = [
     Relation {
         name: "a horizon half as long again",
         effect: Effect::NoMore,
@@ -71,14 +71,21 @@ pub const RELATIONS: [Relation; 6] = [
         always: false,
     },
     Relation {
+        name: "a ship at rest that is never near",
+        effect: Effect::Nothing,
+        pair: |scene| changed(scene, add_a_ship_at_rest),
+        always: false,
+    },
+    Relation {
         name: "a waypoint on the line",
         effect: Effect::Nothing,
         pair: |scene| changed(scene, add_a_waypoint),
         always: true,
     },
     Relation {
+        // the plan of the shorter mission is one of the longer one
         name: "an earlier leg at another speed",
-        effect: Effect::Nothing,
+        effect: Effect::NoMore,
         pair: |scene| {
             changed(with_certain_targets(scene, EARLIER), |scene| {
                 begin_sooner(scene, EARLIER)
@@ -108,13 +115,22 @@ fn add_a_speed(scene: &mut Scenario) {
 
 /// On a parallel course, 2.5 km to port.
 fn add_a_far_ship(scene: &mut Scenario) {
+    add_far(scene, scene.own_ship.speed);
+}
+
+/// 2.5 km to port.
+fn add_a_ship_at_rest(scene: &mut Scenario) {
+    add_far(scene, 0.0);
+}
+
+fn add_far(scene: &mut Scenario, speed: f64) {
     let own = scene.own_ship.pose;
     let place = own.world_coordinates(Vector::new(0.0, 2500.0));
     scene.targets.push(Target {
         name: "far".to_owned(),
         motion: Motion::Ship(ShipTrack::exact(
             Pose::new(place, own.heading),
-            scene.own_ship.speed,
+            speed,
             Hull::new(60.0, 10.0),
         )),
         representation: scene.targets[0].representation,
@@ -186,7 +202,12 @@ pub fn scene(targets: usize, compliance: Compliance, seed: u64) -> Scenario {
     let drawn = match targets {
         1 => {
             let kind = kinds[seed as usize % kinds.len()];
-            random_meeting(kind, seed, Placement::Origin, &Meeting::NEAR)
+            // by the rules own ship acts in ample time, which a near meeting leaves no time for
+            let meeting = match compliance {
+                Compliance::Rules => &Meeting::FAR,
+                _ => &Meeting::NEAR,
+            };
+            random_meeting(kind, seed, Placement::Origin, meeting)
         }
         _ => random_traffic(targets, seed, Placement::Origin),
     };

@@ -16,7 +16,8 @@ use std::process::ExitCode;
 use campaigns::closed_loop::{replanning, simulation};
 use campaigns::encounter_generator::Meeting;
 use campaigns::plans::{
-    asked, compliance, encounters, harbour, invariance, mutations, relations, several, tidiness,
+    asked, compliance, encounters, harbour, invariance, mutations, relations, several,
+    short_missions, tidiness,
 };
 use campaigns::{Report, dense_search, forces, path_time, stopping, wild};
 use clap::{Args, Parser, Subcommand};
@@ -170,6 +171,14 @@ enum Campaign {
     Invariance(Scenes<300>),
     /// Changes whose effect on the cost is known: horizon, speeds, margin, a far ship, waypoints, legs
     Relations(Scenes<100>),
+    /// Missions that end near the meeting against longer ones
+    ShortMissions {
+        #[command(flatten)]
+        scenes: Scenes<60>,
+        /// Folder for the scenes
+        #[arg(long)]
+        keep: Option<PathBuf>,
+    },
     /// Numbers of plan documents altered, each alone
     Mutations {
         /// Numbers altered in each document; all of them if not given
@@ -191,18 +200,23 @@ enum Campaign {
 
 #[derive(Args)]
 struct Scenes<const COUNT: u64> {
-    /// Number of scenes
-    #[arg(long, default_value_t = COUNT)]
-    count: u64,
+    /// Number of scenes, otherwise that of the campaign. No default of clap's: it would be one for all
+    /// campaigns (findings/clap-default-of-a-generic.sh)
+    #[arg(long)]
+    count: Option<u64>,
     /// Seed of the first scene
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
 
 impl<const COUNT: u64> Scenes<COUNT> {
+    fn count(&self) -> u64 {
+        self.count.unwrap_or(COUNT)
+    }
+
     /// Seeds where every scene occurs in `kinds` kinds.
     fn of_each(&self, kinds: u64) -> campaigns::Seeds {
-        self.seed..self.seed + self.count.div_ceil(kinds)
+        self.seed..self.seed + self.count().div_ceil(kinds)
     }
 }
 
@@ -309,6 +323,9 @@ fn run(campaign: Campaign) -> Report {
         Campaign::Asked(scenes) => asked::run(scenes.of_each(1)),
         Campaign::Invariance(scenes) => invariance::run(scenes.of_each(1)),
         Campaign::Relations(scenes) => relations::run(scenes.of_each(1)),
+        Campaign::ShortMissions { scenes, keep } => {
+            short_missions::run(scenes.of_each(1), keep.as_deref())
+        }
         Campaign::Mutations { numbers } => mutations::run(numbers),
         Campaign::Wild {
             scenes,
@@ -316,7 +333,7 @@ fn run(campaign: Campaign) -> Report {
             keep,
         } => wild::run(
             scenes.seed,
-            scenes.count,
+            scenes.count(),
             planner.as_deref(),
             keep.as_deref(),
         ),

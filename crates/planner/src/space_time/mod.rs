@@ -323,10 +323,8 @@ fn plan_with(
         attempt(context, budget, &nominal_motion, &conflicts, others, clock)
     };
     // where the nominal motion meets one obstacle alone, the plan around that one is the answer if it is clear of
-    // the others, so that a ship that is never near changes nothing. Half of the time is left for all of them.
-    // A tidy plan may need the manoeuvres that only the larger search has
-    let is_plain = problem.tidy.is_none() && problem.search != SearchKind::Thorough;
-    let is_asked = others.is_none() && is_plain;
+    // the others, so that a ship that is never near changes nothing. Half of the time is left for all of them
+    let is_asked = others.is_none() && problem.search != SearchKind::Thorough;
     let met = met_alone(proxies, &nominal_motion).filter(|_| is_asked && grounding.is_none());
     let around_one = met.map(|proxies| {
         let proxies = &proxies[..];

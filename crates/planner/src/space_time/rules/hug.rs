@@ -104,14 +104,13 @@ impl<T> From<Option<T>> for Held<T> {
 /// What a trial gives for the least clear hold of `least` to `most` seconds, to `close` seconds, in units
 /// of `unit`; nothing where that one is too dear.
 ///
-/// The holds that touch come first. Where the turn meets what the line does not, or the line ends before
-/// it would touch, a shorter one is found by bisection. Where no hold that touches is clear, some beyond
-/// each are tried. With several targets there may be `gaps` between them: then some beyond each hold are
-/// tried before the next.
+/// Tried are the least hold, those that touch, and some beyond each before the next, because there may be
+/// gaps. Where the turn meets what the line does not, or the line ends before it would touch, a shorter one is
+/// found by bisection.
 pub(super) fn least_clear<T>(
     (least, most): (f64, f64),
     mut touching: Vec<f64>,
-    (unit, close, gaps): (f64, f64, bool),
+    (unit, close): (f64, f64),
     mut trial: impl FnMut(f64) -> Held<T>,
 ) -> Option<T> {
     // a NaN has no hold
@@ -126,25 +125,14 @@ pub(super) fn least_clear<T>(
         Held::TooDear => return None,
         Held::Blocked => {}
     }
-    let mut blocked = least;
-    for &hold in touching.iter().filter(|_| !gaps) {
-        match trial(hold) {
-            Held::Blocked => blocked = hold,
-            clear => return sooner(blocked, (hold, clear), close, trial),
-        }
-    }
     touching.insert(0, least);
     let mut blocked = least;
     for (index, &from) in touching.iter().enumerate() {
         let next = touching.get(index + 1).copied().unwrap_or(most);
-        let beyond = BEYOND_S.map(|beyond| from + beyond * unit).into_iter();
-        // without gaps the holds that touch are known
-        let here = (gaps && index > 0).then_some(from);
-        for hold in here
-            .into_iter()
-            .chain(beyond)
-            .take_while(|hold| *hold < next)
-        {
+        // the least one is known
+        let here = (index > 0).then_some(from).into_iter();
+        let beyond = BEYOND_S.map(|beyond| from + beyond * unit);
+        for hold in here.chain(beyond).take_while(|hold| *hold < next) {
             match trial(hold) {
                 Held::Blocked => blocked = hold,
                 clear => return sooner(blocked, (hold, clear), close, trial),
@@ -251,7 +239,6 @@ mod tests {
     fn the_least_clear_hold_is_that_of_a_dense_scan() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(58);
         for case in 0..500 {
-            let gaps = case % 2 == 0;
             // each body blocks the holds between two, and one blocks a little beyond the last
             let mut blocks: Vec<[f64; 2]> = Vec::new();
             for _ in 0..rng.random_range(0..4) {
@@ -275,7 +262,7 @@ mod tests {
             let close = [FINE_S, COARSE_S][case % 3 % 2];
             let trial = |hold: f64| Held::from((!blocked(hold)).then_some(hold));
             let again = touching.clone();
-            let found = least_clear((3.0, 400.0), touching, (1.0, close, gaps), trial);
+            let found = least_clear((3.0, 400.0), touching, (1.0, close), trial);
             let found = found.expect("all is clear in the end");
             assert!(found >= 3.0 && !blocked(found));
             let scanned = (0..40_000).map(|k| 3.0 + f64::from(k) * 0.01);
@@ -294,7 +281,7 @@ mod tests {
                 false if hold < below => Held::Clear(hold),
                 false => Held::TooDear,
             };
-            let cheap = least_clear((3.0, 400.0), again, (1.0, close, gaps), trial);
+            let cheap = least_clear((3.0, 400.0), again, (1.0, close), trial);
             assert_eq!(cheap, Some(found).filter(|found| *found < below));
         }
     }

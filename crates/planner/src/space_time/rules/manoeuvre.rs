@@ -241,12 +241,12 @@ pub(super) struct Manoeuvres<'s, 'a> {
     pub slows_to_turn: bool,
     /// True where own ship may also stop.
     pub stops: bool,
+    /// True where own ship follows a target on its route at less speed, and does not pass it.
+    pub follows: bool,
     /// Largest first turn, radians.
     pub most_turn: f64,
     /// Factor of the durations: 1 for a harbour vessel that sails its turning radius in 20 s.
     pub unit: f64,
-    /// True where own ship may pass between bodies.
-    gaps: bool,
     /// Bound of the cost to go without any set.
     pub bound: Heuristic<'s>,
     /// The time left, and the account of the search.
@@ -280,9 +280,9 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             keeps_a_length: |_| true,
             slows_to_turn: false,
             stops: false,
+            follows: false,
             most_turn: settings.largest_turn,
             unit: (turn_s / settings.turn_s).max(1.0),
-            gaps: problem.obstacles.len() > 1 || !problem.land_obstacle.is_empty(),
             bound: Heuristic::new(problem.desired, problem.time_weight, problem.own),
             effort,
         }
@@ -411,7 +411,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let holds = (least, most);
         let touching = self.touching(&held, holds);
         let trial = |hold: f64| trial(hold).into();
-        let added = least_clear(holds, touching, (self.unit, close, self.gaps), trial)?;
+        let added = least_clear(holds, touching, (self.unit, close), trial)?;
         self.passed_after(out, Outward::Parallel { spare }, &added)
     }
 
@@ -510,7 +510,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         };
         let holds = (0.0, most);
         let touching = self.touching(&held, holds);
-        least_clear(holds, touching, (self.unit, close, self.gaps), trial)
+        least_clear(holds, touching, (self.unit, close), trial)
     }
 
     /// True where the route is too short for a return at an angle, in radians, from the end of a partial
@@ -561,7 +561,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             Held::from(ends.min_by(|a, b| a.cost.total_cmp(&b.cost)))
         };
         // a hold that is clear by a circle leads to a shorter one without
-        let found = least_clear(holds, Vec::new(), (self.unit, close, self.gaps), trial)?;
+        let found = least_clear(holds, Vec::new(), (self.unit, close), trial)?;
         let last = found.motion.iter().rfind(|s| s.is_arc());
         let turn = last.map_or(0.0, |arc| arc.turn_rate.abs() * arc.duration);
         (turn < self.settings().largest_last).then_some(found)
@@ -612,7 +612,15 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let (leave, speed, begun) = (out.leave, out.first.speed(), problem.under_way);
         let along = self.along_at(leave);
         let (on, _) = route.pose_at(along);
-        let passed = self.passed(on.position, on.ahead() * speed, leave)?;
+        let passed = match (
+            self.passed(on.position, on.ahead() * speed, leave),
+            self.follows,
+        ) {
+            (Some(passed), false) => passed,
+            // a ship that own ship follows is never passed
+            (None, true) => leave,
+            (Some(_), true) | (None, false) => return None,
+        };
         let least = self.family.least_slow + begun.map_or(0.0, |begun| begun.begins);
         let hold = (passed - leave).max(least).max(self.family.least);
         let held = HeldTurn {
@@ -665,7 +673,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
         let holds = (hold, problem.horizon - leave);
         let touching = self.touching(&held, holds);
         let trial = |hold: f64| trial(hold).into();
-        least_clear(holds, touching, (self.unit, close, self.gaps), trial)
+        least_clear(holds, touching, (self.unit, close), trial)
     }
 
     fn cost(&self, whole: &Partial) -> f64 {

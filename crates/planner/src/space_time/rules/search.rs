@@ -103,7 +103,12 @@ impl Manoeuvres<'_, '_> {
                 speed: begun.speed,
             },
         };
-        self.relaxed(|search, below| search.best_of(vec![(0.0, first)], 0.0..=0.0, below))
+        let find = |search: &Self, below| search.best_of(vec![(0.0, first)], 0.0..=0.0, below);
+        let passing = self.relaxed(find);
+        match slows {
+            true => self.or_following(passing, find),
+            false => passing,
+        }
     }
 
     /// The cheapest manoeuvre of a ship that keeps clear, begun in ample time, where the nominal
@@ -111,7 +116,15 @@ impl Manoeuvres<'_, '_> {
     pub(super) fn giving_way(&mut self, contact: f64) -> Option<Manoeuvre> {
         let from = self.from;
         let latest = self.ample_time().min(contact).max(from);
-        self.relaxed(|search, below| search.best(from..=latest, below))
+        let find = |search: &Self, below| search.best(from..=latest, below);
+        let passing = self.relaxed(find);
+        // a ship that is followed far costs the more the longer the route is
+        let (route, radius) = (self.context.route, self.problem().own.turning_radius);
+        let left = route.length() - self.along_at(contact);
+        match left <= self.settings().follow_radii * radius {
+            true => self.or_following(passing, find),
+            false => passing,
+        }
     }
 
     /// The manoeuvre of a ship that stands on: it holds its course until it is near, as long as
@@ -177,6 +190,23 @@ impl Manoeuvres<'_, '_> {
             self.stops = *stops;
             self.of_the_levels(&find)
         })
+    }
+
+    /// A manoeuvre, or a cheaper one in which own ship follows a target on its route at less speed and does not
+    /// pass it.
+    fn or_following(
+        &mut self,
+        passing: Option<Manoeuvre>,
+        find: impl Fn(&Self, f64) -> Option<Manoeuvre>,
+    ) -> Option<Manoeuvre> {
+        let below = passing
+            .as_ref()
+            .map_or(f64::INFINITY, |best| best.whole.cost);
+        self.keeps_a_length = |_| true;
+        (self.slows_to_turn, self.follows) = (false, true);
+        let following = find(self, below);
+        self.follows = false;
+        following.or(passing)
     }
 
     fn of_the_levels(
@@ -499,6 +529,7 @@ impl Manoeuvres<'_, '_> {
         let faster =
             (self.family.may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
         let speeds: Vec<f64> = match self.slows_to_turn {
+            _ if self.follows => Vec::new(),
             true => slow.clone().filter(|u| *u > 0.0).collect(),
             false => std::iter::once(ordered.normal).chain(faster).collect(),
         };
@@ -539,7 +570,7 @@ impl Manoeuvres<'_, '_> {
                 }
             }
         }
-        if !self.slows_to_turn {
+        if !self.slows_to_turn || self.follows {
             let slow = slow.map(|speed| FirstAlteration::Slow { speed });
             all.extend(slow.flat_map(|first| times.iter().map(move |time| (*time, first))));
         }
